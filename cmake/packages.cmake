@@ -1,0 +1,27 @@
+# Every dependency is a Debian 12 package; scripts/packages lists them by name.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(FlatBuffers 2.0.8 REQUIRED CONFIG)
+find_package(spdlog 1.10 REQUIRED CONFIG)
+find_package(fmt REQUIRED CONFIG)
+find_package(SQLite3 REQUIRED)
+find_package(zstd REQUIRED CONFIG)
+find_package(CLI11 REQUIRED CONFIG)
+find_package(tomlplusplus REQUIRED CONFIG)
+find_package(nlohmann_json REQUIRED CONFIG)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+
+# Asio 1.22 comes without a CMake file, and keeps coroutines off under clang unless told otherwise.
+find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)
+add_library(runstone_asio INTERFACE)
+target_include_directories(runstone_asio SYSTEM INTERFACE ${ASIO_INCLUDE_DIR})
+target_compile_definitions(runstone_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  target_compile_definitions(runstone_asio INTERFACE ASIO_HAS_CO_AWAIT=1 ASIO_HAS_STD_COROUTINE=1)
+endif()
+target_link_libraries(runstone_asio INTERFACE Threads::Threads)
+
+if(RUNSTONE_TESTS)
+  find_package(Catch2 2.13 REQUIRED CONFIG)
+endif()

@@ -1,0 +1,82 @@
+// Little-endian byte reader and writer with the one varint of this project.
+// Varint: 7 bits a byte, low bits first, the high bit says "more"; only the shortest spelling is accepted,
+// so equal values have equal bytes. Signed values are zigzag-coded first.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteView = std::span<const std::uint8_t>;
+
+constexpr std::uint64_t zigzag(std::int64_t v) {
+  return (static_cast<std::uint64_t>(v) << 1) ^ static_cast<std::uint64_t>(v >> 63);
+}
+constexpr std::int64_t unzigzag(std::uint64_t v) {
+  return static_cast<std::int64_t>(v >> 1) ^ -static_cast<std::int64_t>(v & 1);
+}
+
+/// Appends to a byte vector. Never fails.
+class ByteWriter {
+ public:
+  explicit ByteWriter(Bytes& out) : out_(out) {}
+  void u8(std::uint8_t v) { out_.push_back(v); }
+  void u16(std::uint16_t v) { little_endian(v, 2); }
+  void u32(std::uint32_t v) { little_endian(v, 4); }
+  void u64(std::uint64_t v) { little_endian(v, 8); }
+  void varint(std::uint64_t v) {
+    for (; v >= 0x80; v >>= 7) out_.push_back(static_cast<std::uint8_t>(v | 0x80));
+    out_.push_back(static_cast<std::uint8_t>(v));
+  }
+  void svarint(std::int64_t v) { varint(zigzag(v)); }
+  void bytes(ByteView v) { out_.insert(out_.end(), v.begin(), v.end()); }
+
+ private:
+  void little_endian(std::uint64_t v, int count) {
+    for (int i = 0; i < count; ++i) out_.push_back(static_cast<std::uint8_t>(v >> (8 * i)));
+  }
+  Bytes& out_;
+};
+
+/// Reads forward through a view and checks every bound. After the first failure every read fails, so a
+/// caller may read a whole record and ask ok() once; error() names the offset of the first failure.
+class ByteReader {
+ public:
+  explicit ByteReader(ByteView in) : in_(in) {}
+
+  bool ok() const { return !failed_; }
+  bool at_end() const { return at_ == in_.size(); }
+  std::size_t offset() const { return at_; }
+  std::size_t left() const { return in_.size() - at_; }
+  const Error& error() const { return error_; }
+
+  std::uint8_t u8() { return static_cast<std::uint8_t>(little_endian(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(little_endian(2)); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(little_endian(4)); }
+  std::uint64_t u64() { return little_endian(8); }
+  std::uint64_t varint();
+  std::int64_t svarint() { return unzigzag(varint()); }
+  /// Varint that must not exceed `max`.
+  std::uint64_t varint_max(std::uint64_t max, const char* what);
+  /// Signed varint that must lie in [low, high].
+  std::int64_t svarint_in(std::int64_t low, std::int64_t high, const char* what);
+  ByteView bytes(std::size_t count);
+  /// Marks the input as bad from outside (a value that decodes but may not be).
+  void reject(ErrorCode code, const char* what);
+  /// The value if everything was read well and nothing is left over.
+  Result<void> finish();
+
+ private:
+  std::uint64_t little_endian(int count);
+  ByteView in_;
+  std::size_t at_ = 0;
+  bool failed_ = false;
+  Error error_{};
+};
+
+}  // namespace runstone

@@ -1,0 +1,47 @@
+// Identities and order: who made an edit, and where it stands in the one log.
+#pragma once
+#include <compare>
+#include <cstdint>
+
+namespace runstone {
+
+using Material = std::uint16_t;  // index into the material table
+inline constexpr Material kEmpty = 0;
+
+using TimeUs = std::int64_t;  // microseconds; each use says of which clock
+
+using LogId = std::uint32_t;     // 0 today; one per shard later
+using Epoch = std::uint32_t;     // raised by each server start; 0 means "before the first start"
+using Sequence = std::uint64_t;  // place in the log, from 1, without gaps; 0 means "base"
+
+/// Version of a chunk: the last edit that touched it by geometry, even if no voxel changed.
+/// (0, 0) is the base (imported or generated, never edited). Compared lexicographically.
+struct Version {
+  Epoch epoch = 0;
+  Sequence seq = 0;
+  friend auto operator<=>(const Version&, const Version&) = default;
+};
+
+using AuthorId = std::uint32_t;        // row in `player`; 0 is the server itself
+using ClientInstance = std::uint64_t;  // random, drawn once per client process
+using ClientSequence = std::uint64_t;  // counts a client instance's edits, from 1
+
+/// Names one edit as its author sent it, before the world ordered it: an edit offered twice is applied once.
+struct OperationId {
+  AuthorId author = 0;
+  ClientInstance instance = 0;
+  ClientSequence seq = 0;
+  friend auto operator<=>(const OperationId&, const OperationId&) = default;
+};
+
+using TraceId = std::uint64_t;
+/// Ties log lines of one edit together on every machine. Derived, never random, so replays trace alike.
+TraceId trace_id(const OperationId& op);
+
+/// Why an edit is in the log. Values are frozen: they are stored.
+enum class Cause : std::uint8_t { player = 0, console = 1, rollback = 2, undo = 3, redo = 4, import = 5 };
+inline constexpr std::uint8_t kCauseMax = 5;
+
+using SessionId = std::uint32_t;  // one connection; never reused while the server runs
+
+}  // namespace runstone

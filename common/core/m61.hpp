@@ -1,0 +1,27 @@
+// Arithmetic modulo the Mersenne prime 2^61 - 1, the field in which digests live: a product of two residues
+// reduces with shifts and adds, and sums may be taken in any order.
+#pragma once
+#include <cstdint>
+
+namespace runstone::m61 {
+
+inline constexpr std::uint64_t kPrime = (1ULL << 61) - 1;
+
+/// Any 64-bit value to its residue in [0, kPrime).
+constexpr std::uint64_t reduce(std::uint64_t v) {
+  v = (v & kPrime) + (v >> 61);
+  return v >= kPrime ? v - kPrime : v;
+}
+/// Requires both arguments below kPrime; so is the result. The same holds for sub and mul.
+constexpr std::uint64_t add(std::uint64_t a, std::uint64_t b) {
+  const std::uint64_t s = a + b;
+  return s >= kPrime ? s - kPrime : s;
+}
+constexpr std::uint64_t sub(std::uint64_t a, std::uint64_t b) { return a >= b ? a - b : a + kPrime - b; }
+constexpr std::uint64_t mul(std::uint64_t a, std::uint64_t b) {
+  __extension__ using Wide = unsigned __int128;
+  const Wide p = static_cast<Wide>(a) * b;
+  return add(static_cast<std::uint64_t>(p) & kPrime, static_cast<std::uint64_t>(p >> 61));
+}
+
+}  // namespace runstone::m61

@@ -1,0 +1,90 @@
+// Result<T>: a value or an error, for input that may be bad. C++20 lacks std::expected and g++ 12 has it
+// only in C++23 mode; the member names are std::expected's, so that this can become an alias later.
+// Error never allocates: an enum, a static string and the byte offset at which the input went wrong.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+
+enum class ErrorCode : std::uint16_t {
+  truncated,        // the input ended early
+  trailing_bytes,   // bytes left over after a complete value
+  not_canonical,    // decodes, but another spelling is the only accepted one
+  bad_value,        // a field is outside its documented range
+  bad_version,      // made by an unknown format version
+  limit_exceeded,   // larger than a documented limit
+  bad_checksum,     // bytes were damaged
+  broken_invariant, // a structural rule of runs, layers or frames does not hold
+  unknown_kind,     // a tag, message type or encoding that this build does not know
+  not_found,        // a named thing does not exist
+  io_failed,        // the disk or the network failed
+};
+
+struct Error {
+  ErrorCode code{};
+  const char* what = "";     // static string; names the field and the rule
+  std::uint64_t offset = 0;  // byte offset, run index or row, whichever the callee documents
+  friend bool operator==(const Error& a, const Error& b) { return a.code == b.code && a.offset == b.offset; }
+};
+
+template <class E>
+struct Unexpected {
+  E error;
+};
+
+/// Shortens `return Unexpected<Error>{...}`.
+inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t offset = 0) {
+  return {Error{code, what, offset}};
+}
+
+template <class T, class E = Error>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}                    // NOLINT(google-explicit-constructor)
+  Result(Unexpected<E> error) : state_(std::in_place_index<1>, std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+
+  bool has_value() const { return state_.index() == 0; }
+  explicit operator bool() const { return has_value(); }
+
+  T& value() & { return check(), *std::get_if<0>(&state_); }
+  const T& value() const& { return check(), *std::get_if<0>(&state_); }
+  T&& value() && { return check(), std::move(*std::get_if<0>(&state_)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  const E& error() const {
+    RUNSTONE_ASSERT(!has_value());
+    return *std::get_if<1>(&state_);
+  }
+
+ private:
+  void check() const { RUNSTONE_ASSERT(has_value()); }
+  std::variant<T, E> state_;
+};
+
+template <class E>
+class [[nodiscard]] Result<void, E> {
+ public:
+  Result() = default;
+  Result(Unexpected<E> error) : error_(std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+
+  bool has_value() const { return !error_.has_value(); }
+  explicit operator bool() const { return has_value(); }
+  const E& error() const {
+    RUNSTONE_ASSERT(error_.has_value());
+    return *error_;
+  }
+
+ private:
+  std::optional<E> error_;
+};
+
+}  // namespace runstone

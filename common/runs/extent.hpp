@@ -1,0 +1,37 @@
+// Extent: the sides of a cuboid of voxels. World chunks are cubes; other cuboids live in the library only.
+#pragma once
+#include <array>
+#include <compare>
+#include <cstdint>
+
+namespace runstone {
+
+inline constexpr unsigned kSideMin = 8;
+inline constexpr unsigned kSideMax = 128;
+
+/// Place of a voxel in its flattened chunk, in the chunk's own axis order.
+using VoxelIndex = std::uint32_t;
+
+struct Extent {
+  std::uint8_t x = 32, y = 32, z = 32;  // voxels, each kSideMin .. kSideMax
+  friend auto operator<=>(const Extent&, const Extent&) = default;
+
+  constexpr std::uint32_t volume() const {
+    return static_cast<std::uint32_t>(x) * static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(z);
+  }
+  constexpr std::array<std::uint8_t, 3> sides() const { return {x, y, z}; }
+  constexpr bool valid() const {
+    for (const unsigned side : sides()) {
+      if (side < kSideMin || side > kSideMax) return false;
+    }
+    return true;
+  }
+  static constexpr Extent cube(unsigned edge) {
+    const auto side = static_cast<std::uint8_t>(edge);
+    return {side, side, side};
+  }
+};
+
+inline constexpr std::uint32_t kVolumeMax = kSideMax * kSideMax * kSideMax;
+
+}  // namespace runstone

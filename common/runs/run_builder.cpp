@@ -1,0 +1,30 @@
+#include "common/runs/run_builder.hpp"
+
+#include <utility>
+
+namespace runstone {
+
+RunBuilder::RunBuilder(Extent extent, AxisOrder order) : chunk_{extent, order, RunList{extent.volume()}} {
+  RUNSTONE_ASSERT(extent.valid());
+}
+
+void RunBuilder::append(std::uint32_t count, Material material) {
+  if (count == 0) return;
+  RUNSTONE_DASSERT(count <= chunk_.volume() - filled_);
+  if (filled_ != 0 && material != open_) flush();
+  open_ = material;
+  filled_ += count;
+}
+
+void RunBuilder::flush() { chunk_.runs.push_back({filled_, open_}); }
+
+RunChunk RunBuilder::finish() {
+  RUNSTONE_ASSERT(filled_ == chunk_.volume());
+  flush();
+  filled_ = 0;
+  RunChunk out{chunk_.extent, chunk_.order, RunList{chunk_.volume()}};
+  std::swap(out.runs, chunk_.runs);
+  return out;
+}
+
+}  // namespace runstone

@@ -1,0 +1,30 @@
+// RunBuilder: appends stretches in index order and merges equal neighbours, so the result is canonical.
+// The one way in which generators, decoders and the edit sweep make chunks.
+#pragma once
+#include <cstdint>
+
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+class RunBuilder {
+ public:
+  RunBuilder(Extent extent, AxisOrder order);
+
+  /// Voxels appended so far.
+  std::uint32_t filled() const { return filled_; }
+  /// Appends `count` voxels (0 is allowed and does nothing). Requires filled() + count <= volume. O(1) amortised.
+  void append(std::uint32_t count, Material material);
+  /// Appends voxels up to index `end`. Requires filled() <= end <= volume.
+  void append_to(std::uint32_t end, Material material) { append(end - filled_, material); }
+  /// Requires filled() == volume. The builder is empty afterwards.
+  RunChunk finish();
+
+ private:
+  void flush();
+  RunChunk chunk_;
+  std::uint32_t filled_ = 0;
+  Material open_ = kEmpty;  // material of the run still growing; meaningful while filled_ > 0
+};
+
+}  // namespace runstone

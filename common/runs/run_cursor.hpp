@@ -1,0 +1,52 @@
+// RunCursor: walks a chunk's runs forward. Reading voxel by voxel or stretch by stretch costs O(1) amortised.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "common/core/assert.hpp"
+#include "common/runs/run_list.hpp"
+
+namespace runstone {
+
+/// Runs is NarrowRuns or WideRuns (see RunList::visit).
+template <class Runs>
+class RunCursor {
+ public:
+  explicit RunCursor(Runs runs) : runs_(runs) {}
+
+  std::size_t run() const { return run_; }
+  Material material() const { return runs_.material(run_); }
+  std::uint32_t end() const { return runs_.end(run_); }
+  bool last() const { return run_ + 1 == runs_.size(); }
+  /// Steps to the next run. Requires !last().
+  void next() {
+    RUNSTONE_DASSERT(!last());
+    ++run_;
+  }
+  /// Moves forward to the run that covers `voxel`. Requires voxel not before the current run and below the
+  /// volume. Gallops, then bisects: O(log distance).
+  void seek(std::uint32_t voxel) {
+    std::size_t step = 1;
+    std::size_t low = run_;
+    while (low + step < runs_.size() && runs_.end(low + step - 1) <= voxel) {
+      low += step;
+      step *= 2;
+    }
+    std::size_t high = low + step < runs_.size() ? low + step : runs_.size() - 1;
+    while (low < high) {
+      const std::size_t mid = low + (high - low) / 2;
+      if (runs_.end(mid) <= voxel) {
+        low = mid + 1;
+      } else {
+        high = mid;
+      }
+    }
+    run_ = low;
+  }
+
+ private:
+  Runs runs_;
+  std::size_t run_ = 0;
+};
+
+}  // namespace runstone

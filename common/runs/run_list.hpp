@@ -1,0 +1,110 @@
+// RunList: the runs of one chunk in the narrowest form that holds its ends.
+//   volume <= 65,535: one vector of PackedRun (u16 end, u16 material), 4 bytes a run
+//   larger:           two vectors (u32 ends, u16 materials), 6 bytes a run
+// Both forms are also the bytes of the `raw` wire encoding, so a snapshot is read in place.
+// A RunList does not check that its runs are canonical; RunChunk's validate() and RunBuilder do.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/core/assert.hpp"
+#include "common/core/ids.hpp"
+#include "common/runs/extent.hpp"
+
+namespace runstone {
+
+/// A run by value: it covers [end of the run before it, end).
+struct Run {
+  std::uint32_t end = 0;
+  Material material = kEmpty;
+  friend bool operator==(const Run&, const Run&) = default;
+};
+
+struct PackedRun {
+  std::uint16_t end = 0;
+  Material material = kEmpty;
+  friend bool operator==(const PackedRun&, const PackedRun&) = default;
+};
+static_assert(sizeof(PackedRun) == 4);
+
+inline constexpr std::uint32_t kNarrowVolumeMax = 65535;
+
+/// Read-only views with one shape, so that hot code is a template over the form and branches outside its loop.
+class NarrowRuns {
+ public:
+  explicit NarrowRuns(std::span<const PackedRun> runs) : runs_(runs) {}
+  std::size_t size() const { return runs_.size(); }
+  std::uint32_t end(std::size_t i) const { return runs_[i].end; }
+  Material material(std::size_t i) const { return runs_[i].material; }
+  std::span<const PackedRun> packed() const { return runs_; }
+
+ private:
+  std::span<const PackedRun> runs_;
+};
+
+class WideRuns {
+ public:
+  WideRuns(std::span<const std::uint32_t> ends, std::span<const Material> materials)
+      : ends_(ends), materials_(materials) {}
+  std::size_t size() const { return ends_.size(); }
+  std::uint32_t end(std::size_t i) const { return ends_[i]; }
+  Material material(std::size_t i) const { return materials_[i]; }
+  std::span<const std::uint32_t> ends() const { return ends_; }
+  std::span<const Material> materials() const { return materials_; }
+
+ private:
+  std::span<const std::uint32_t> ends_;
+  std::span<const Material> materials_;
+};
+
+class RunList {
+ public:
+  /// Empty list in the form that `volume` asks for.
+  explicit RunList(std::uint32_t volume = 0);
+
+  bool is_narrow() const { return std::holds_alternative<Narrow>(form_); }
+  std::size_t size() const;
+  std::uint32_t end(std::size_t i) const;
+  Material material(std::size_t i) const;
+  Run operator[](std::size_t i) const { return {end(i), material(i)}; }
+  /// First voxel of run i.
+  std::uint32_t begin(std::size_t i) const { return i == 0 ? 0 : end(i - 1); }
+
+  void clear();
+  void reserve(std::size_t runs);
+  /// Requires run.end to fit the form. Does not merge.
+  void push_back(Run run);
+  /// Replaces runs [first, first + count) by `with`. O(runs behind them).
+  void splice(std::size_t first, std::size_t count, std::span<const Run> with);
+
+  /// Calls f with NarrowRuns or WideRuns; the view dies with the call.
+  template <class F>
+  decltype(auto) visit(F&& f) const {
+    if (const auto* narrow = std::get_if<Narrow>(&form_)) return std::forward<F>(f)(NarrowRuns{*narrow});
+    const auto& wide = *std::get_if<Wide>(&form_);
+    return std::forward<F>(f)(WideRuns{wide.ends, wide.materials});
+  }
+
+  /// Bytes of run storage in use (4 or 6 a run), without spare capacity.
+  std::size_t byte_size() const { return size() * (is_narrow() ? 4 : 6); }
+  /// Bytes of run storage held, spare capacity included.
+  std::size_t byte_capacity() const;
+  void shrink_to_fit();
+
+  friend bool operator==(const RunList&, const RunList&) = default;
+
+ private:
+  using Narrow = std::vector<PackedRun>;
+  struct Wide {
+    std::vector<std::uint32_t> ends;
+    std::vector<Material> materials;
+    friend bool operator==(const Wide&, const Wide&) = default;
+  };
+  std::variant<Narrow, Wide> form_;
+};
+
+}  // namespace runstone
