@@ -1,0 +1,80 @@
+// EditDescriptor: what an edit does, as geometry, a mask and a material. One record for a whole brush stroke.
+// Its effect on a chunk depends only on the descriptor and that chunk's voxels.
+// The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire, in the log and in exports.
+// A kind's meaning is frozen; a change is a new kind.
+#pragma once
+#include <cstdint>
+#include <variant>
+
+#include "common/core/bytes.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// Tags, stored. 4 (capsule stroke), 5 (replace) and 6 (paste) are reserved.
+enum class EditKind : std::uint8_t { set_voxel = 1, fill_box = 2, fill_sphere = 3 };
+
+/// Which voxels of the geometry an edit may write. Stored.
+enum class MaskKind : std::uint8_t { everything = 0, only_empty = 1, only_solid = 2, only_material = 3 };
+
+struct Mask {
+  MaskKind kind = MaskKind::everything;
+  Material material = kEmpty;  // for only_material; kEmpty otherwise
+  friend bool operator==(const Mask&, const Mask&) = default;
+  bool admits(Material present) const {
+    switch (kind) {
+      case MaskKind::everything: return true;
+      case MaskKind::only_empty: return present == kEmpty;
+      case MaskKind::only_solid: return present != kEmpty;
+      case MaskKind::only_material: return present == material;
+    }
+    return false;
+  }
+};
+
+struct SetVoxel {
+  VoxelPos at;
+  friend bool operator==(const SetVoxel&, const SetVoxel&) = default;
+};
+
+struct FillBox {
+  VoxelBox box;  // not empty
+  friend bool operator==(const FillBox&, const FillBox&) = default;
+};
+
+/// Voxels whose integer offset d from the centre has |d|^2 <= r^2 + r, that is |d| < r + 1/2.
+struct FillSphere {
+  VoxelPos centre;
+  std::uint16_t radius = 0;
+  friend bool operator==(const FillSphere&, const FillSphere&) = default;
+};
+
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere>;  // order follows EditKind
+
+struct EditDescriptor {
+  EditShape shape;
+  Mask mask;
+  Material material = kEmpty;  // kEmpty removes
+  friend bool operator==(const EditDescriptor&, const EditDescriptor&) = default;
+};
+
+/// What the encoding can say at all. Servers allow less (protocol/limits.hpp, server configuration).
+inline constexpr std::int32_t kEditBoxSideMax = 4096;
+inline constexpr std::uint16_t kEditRadiusMax = 512;
+inline constexpr std::size_t kDescriptorBytesMax = 64;  // of the kinds above
+
+EditKind kind_of(const EditDescriptor& edit);
+
+/// Names the first field outside its range (position beyond the world, empty or oversized box, radius).
+Result<void> validate(const EditDescriptor& edit);
+
+/// Appends the canonical bytes. Requires a valid descriptor.
+void encode(const EditDescriptor& edit, Bytes& out);
+Bytes encode(const EditDescriptor& edit);
+
+/// Exactly one descriptor and nothing else; only canonical bytes pass. The result is valid.
+Result<EditDescriptor> decode_descriptor(ByteView in);
+
+}  // namespace runstone

@@ -1,0 +1,88 @@
+// MaterialTable: what a material id means. A data file (TOML), as the thesis' table (7.4): row i describes id i,
+// and the table does not change while a world is open. Id 0 is always "air", empty.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+/// empty: never drawn, hides nothing. opaque: hides the faces behind it. transparent: drawn in the blended pass;
+/// equal transparent materials hide the faces between them, different ones do not.
+enum class Visibility : std::uint8_t { empty = 0, opaque = 1, transparent = 2 };
+
+/// How a generator turns this material into a layer of terrain (thesis 7.4 and figure 7.21).
+/// Units are voxels; frequency is cycles per voxel. The thesis' z is up, ours is y.
+struct SurfaceRule {
+  std::int32_t seed = 1;
+  double elevation = 0;       // noise amplitude, -10000 .. 10000
+  double distance = 0;        // mean height above sea level (y = 0), -10000 .. 10000
+  double frequency = 0.007;   // 0 < f <= 1
+  friend bool operator==(const SurfaceRule&, const SurfaceRule&) = default;
+};
+
+struct GenerationRule {
+  SurfaceRule surface;                   // the material fills below this surface
+  std::optional<SurfaceRule> reversed;   // and, if given, only above this one ("reversed surface")
+  friend bool operator==(const GenerationRule&, const GenerationRule&) = default;
+};
+
+struct MaterialInfo {
+  std::string name;                               // unique, 1 .. 64 bytes of UTF-8
+  std::array<std::uint8_t, 4> colour{0, 0, 0, 255};  // sRGB and alpha; alpha < 255 only where transparent
+  Visibility visibility = Visibility::opaque;
+  std::optional<GenerationRule> generation;
+  friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
+};
+
+/// Where a text file is wrong. Says file, line and key, as its reader needs them.
+struct TextError {
+  std::string file;
+  std::uint32_t line = 0;  // from 1; 0 if the file as a whole is meant
+  std::string key;         // e.g. "material[3].colour"; empty if none
+  std::string what;
+  std::string message() const;  // "file:line: key: what"
+};
+
+inline constexpr std::size_t kMaterialCountMax = 65536;
+inline constexpr std::size_t kMaterialNameBytesMax = 64;
+
+class MaterialTable {
+ public:
+  /// Only air.
+  MaterialTable();
+
+  std::size_t size() const { return rows_.size(); }
+  bool knows(Material id) const { return id < rows_.size(); }
+  /// Requires knows(id).
+  const MaterialInfo& operator[](Material id) const { return rows_[id]; }
+  std::optional<Material> find(std::string_view name) const;
+  std::span<const MaterialInfo> rows() const { return rows_; }
+
+  /// Appends a row; fails on a bad or double name, or a full table.
+  Result<Material> add(MaterialInfo info);
+
+  friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
+
+ private:
+  std::vector<MaterialInfo> rows_;
+};
+
+/// Reads `[[material]]` tables; `file` is only for messages. See docs/materials.md for the keys.
+Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file);
+
+/// The table as TOML that parse_material_table() reads back to an equal table.
+std::string to_toml(const MaterialTable& table);
+
+/// The built-in table: air, grass, sand, dirt, stone, water and the builders' palette.
+const MaterialTable& default_material_table();
+
+}  // namespace runstone

@@ -1,0 +1,40 @@
+// Run Directional Meshing straight from runs (thesis chapter 7.3, with the culling and merging it left open):
+// six directions, hidden faces culled inside the chunk and across its borders, strips merged along the line,
+// then across lines and layers. No dense grid.
+#pragma once
+#include <array>
+#include <memory>
+
+#include "common/core/coords.hpp"
+#include "common/edits/edit_stack.hpp"
+#include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/visibility.hpp"
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+/// The six chunks around one, by Direction, in any axis order, with equal sides. A null one is "missing": its
+/// voxels count as empty, so the faces at the edge of the view are drawn.
+using MeshNeighbours = std::array<const RunChunk*, kDirectionCount>;
+
+/// Buffers reused between calls; steady state allocates nothing. Belongs to one thread. Opaque to callers.
+class RdmScratch {
+ public:
+  RdmScratch();
+  ~RdmScratch();
+  RdmScratch(RdmScratch&&) noexcept;
+  RdmScratch& operator=(RdmScratch&&) noexcept;
+  struct State;
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// Replaces `out` by the mesh of `chunk`. A face belongs to the chunk of its solid voxel.
+/// Quads of a layer cover each exposed face exactly once, never another, never two materials.
+/// Requires valid chunks. Any thread, one scratch each.
+void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
+              RdmScratch& scratch, ChunkMesh& out);
+
+}  // namespace runstone
