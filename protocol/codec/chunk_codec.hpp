@@ -1,0 +1,32 @@
+// Chunk bytes: runs as they lie on the wire, on disk and in caches. docs/protocol.md gives both layouts.
+//   raw:    u8 1 | u8 version 1 | u8 axis order | u8 0 | u8 x, y, z sides | u8 0 | u32 run count | runs as in
+//           memory: narrow {u16 end, u16 material} each, or wide all u32 ends, then all u16 materials
+//   packed: u8 2 | u8 version 1 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint run count
+//           | varint palette size | palette (varint ids, ascending, first as is, then differences - 1)
+//           | varint body bytes unpacked | body: a plane of palette indices (u8 each, u16 if the palette exceeds
+//           256), then a plane of run lengths as varints without the last one
+// `packed` becomes the run array in one linear pass over runs, never per voxel.
+#pragma once
+#include <cstdint>
+
+#include "common/core/bytes.hpp"
+#include "common/core/result.hpp"
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+/// Values are on wire and disk.
+enum class ChunkEncoding : std::uint8_t { raw = 1, packed = 2 };
+
+/// Appends the chunk's bytes. Requires a valid chunk. O(runs). `packed` keeps a compression context per thread.
+void encode_chunk(const RunChunk& chunk, ChunkEncoding encoding, Bytes& out);
+Bytes encode_chunk(const RunChunk& chunk, ChunkEncoding encoding);
+
+/// Either encoding, told by the first byte; the result is validated. Never allocates more than the bytes justify
+/// (run count is checked against both the volume and the bytes that are there).
+Result<RunChunk> decode_chunk(ByteView in);
+
+/// Size of the raw bytes without making them.
+std::size_t raw_bytes(const RunChunk& chunk);
+
+}  // namespace runstone

@@ -1,0 +1,163 @@
+// Messages as plain structs, and the one way from bytes to them and back. A decode ends validated: sizes, ranges,
+// enum values, descriptor bytes and chunk runs are checked before anybody sees the struct.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/digest.hpp"
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/edit_descriptor.hpp"
+#include "common/materials/material_table.hpp"
+#include "common/runs/chunk.hpp"
+#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/codec/frame.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+
+using PublicKey = std::array<std::uint8_t, kKeyBytes>;
+using Nonce = std::array<std::uint8_t, kNonceBytes>;
+using Signature = std::array<std::uint8_t, kSignatureBytes>;
+using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
+
+struct WorldPos {  // voxels; a player's eye or feet, not a voxel
+  double x = 0, y = 0, z = 0;
+  friend bool operator==(const WorldPos&, const WorldPos&) = default;
+};
+struct Pose {
+  WorldPos at;
+  std::uint16_t yaw = 0;   // 65536 a turn, 0 looks along +z, growing towards +x
+  std::int16_t pitch = 0;  // 32768 is 180 degrees, positive looks up
+  friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+struct Hello {
+  std::uint32_t protocol = kProtocolVersion;
+  PublicKey key{};
+  ClientInstance instance = 0;
+  Nonce nonce{};
+  std::string name;
+  std::uint8_t encodings = 3;  // bit per ChunkEncoding: 1 << (encoding - 1)
+};
+struct Welcome {
+  std::uint32_t protocol = kProtocolVersion;
+  WorldId world_id{};
+  Epoch epoch = 0;
+  Sequence durable = 0, head = 0;
+  std::uint16_t chunk_edge = 32;
+  std::int32_t y_min = 0, y_max = 0;
+  WorldPos spawn;
+  MaterialTable materials;
+  PublicKey server_key{};
+  Nonce challenge{};
+  Signature signature{};
+  ChunkEncoding encoding = ChunkEncoding::raw;
+  std::uint64_t edit_volume_max = 0;
+  std::uint8_t view_radius_max = 0;
+};
+struct Proof { Signature signature{}; };
+struct Ready { AuthorId author = 0; ClientSequence decided = 0; };
+
+/// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`.
+struct View {
+  ChunkCoord centre;
+  std::uint8_t radius_h = 0, radius_v = 0;
+  friend bool operator==(const View&, const View&) = default;
+  bool contains(ChunkCoord c) const {
+    const std::int64_t dx = std::int64_t{c.x} - centre.x;
+    const std::int64_t dy = std::int64_t{c.y} - centre.y;
+    const std::int64_t dz = std::int64_t{c.z} - centre.z;
+    return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v && -dy <= radius_v;
+  }
+};
+struct ChunkRequest { std::vector<ChunkKey> keys; };
+/// Server side keeps data encoded (made once by a worker); client side gets the decoded chunk.
+struct ChunkSnapshot { ChunkKey key; Chunk chunk; };
+struct EditRequest {
+  ClientSequence client_seq = 0;
+  TimeUs submitted_us = 0;
+  EditDescriptor edit;
+};
+struct OrderedEdit {
+  OperationId op;
+  Cause cause = Cause::player;
+  TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
+  EditDescriptor edit;
+  std::vector<Sequence> previous;  // sequence each touched chunk stood at before, in touched_chunks() order
+};
+struct Commit {
+  Epoch epoch = 0;
+  Sequence first = 0;
+  std::vector<OrderedEdit> edits;
+};
+
+/// Values are on the wire.
+enum class RejectReason : std::uint8_t {
+  busy = 1,              // the log is full: try again later
+  already_decided = 2,   // this client sequence was applied or rejected before: see the chunks
+  unknown_material = 3,
+  too_large = 4,         // volume or touched chunks over the limit
+  out_of_reach = 5,
+  not_permitted = 6,
+  rate_limited = 7,
+  bad_edit = 8,          // outside the world or otherwise invalid
+};
+inline constexpr std::uint8_t kRejectReasonMax = 8;
+const char* to_string(RejectReason reason);
+
+struct Reject { ClientSequence client_seq = 0; RejectReason reason = RejectReason::busy; std::string detail; };
+struct Durable { Epoch epoch = 0; Sequence seq = 0; };
+struct AuditEntry { ChunkKey key; Version version; Digest digest; };
+struct Audit { std::vector<AuditEntry> entries; };
+struct Move { Pose pose; };
+struct PlayerPose { AuthorId author = 0; Pose pose; };
+struct PlayerPoses { std::vector<PlayerPose> players; };
+struct PlayerName { AuthorId author = 0; std::string name; };
+struct Roster { std::vector<PlayerName> players; };
+struct Ping { TimeUs sent_us = 0; };
+struct Pong { TimeUs sent_us = 0, server_us = 0; };
+
+/// Values are on the wire and in docs/protocol.md.
+enum class GoodbyeReason : std::uint16_t {
+  closing = 1,             // the sender ends normally
+  wrong_protocol = 2,      // text names both versions
+  malformed_frame = 3,
+  malformed_message = 4,
+  unexpected_message = 5,  // valid, but not now or not from this side
+  not_authenticated = 6,
+  already_connected = 7,   // the same key and instance is here
+  server_full = 8,
+  timed_out = 9,
+  flooding = 10,           // faster than the limits
+  internal = 11,
+};
+inline constexpr std::uint16_t kGoodbyeReasonMax = 11;
+const char* to_string(GoodbyeReason reason);
+
+struct Goodbye { GoodbyeReason reason = GoodbyeReason::closing; std::string text; };
+
+/// Order follows the union of the schema.
+using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
+                             Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye>;
+
+/// The class every message of this kind travels in.
+FrameClass frame_class_of(const Message& message);
+
+/// Serialises a message. Chunk snapshots: see encode_snapshot().
+EncodedMessage encode_message(const Message& message);
+
+/// A snapshot in the given encoding. Reads runs, makes no dense copy. O(runs).
+EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
+
+/// One message of a class from a sender. `chunk_edge` is the world's edge (0 before welcome): snapshots of another
+/// size are refused, and `previous` lists are checked against the edits' touched chunks.
+Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes, std::uint16_t chunk_edge);
+
+}  // namespace runstone
