@@ -1,0 +1,27 @@
+# runstone-server: built in one stage, copied without compilers into the next. Build from the repository root:
+#   docker build -f docker/server.Dockerfile -t runstone-server .
+FROM debian:bookworm-slim AS build
+RUN apt-get update && apt-get install -y --no-install-recommends \
+      ca-certificates cmake ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
+      flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libzstd-dev libxxhash-dev libsodium-dev \
+      libcli11-dev libtomlplusplus-dev nlohmann-json3-dev && rm -rf /var/lib/apt/lists/*
+WORKDIR /src
+COPY CMakeLists.txt CMakePresets.json ./
+COPY cmake cmake
+COPY common common
+COPY protocol protocol
+COPY server server
+RUN cmake --preset release -DRUNSTONE_CLIENT=OFF -DRUNSTONE_TESTS=OFF && \
+    cmake --build --preset release --target runstone-server runstone-replay && \
+    strip build/release/bin/runstone-server build/release/bin/runstone-replay
+
+FROM debian:bookworm-slim
+RUN apt-get update && apt-get install -y --no-install-recommends \
+      libspdlog1.10 libfmt9 libsqlite3-0 libzstd1 libsodium23 && rm -rf /var/lib/apt/lists/* && \
+    useradd --system --uid 10001 runstone && install -d -o runstone -g runstone /world
+COPY --from=build /src/build/release/bin/runstone-server /src/build/release/bin/runstone-replay /usr/local/bin/
+USER runstone
+VOLUME /world
+EXPOSE 7777
+STOPSIGNAL SIGTERM
+ENTRYPOINT ["runstone-server", "--world", "/world", "--listen", "0.0.0.0:7777"]

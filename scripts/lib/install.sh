@@ -1,0 +1,34 @@
+# Sourced. install_packages SET...: installs the Debian packages of these sets that are missing (scripts/packages),
+# says which, and uses sudo only when not root.
+install_packages() {
+  local wanted=() missing=() package set
+  while read -r set package; do
+    case " $* " in *" $set "*) wanted+=("$package") ;; esac
+  done < <(grep -v '^#' "$root/scripts/packages")
+  for package in "${wanted[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "installing ${#missing[@]} Debian packages: ${missing[*]}"
+  local sudo=""
+  [ "$(id -u)" -eq 0 ] || sudo="sudo"
+  $sudo apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# build PRESET [TARGET...]: configures once, builds.
+build() {
+  local preset=$1
+  shift
+  [ -f "$root/build/$preset/build.ninja" ] || (cd "$root" && cmake --preset "$preset" >/dev/null)
+  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} -- --quiet)
+}
+
+# Runs the rest of the line and prints how long it took.
+step() {
+  local name=$1 start=$SECONDS
+  shift
+  echo "== $name"
+  "$@"
+  echo "== $name: $((SECONDS - start)) s"
+}
