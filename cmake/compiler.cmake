@@ -20,6 +20,12 @@ if(RUNSTONE_SANITIZE)
   endif()
 endif()
 
+if(RUNSTONE_FUZZ)
+  # Coverage for libFuzzer in every library; only the fuzz targets link its main.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link>)
+  add_link_options(-fsanitize=fuzzer-no-link)
+endif()
+
 find_program(MOLD_PROGRAM mold)
 if(MOLD_PROGRAM)
   add_link_options(-fuse-ld=mold)

@@ -1,5 +1,5 @@
-// GlContext: a current OpenGL context and where it came from. Headless: EGL surfaceless first, OSMesa second (both
-// without an X server). With a display: client/platform/window.hpp. Belongs to the thread that made it.
+// GlContext: a current OpenGL context and where it came from. Headless: EGL surfaceless first, OSMesa second
+// (both without an X server). With a display: client/platform/window.hpp. Belongs to the thread that made it.
 #pragma once
 #include <memory>
 #include <string>

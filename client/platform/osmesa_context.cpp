@@ -1,0 +1,59 @@
+#include "client/platform/osmesa_context.hpp"
+
+#include <GL/osmesa.h>
+
+#include <array>
+#include <vector>
+
+namespace runstone {
+namespace {
+
+// Frames go to framebuffer objects; the context itself only wants some memory to call its window.
+constexpr int kWindowSide = 16;
+
+class OsmesaContext final : public GlContext {
+ public:
+  explicit OsmesaContext(OSMesaContext context)
+      : context_(context), window_(4UL * kWindowSide * kWindowSide) {}
+  ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+  OsmesaContext(const OsmesaContext&) = delete;
+  OsmesaContext& operator=(const OsmesaContext&) = delete;
+
+  bool try_make_current() {
+    return OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, kWindowSide, kWindowSide) == GL_TRUE;
+  }
+  void make_current() override { try_make_current(); }
+  Loader loader() const override { return &OSMesaGetProcAddress; }
+  const char* name() const override { return "OSMesa"; }
+
+ private:
+  OSMesaContext context_;
+  std::vector<unsigned char> window_;
+};
+
+}  // namespace
+
+std::unique_ptr<GlContext> make_osmesa_context(std::string& tried) {
+  constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
+  for (const auto& [major, minor] : kVersions) {
+    const std::array<int, 11> attributes = {OSMESA_FORMAT,
+                                            OSMESA_RGBA,
+                                            OSMESA_PROFILE,
+                                            OSMESA_CORE_PROFILE,
+                                            OSMESA_CONTEXT_MAJOR_VERSION,
+                                            major,
+                                            OSMESA_CONTEXT_MINOR_VERSION,
+                                            minor,
+                                            OSMESA_DEPTH_BITS,
+                                            24,
+                                            0};
+    const OSMesaContext context = OSMesaCreateContextAttribs(attributes.data(), nullptr);
+    if (context == nullptr) continue;
+    auto owned = std::make_unique<OsmesaContext>(context);
+    if (owned->try_make_current()) return owned;
+  }
+  tried += "OSMesa: no 4.5 or 3.3 core context; ";
+  return nullptr;
+}
+
+}  // namespace runstone

@@ -1,0 +1,117 @@
+#include "client/platform/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace runstone {
+
+struct Window::State {
+  GLFWwindow* window = nullptr;
+  WindowInput pending;  // presses since the last poll
+  bool captured = false;
+  bool have_cursor = false;  // the first position after capture is a start, not a movement
+  double cursor_x = 0, cursor_y = 0;
+
+  void capture(bool on) {
+    captured = on;
+    have_cursor = false;
+    glfwSetInputMode(window, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  }
+  bool held(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
+};
+
+namespace {
+
+std::string glfw_words() {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return words != nullptr ? words : "unknown GLFW error";
+}
+
+}  // namespace
+
+Window::Window(int width, int height, const std::string& title) : state_(std::make_unique<State>()) {
+  if (glfwInit() != GLFW_TRUE) throw std::runtime_error("no window: " + glfw_words());
+  constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
+  for (const auto& [major, minor] : kVersions) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    state_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (state_->window != nullptr) break;
+  }
+  if (state_->window == nullptr) {
+    const std::string words = glfw_words();
+    glfwTerminate();
+    throw std::runtime_error("no window: " + words);
+  }
+  glfwMakeContextCurrent(state_->window);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(state_->window, state_.get());
+  glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {
+    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
+    if (action != GLFW_PRESS) return;
+    if (!state.captured) return state.capture(true);
+    if (button == GLFW_MOUSE_BUTTON_LEFT) ++state.pending.remove_clicks;
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) ++state.pending.place_clicks;
+  });
+  glfwSetCursorPosCallback(state_->window, [](GLFWwindow* w, double x, double y) {
+    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
+    if (state.captured && state.have_cursor) {
+      state.pending.look_dx += x - state.cursor_x;
+      state.pending.look_dy += y - state.cursor_y;
+    }
+    state.have_cursor = state.captured;
+    state.cursor_x = x;
+    state.cursor_y = y;
+  });
+  glfwSetScrollCallback(state_->window, [](GLFWwindow* w, double, double dy) {
+    static_cast<State*>(glfwGetWindowUserPointer(w))->pending.scroll += dy > 0 ? 1 : dy < 0 ? -1 : 0;
+  });
+  glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int, int action, int) {
+    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
+    if (action != GLFW_PRESS) return;
+    if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) state.pending.digit = key - GLFW_KEY_0;
+    if (key == GLFW_KEY_F2) state.pending.screenshot = true;
+    if (key == GLFW_KEY_ESCAPE) {
+      if (state.captured) return state.capture(false);
+      state.pending.escape = true;
+    }
+  });
+}
+
+Window::~Window() {
+  glfwDestroyWindow(state_->window);
+  glfwTerminate();
+}
+
+void Window::make_current() { glfwMakeContextCurrent(state_->window); }
+GlContext::Loader Window::loader() const { return &glfwGetProcAddress; }
+
+WindowInput Window::poll() {
+  glfwPollEvents();
+  WindowInput input = std::exchange(state_->pending, WindowInput{});
+  input.forward = state_->held(GLFW_KEY_W);
+  input.back = state_->held(GLFW_KEY_S);
+  input.left = state_->held(GLFW_KEY_A);
+  input.right = state_->held(GLFW_KEY_D);
+  input.up = state_->held(GLFW_KEY_SPACE);
+  input.down = state_->held(GLFW_KEY_LEFT_SHIFT);
+  input.fast = state_->held(GLFW_KEY_LEFT_CONTROL);
+  input.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+  return input;
+}
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(state_->window, title.c_str()); }
+void Window::swap() { glfwSwapBuffers(state_->window); }
+std::array<int, 2> Window::framebuffer_size() const {
+  std::array<int, 2> size{};
+  glfwGetFramebufferSize(state_->window, &size[0], &size[1]);
+  return size;
+}
+bool Window::mouse_captured() const { return state_->captured; }
+
+}  // namespace runstone

@@ -1,0 +1,29 @@
+// Frustum: the six planes of a view, to skip chunks outside it. Camera-relative coordinates (eye at the
+// origin).
+#pragma once
+#include <array>
+#include <glm/glm.hpp>
+
+namespace runstone {
+
+class Frustum {
+ public:
+  /// Planes of a clip-from-relative matrix. Source: Gribb and Hartmann 2001 (rows of the matrix, summed).
+  explicit Frustum(const glm::mat4& clip) {
+    const glm::mat4 t = glm::transpose(clip);
+    planes_ = {t[3] + t[0], t[3] - t[0], t[3] + t[1], t[3] - t[1], t[3] + t[2], t[3] - t[2]};
+  }
+  /// False only if the box is wholly outside one plane.
+  bool may_see(const glm::vec3& min, const glm::vec3& max) const {
+    for (const glm::vec4& p : planes_) {
+      const glm::vec3 far_corner{p.x > 0 ? max.x : min.x, p.y > 0 ? max.y : min.y, p.z > 0 ? max.z : min.z};
+      if (glm::dot(glm::vec3(p), far_corner) + p.w < 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::array<glm::vec4, 6> planes_;
+};
+
+}  // namespace runstone
