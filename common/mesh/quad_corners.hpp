@@ -1,0 +1,34 @@
+// The four corners of a quad in drawing order: what the renderer's vertex shader computes from the packed
+// bits, written once on the CPU so that both can be held to the same winding.
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "common/mesh/quad.hpp"
+
+namespace runstone {
+
+/// A corner on the voxel lattice, 0 .. 128 on each axis, by Axis.
+using Corner = std::array<int, 3>;
+
+/// Corners in counter-clockwise order seen from outside (from the side the direction points to), starting at
+/// the corner with the smallest coordinates: (corner 1 - corner 0) x (corner 2 - corner 1) points along the
+/// direction. Triangles are (0, 1, 2) and (0, 2, 3).
+constexpr std::array<Corner, 4> quad_corners(Quad quad) {
+  const QuadFields q = unpack(quad);
+  const Axis axis = axis_of(q.direction);
+  const auto u = static_cast<std::size_t>(u_axis_of(axis));
+  const auto v = static_cast<std::size_t>(v_axis_of(axis));
+  const bool positive = is_positive(q.direction);
+
+  Corner low = {q.x, q.y, q.z};
+  if (positive) ++low[static_cast<std::size_t>(axis)];  // the far side of the voxels
+  std::array<Corner, 4> corners = {low, low, low, low};
+  corners[positive ? 1 : 3][u] += q.width;
+  corners[2][u] += q.width;
+  corners[2][v] += q.height;
+  corners[positive ? 3 : 1][v] += q.height;
+  return corners;
+}
+
+}  // namespace runstone

@@ -1,0 +1,148 @@
+// RDM against the face oracle on random scenes. Small extents, so that many scenes fit into a test run.
+#include "common/mesh/rdm/rdm_mesher.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/support/dense_chunk.hpp"
+#include "tests/support/mesh_scene.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+namespace {
+
+// The same voxels in another axis order, voxel by voxel.
+RunChunk turned(const RunChunk& chunk, AxisOrder order) {
+  RunChunk out = uniform_chunk(chunk.extent, kEmpty, order);
+  const DenseChunk dense = DenseChunk::of(chunk);
+  for (std::uint32_t i = 0; i < chunk.volume(); ++i) {
+    const VoxelPos p = dense_pos(chunk.extent, order, i);
+    if (const Material m = dense.at(p.x, p.y, p.z); m != kEmpty) fill(out, i, 1, m);
+  }
+  return out;
+}
+
+TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 1);
+  RdmScratch scratch;  // one for all: what a scene leaves behind would show in the next
+  ChunkMesh mesh;
+  std::set<AxisOrder> orders;
+  std::size_t transparent_quads = 0;
+  for (int scene_number = 0; scene_number < 10000; ++scene_number) {
+    const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
+    const MeshScene scene = random_scene(rng, side_max);
+    mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
+    const auto difference = scene_difference(scene, mesh);
+    if (!difference) {
+      orders.insert(scene.chunk.order);
+      transparent_quads += mesh.transparent.quads.size();
+      continue;
+    }
+    CAPTURE(Catch::rngSeed(), scene_number);
+    FAIL(*difference);
+  }
+  CHECK(orders.size() == kAxisOrderCount);
+  CHECK(transparent_quads > 0);
+}
+
+TEST_CASE("the largest and the flattest extents mesh to the exposed faces", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 2);
+  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{128, 128, 8},
+                              Extent{8, 127, 128}, Extent{65, 64, 63}}) {
+    for (const AxisOrder order : kAxisOrders) {
+      MeshScene scene;
+      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
+      for (auto& neighbour : scene.neighbours) {
+        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
+      }
+      CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
+      REQUIRE(scene_difference(scene, mesh_of(scene)).value_or("") == "");
+    }
+  }
+}
+
+TEST_CASE("meshes stay right while a chunk is edited by fills", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 3);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  for (int round = 0; round < 60; ++round) {
+    MeshScene scene = random_scene(rng, 12);
+    for (int step = 0; step < 20; ++step) {
+      const std::uint32_t first = rng.below(scene.chunk.volume());
+      const std::uint32_t longest = std::min(scene.chunk.volume() - first, rng.below(2) == 0 ? 4u : 400u);
+      fill(scene.chunk, first, 1 + rng.below(longest), static_cast<Material>(rng.below(kMeshMaterialCount)));
+      mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
+      CAPTURE(Catch::rngSeed(), round, step);
+      REQUIRE(scene_difference(scene, mesh).value_or("") == "");
+    }
+  }
+}
+
+TEST_CASE("all six axis orders mesh to the same unit faces", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 4);
+  for (int round = 0; round < 60; ++round) {
+    MeshScene scene = random_scene(rng, 14);
+    const std::vector<UnitFace> faces = unit_faces(mesh_of(scene));
+    for (const AxisOrder order : kAxisOrders) {
+      scene.chunk = turned(scene.chunk, order);
+      CAPTURE(Catch::rngSeed(), round, order);
+      REQUIRE(unit_faces(mesh_of(scene)) == faces);
+    }
+  }
+}
+
+TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 5);
+  RdmScratch used;
+  ChunkMesh mesh;
+  for (int round = 0; round < 300; ++round) {
+    const MeshScene scene = random_scene(rng, 16);
+    const ChunkMesh fresh = mesh_of(scene);
+    mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), used, mesh);
+    CAPTURE(Catch::rngSeed(), round);
+    REQUIRE(mesh.opaque.quads == fresh.opaque.quads);
+    REQUIRE(mesh.opaque.first == fresh.opaque.first);
+    REQUIRE(mesh.transparent.quads == fresh.transparent.quads);
+    REQUIRE(mesh.transparent.first == fresh.transparent.first);
+  }
+}
+
+TEST_CASE("quads that lie side by side with one edge in common along the strip are one quad",
+          "[mesh][property]") {
+  // Strips are maximal: no two quads of one layer, rows and material touch end to end along the strip axis.
+  // Which axis that is depends on the order, so at least one of the two must be free of such pairs in every
+  // direction.
+  SplitMix64 rng(Catch::rngSeed() + 6);
+  for (int round = 0; round < 200; ++round) {
+    const MeshScene scene = random_scene(rng, 14);
+    const ChunkMesh mesh = mesh_of(scene);
+    for (unsigned d = 0; d < kDirectionCount; ++d) {
+      bool u_splits = false;
+      bool v_splits = false;
+      for (unsigned layer = 0; layer < kSideMax; ++layer) {
+        for (const QuadLayers* pass : {&mesh.opaque, &mesh.transparent}) {
+          const auto quads = pass->layer(static_cast<Direction>(d), layer);
+          for (const Quad a_bits : quads) {
+            for (const Quad b_bits : quads) {
+              const QuadFields a = unpack(a_bits);
+              const QuadFields b = unpack(b_bits);
+              if (a.material != b.material) continue;
+              const std::array<int, 3> pa = {a.x, a.y, a.z};
+              const std::array<int, 3> pb = {b.x, b.y, b.z};
+              const auto u = static_cast<std::size_t>(u_axis_of(axis_of(a.direction)));
+              const auto v = static_cast<std::size_t>(v_axis_of(axis_of(a.direction)));
+              u_splits |= pa[v] == pb[v] && a.height == b.height && pa[u] + a.width == pb[u];
+              v_splits |= pa[u] == pb[u] && a.width == b.width && pa[v] + a.height == pb[v];
+            }
+          }
+        }
+      }
+      CAPTURE(Catch::rngSeed(), round, d);
+      REQUIRE_FALSE((u_splits && v_splits));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace runstone::test

@@ -1,0 +1,249 @@
+#include "tests/support/face_oracle.hpp"
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+#include <sstream>
+#include <utility>
+
+namespace runstone::test {
+namespace {
+
+struct Step {
+  Direction direction;
+  int dx, dy, dz;
+};
+constexpr std::array<Step, 6> kSteps = {{{Direction::neg_x, -1, 0, 0},
+                                         {Direction::pos_x, 1, 0, 0},
+                                         {Direction::neg_y, 0, -1, 0},
+                                         {Direction::pos_y, 0, 1, 0},
+                                         {Direction::neg_z, 0, 0, -1},
+                                         {Direction::pos_z, 0, 0, 1}}};
+
+const char* name_of(Direction direction) {
+  constexpr std::array<const char*, 6> kNames = {"-x", "+x", "-y", "+y", "-z", "+z"};
+  return kNames.at(static_cast<std::size_t>(direction));
+}
+
+// Ids beyond the table count as opaque.
+Visibility visibility_of(const MaterialTable& materials, Material id) {
+  if (id == 0) return Visibility::empty;
+  return id < materials.size() ? materials[id].visibility : Visibility::opaque;
+}
+
+// The material next to a voxel, looked up in the neighbour where the step leaves the chunk.
+Material material_beside(const DenseChunk& chunk, const DenseNeighbours& neighbours, int x, int y, int z,
+                         const Step& step) {
+  x += step.dx;
+  y += step.dy;
+  z += step.dz;
+  if (chunk.inside(x, y, z)) return chunk.at(x, y, z);
+  const DenseChunk* other = neighbours.at(static_cast<std::size_t>(step.direction));
+  if (other == nullptr) return 0;
+  if (step.dx < 0) x = other->side_x() - 1;
+  if (step.dx > 0) x = 0;
+  if (step.dy < 0) y = other->side_y() - 1;
+  if (step.dy > 0) y = 0;
+  if (step.dz < 0) z = other->side_z() - 1;
+  if (step.dz > 0) z = 0;
+  return other->at(x, y, z);
+}
+
+// A quad read from its documented bits (common/mesh/quad.hpp), in a second hand.
+struct Rectangle {
+  int x, y, z, width, height, direction;
+  Material material;
+  std::uint64_t reserved;
+};
+
+Rectangle rectangle_of(Quad quad) {
+  std::uint64_t rest = quad.bits;
+  const auto take = [&rest](unsigned bits) {
+    const std::uint64_t value = rest % (1ULL << bits);
+    rest >>= bits;
+    return static_cast<int>(value);
+  };
+  Rectangle r{};
+  r.x = take(7);
+  r.y = take(7);
+  r.z = take(7);
+  r.width = take(7) + 1;
+  r.height = take(7) + 1;
+  r.direction = take(3);
+  r.material = static_cast<Material>(take(16));
+  r.reserved = rest;
+  return r;
+}
+
+// Width and height of a rectangle as sizes along x, y and z.
+std::array<int, 3> size_of(const Rectangle& r) {
+  switch (r.direction / 2) {
+    case 0:
+      return {1, r.width, r.height};
+    case 1:
+      return {r.height, 1, r.width};
+    default:
+      return {r.width, r.height, 1};
+  }
+}
+
+template <class F>
+void for_each_face(const Rectangle& r, F&& visit) {
+  const auto size = size_of(r);
+  for (int z = r.z; z < r.z + size[2]; ++z) {
+    for (int y = r.y; y < r.y + size[1]; ++y) {
+      for (int x = r.x; x < r.x + size[0]; ++x) {
+        visit(UnitFace{x, y, z, static_cast<Direction>(r.direction), r.material});
+      }
+    }
+  }
+}
+
+std::string fault_of_quad(const Rectangle& r, int direction, int layer, Extent extent, Visibility visibility,
+                          bool transparent) {
+  if (r.reserved != 0) return "reserved bits are set";
+  if (r.direction != direction) return "grouped under another direction";
+  const std::array<int, 3> low = {r.x, r.y, r.z};
+  const std::array<int, 3> sides = {extent.x, extent.y, extent.z};
+  const auto size = size_of(r);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (low[axis] + size[axis] > sides[axis]) return "leaves the extent";
+  }
+  if (low[static_cast<std::size_t>(direction / 2)] != layer) return "grouped under another layer";
+  if (visibility == Visibility::empty) return "is of an empty material";
+  if ((visibility == Visibility::transparent) != transparent) return "stands in the wrong pass";
+  return {};
+}
+
+std::string describe(const Rectangle& r) {
+  std::ostringstream out;
+  out << "quad at " << r.x << ' ' << r.y << ' ' << r.z << ", " << r.width << " x " << r.height
+      << ", direction " << r.direction << ", material " << r.material;
+  return out.str();
+}
+
+std::optional<std::string> fault_of_pass(const QuadLayers& pass, bool transparent, Extent extent,
+                                         const MaterialTable& materials, std::vector<UnitFace>& covered) {
+  const char* const name = transparent ? "transparent pass: " : "opaque pass: ";
+  if (pass.first.front() != 0 || pass.first.back() != pass.quads.size()) {
+    return std::string(name) + "the layer index does not span the quads";
+  }
+  if (!std::is_sorted(pass.first.begin(), pass.first.end())) {
+    return std::string(name) + "the layer index descends";
+  }
+  for (int direction = 0; direction < 6; ++direction) {
+    for (int layer = 0; layer < static_cast<int>(kSideMax); ++layer) {
+      for (const Quad quad : pass.layer(static_cast<Direction>(direction), static_cast<unsigned>(layer))) {
+        const Rectangle r = rectangle_of(quad);
+        const std::string fault =
+            fault_of_quad(r, direction, layer, extent, visibility_of(materials, r.material), transparent);
+        if (!fault.empty()) return name + describe(r) + ' ' + fault;
+        for_each_face(r, [&](const UnitFace& face) { covered.push_back(face); });
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const UnitFace& face) {
+  std::ostringstream out;
+  out << face;
+  return out.str();
+}
+
+}  // namespace
+
+std::ostream& operator<<(std::ostream& out, const UnitFace& face) {
+  return out << "face " << name_of(face.direction) << " of voxel " << face.x << ' ' << face.y << ' ' << face.z
+             << " in material " << face.material;
+}
+
+std::vector<UnitFace> exposed_faces(const DenseChunk& chunk, const DenseNeighbours& neighbours,
+                                    const MaterialTable& materials) {
+  std::vector<UnitFace> faces;
+  for (int z = 0; z < chunk.side_z(); ++z) {
+    for (int y = 0; y < chunk.side_y(); ++y) {
+      for (int x = 0; x < chunk.side_x(); ++x) {
+        const Material here = chunk.at(x, y, z);
+        if (visibility_of(materials, here) == Visibility::empty) continue;
+        for (const Step& step : kSteps) {
+          const Material there = material_beside(chunk, neighbours, x, y, z, step);
+          if (there == here || visibility_of(materials, there) == Visibility::opaque) continue;
+          faces.push_back({x, y, z, step.direction, here});
+        }
+      }
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::vector<UnitFace> unit_faces(const ChunkMesh& mesh) {
+  std::vector<UnitFace> faces;
+  for (const QuadLayers* pass : {&mesh.opaque, &mesh.transparent}) {
+    for (const Quad quad : pass->quads) {
+      for_each_face(rectangle_of(quad), [&](const UnitFace& face) { faces.push_back(face); });
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent, const MaterialTable& materials) {
+  std::vector<UnitFace> covered;
+  if (auto fault = fault_of_pass(mesh.opaque, false, extent, materials, covered)) return fault;
+  if (auto fault = fault_of_pass(mesh.transparent, true, extent, materials, covered)) return fault;
+  std::sort(covered.begin(), covered.end());
+  const auto same_place = [](const UnitFace& a, const UnitFace& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.direction == b.direction;
+  };
+  const auto twice = std::adjacent_find(covered.begin(), covered.end(), same_place);
+  if (twice != covered.end()) return text_of(*twice) + " is covered twice";
+  return std::nullopt;
+}
+
+std::optional<std::string> mesh_difference(const ChunkMesh& mesh, Extent extent,
+                                           const MaterialTable& materials,
+                                           const std::vector<UnitFace>& expected) {
+  if (auto fault = mesh_fault(mesh, extent, materials)) return fault;
+  const std::vector<UnitFace> found = unit_faces(mesh);
+  const auto [is, should] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
+  if (is == found.end() && should == expected.end()) return std::nullopt;
+  if (should == expected.end() || (is != found.end() && *is < *should)) return text_of(*is) + " is too many";
+  return text_of(*should) + " is missing";
+}
+
+std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {
+  using Cells = std::map<std::pair<int, int>, Material>;  // cells still to be covered, by (v, u)
+  std::map<std::pair<Direction, int>, Cells> planes;
+  for (const UnitFace& face : faces) {
+    const std::array<int, 3> at = {face.x, face.y, face.z};
+    const auto axis = static_cast<std::size_t>(face.direction) / 2;
+    planes[{face.direction, at.at(axis)}][{at.at((axis + 2) % 3), at.at((axis + 1) % 3)}] = face.material;
+  }
+  std::size_t quads = 0;
+  for (auto& plane : planes) {
+    Cells& cells = plane.second;
+    while (!cells.empty()) {
+      const auto [corner, material] = *cells.begin();
+      const auto [v0, u0] = corner;
+      // Cells of the row from u0 on that are open and of this material, up to `most`.
+      const auto open_width = [&cells, u0 = u0, material = material](int v, int most) {
+        int width = 0;
+        for (; width < most; ++width) {
+          const auto cell = cells.find({v, u0 + width});
+          if (cell == cells.end() || cell->second != material) break;
+        }
+        return width;
+      };
+      const int width = open_width(v0, kSideMax);
+      for (int v = v0; open_width(v, width) == width; ++v) {
+        for (int u = u0; u < u0 + width; ++u) cells.erase({v, u});
+      }
+      ++quads;
+    }
+  }
+  return quads;
+}
+
+}  // namespace runstone::test

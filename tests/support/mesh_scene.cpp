@@ -1,0 +1,86 @@
+#include "tests/support/mesh_scene.hpp"
+
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+
+const MaterialTable& mesh_materials() {
+  static const MaterialTable table = [] {
+    MaterialTable t;
+    const auto add = [&t](const char* name, Visibility visibility) {
+      MaterialInfo info;
+      info.name = name;
+      info.visibility = visibility;
+      RUNSTONE_ASSERT(t.add(info).has_value());
+    };
+    add("stone", Visibility::opaque);
+    add("dirt", Visibility::opaque);
+    add("water", Visibility::transparent);
+    add("glass", Visibility::transparent);
+    add("barrier", Visibility::empty);
+    return t;
+  }();
+  return table;
+}
+
+const VisibilityTable& mesh_visibility() {
+  static const VisibilityTable table(mesh_materials());
+  return table;
+}
+
+MeshNeighbours MeshScene::pointers() const {
+  MeshNeighbours out{};
+  for (std::size_t d = 0; d < neighbours.size(); ++d) {
+    out[d] = neighbours[d] ? &*neighbours[d] : nullptr;
+  }
+  return out;
+}
+
+MeshScene random_scene(SplitMix64& rng, unsigned side_max) {
+  // Materials beyond the table are opaque to the mesher; two or three materials make the largest faces.
+  const unsigned materials = rng.below(4) == 0 ? 2 + rng.below(12) : kMeshMaterialCount;
+  MeshScene scene;
+  scene.chunk = random_chunk(rng, random_extent(rng, side_max), random_order(rng), materials);
+  for (unsigned d = 0; d < kDirectionCount; ++d) {
+    if (rng.below(4) == 0) continue;
+    Extent extent = scene.chunk.extent;
+    const auto depth = random_extent(rng, side_max).x;
+    switch (axis_of(static_cast<Direction>(d))) {
+      case Axis::x:
+        extent.x = depth;
+        break;
+      case Axis::y:
+        extent.y = depth;
+        break;
+      case Axis::z:
+        extent.z = depth;
+        break;
+    }
+    scene.neighbours[d] = random_chunk(rng, extent, random_order(rng), materials);
+  }
+  return scene;
+}
+
+std::vector<UnitFace> expected_faces(const MeshScene& scene) {
+  std::array<std::optional<DenseChunk>, kDirectionCount> dense;
+  DenseNeighbours around{};
+  for (std::size_t d = 0; d < dense.size(); ++d) {
+    if (!scene.neighbours[d]) continue;
+    dense[d] = DenseChunk::of(*scene.neighbours[d]);
+    around[d] = &*dense[d];
+  }
+  return exposed_faces(DenseChunk::of(scene.chunk), around, mesh_materials());
+}
+
+ChunkMesh mesh_of(const MeshScene& scene) {
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
+  return mesh;
+}
+
+std::optional<std::string> scene_difference(const MeshScene& scene, const ChunkMesh& mesh) {
+  return mesh_difference(mesh, scene.chunk.extent, mesh_materials(), expected_faces(scene));
+}
+
+}  // namespace runstone::test

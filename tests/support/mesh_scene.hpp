@@ -1,0 +1,43 @@
+// MeshScene: a chunk and its neighbours as a mesher sees them, and the check of a mesher against the face
+// oracle.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/hash.hpp"
+#include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/runs/run_chunk.hpp"
+#include "tests/support/face_oracle.hpp"
+
+namespace runstone::test {
+
+/// Materials of mesh tests; ids beyond them count as opaque.
+inline constexpr Material kStone = 1, kDirt = 2, kWater = 3, kGlass = 4, kBarrier = 5;
+inline constexpr unsigned kMeshMaterialCount = 6;
+/// Stone and dirt are opaque, water and glass transparent, the barrier is a named material that is not drawn.
+const MaterialTable& mesh_materials();
+const VisibilityTable& mesh_visibility();
+
+struct MeshScene {
+  RunChunk chunk;
+  std::array<std::optional<RunChunk>, kDirectionCount> neighbours;  // by Direction
+  MeshNeighbours pointers() const;
+};
+
+/// Seeded scene: any shapes, axis orders and extents (sides of the chunk up to `side_max`), each neighbour
+/// there or missing, and as deep as it likes along its direction.
+MeshScene random_scene(SplitMix64& rng, unsigned side_max);
+
+/// What the oracle says of a scene. Dense.
+std::vector<UnitFace> expected_faces(const MeshScene& scene);
+
+/// mesh_rdm with scratch of its own.
+ChunkMesh mesh_of(const MeshScene& scene);
+
+/// mesh_difference() of a mesh of the scene against the oracle.
+std::optional<std::string> scene_difference(const MeshScene& scene, const ChunkMesh& mesh);
+
+}  // namespace runstone::test

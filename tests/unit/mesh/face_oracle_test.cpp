@@ -1,0 +1,166 @@
+// The oracle on trial: every way in which a mesh can be wrong is made on purpose, and has to be named.
+#include "tests/support/face_oracle.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "common/mesh/quad.hpp"
+#include "tests/support/mesh_scene.hpp"
+
+namespace runstone::test {
+namespace {
+
+using Catch::Matchers::Contains;
+
+/// Groups loose quads as a mesher would.
+QuadLayers layers_of(std::vector<Quad> quads) {
+  const auto bin = [](Quad quad) {
+    const QuadFields q = unpack(quad);
+    const std::array<std::uint8_t, 3> at = {q.x, q.y, q.z};
+    return static_cast<std::size_t>(q.direction) * kSideMax +
+           at.at(static_cast<std::size_t>(axis_of(q.direction)));
+  };
+  std::stable_sort(quads.begin(), quads.end(), [&](Quad a, Quad b) { return bin(a) < bin(b); });
+  QuadLayers out;
+  out.quads = quads;
+  for (std::size_t i = 0; i < out.first.size(); ++i) {
+    out.first[i] = static_cast<std::uint32_t>(
+        std::count_if(quads.begin(), quads.end(), [&](Quad quad) { return bin(quad) < i; }));
+  }
+  return out;
+}
+
+/// A block of 2 x 3 x 4 stone at 1 2 3 with a voxel of water at 5 5 5, and its right mesh.
+MeshScene block() {
+  MeshScene scene{uniform_chunk(Extent::cube(8), kEmpty), {}};
+  for (std::uint8_t z = 3; z < 7; ++z) {
+    for (std::uint8_t y = 2; y < 5; ++y)
+      fill(scene.chunk, index_of({1, y, z}, Extent::cube(8), AxisOrder::xyz), 2, kStone);
+  }
+  fill(scene.chunk, index_of({5, 5, 5}, Extent::cube(8), AxisOrder::xyz), 1, kWater);
+  return scene;
+}
+
+ChunkMesh block_mesh() {
+  ChunkMesh mesh;
+  mesh.opaque = layers_of(
+      {pack({1, 2, 3, 3, 4, Direction::neg_x, kStone}), pack({2, 2, 3, 3, 4, Direction::pos_x, kStone}),
+       pack({1, 2, 3, 4, 2, Direction::neg_y, kStone}), pack({1, 4, 3, 4, 2, Direction::pos_y, kStone}),
+       pack({1, 2, 3, 2, 3, Direction::neg_z, kStone}), pack({1, 2, 6, 2, 3, Direction::pos_z, kStone})});
+  std::vector<Quad> water;
+  for (unsigned d = 0; d < kDirectionCount; ++d)
+    water.push_back(pack({5, 5, 5, 1, 1, static_cast<Direction>(d), kWater}));
+  mesh.transparent = layers_of(water);
+  return mesh;
+}
+
+std::string verdict(const ChunkMesh& mesh) { return scene_difference(block(), mesh).value_or("right"); }
+
+TEST_CASE("a mesh written by hand passes the oracle, and so does another cut into quads", "[mesh]") {
+  CHECK(verdict(block_mesh()) == "right");
+  ChunkMesh cut = block_mesh();
+  auto quads = cut.opaque.quads;
+  quads[0] = pack({1, 2, 3, 3, 1, Direction::neg_x, kStone});
+  quads.push_back(pack({1, 2, 4, 3, 3, Direction::neg_x, kStone}));
+  cut.opaque = layers_of(quads);
+  CHECK(verdict(cut) == "right");
+}
+
+TEST_CASE("the oracle names what is wrong with a broken mesh", "[mesh]") {
+  const auto broken = [](const std::function<void(std::vector<Quad>&)>& change) {
+    ChunkMesh mesh = block_mesh();
+    auto quads = mesh.opaque.quads;
+    change(quads);
+    mesh.opaque = layers_of(quads);
+    return verdict(mesh);
+  };
+  CHECK_THAT(broken([](auto& q) { q.pop_back(); }), Contains("+z of voxel 1 2 6 in material 1 is missing"));
+  CHECK_THAT(broken([](auto& q) { q.push_back(q[0]); }), Contains("covered twice"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 4, 4, Direction::neg_x, kStone}); }),
+             Contains("-x of voxel 1 5 3 in material 1 is too many"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 2, 4, Direction::neg_x, kStone}); }),
+             Contains("-x of voxel 1 4 3 in material 1 is missing"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 4, 3, Direction::neg_x, kStone}); }),
+             !Contains("right"));  // width and height swapped
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 3, 4, Direction::neg_x, kDirt}); }),
+             !Contains("right"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 3, 4, Direction::neg_x, kWater}); }),
+             Contains("wrong pass"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 3, 4, Direction::neg_x, kBarrier}); }),
+             Contains("empty material"));
+  CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 5, 3, 4, Direction::neg_x, kStone}); }),
+             Contains("leaves the extent"));
+  CHECK_THAT(broken([](auto& q) { q[0].bits |= 1ULL << 54; }), Contains("reserved bits"));
+  CHECK_THAT(broken([](auto& q) { q[1] = pack({1, 2, 3, 3, 4, Direction::pos_x, kStone}); }),
+             !Contains("right"));
+}
+
+TEST_CASE("the oracle sees quads in the wrong group", "[mesh]") {
+  ChunkMesh mesh = block_mesh();
+  std::swap(mesh.opaque.quads[0], mesh.opaque.quads[1]);
+  CHECK_THAT(verdict(mesh), Contains("grouped under another direction"));
+
+  mesh = block_mesh();
+  --mesh.opaque.first[2];  // the quad of layer 1 now stands in layer 2 of -x
+  mesh.opaque.first[2] = 0;
+  CHECK_THAT(verdict(mesh), Contains("grouped under another layer"));
+
+  mesh = block_mesh();
+  mesh.opaque.first.back() -= 1;
+  CHECK_THAT(verdict(mesh), Contains("does not span"));
+
+  mesh = block_mesh();
+  mesh.opaque.first[5] = 6;
+  CHECK_THAT(verdict(mesh), Contains("descends"));
+
+  mesh = block_mesh();
+  std::swap(mesh.opaque, mesh.transparent);
+  CHECK_THAT(verdict(mesh), Contains("wrong pass"));
+}
+
+TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is caught", "[mesh]") {
+  // The mesher gets another scene than the oracle: what a mesher with that mistake would make of it.
+  SplitMix64 rng(17);
+  int scenes = 0;
+  int neighbour = 0;
+  int mirrored = 0;
+  int visibility = 0;
+  MaterialTable all_opaque;
+  for (unsigned i = 1; i < kMeshMaterialCount; ++i) {
+    MaterialInfo info;
+    info.name = "m" + std::to_string(i);
+    REQUIRE(all_opaque.add(info).has_value());
+  }
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  for (; scenes < 60; ++scenes) {
+    const MeshScene scene = random_scene(rng, 12);
+    REQUIRE(scene_difference(scene, mesh_of(scene)).value_or("") == "");
+
+    MeshScene forgets = scene;
+    for (auto& n : forgets.neighbours) n.reset();
+    neighbour += scene_difference(scene, mesh_of(forgets)) ? 1 : 0;
+
+    MeshScene swaps = scene;
+    for (std::size_t d = 0; d < kDirectionCount; d += 2)
+      std::swap(swaps.neighbours[d], swaps.neighbours[d + 1]);
+    mirrored += scene_difference(scene, mesh_of(swaps)) ? 1 : 0;
+
+    mesh_rdm(scene.chunk, scene.pointers(), VisibilityTable(all_opaque), scratch, mesh);
+    visibility += scene_difference(scene, mesh) ? 1 : 0;
+  }
+  CHECK(neighbour > scenes / 2);
+  CHECK(mirrored > scenes / 2);
+  CHECK(visibility > scenes / 2);
+}
+
+TEST_CASE("the greedy count merges what a rectangle can cover", "[mesh]") {
+  CHECK(greedy_quad_count({}) == 0);
+  CHECK(greedy_quad_count(expected_faces(block())) == 12);
+  const MeshScene full{uniform_chunk(Extent::cube(8), kStone), {}};
+  CHECK(greedy_quad_count(expected_faces(full)) == 6);
+}
+
+}  // namespace
+}  // namespace runstone::test
