@@ -25,10 +25,14 @@ struct Mask {
   friend bool operator==(const Mask&, const Mask&) = default;
   bool admits(Material present) const {
     switch (kind) {
-      case MaskKind::everything: return true;
-      case MaskKind::only_empty: return present == kEmpty;
-      case MaskKind::only_solid: return present != kEmpty;
-      case MaskKind::only_material: return present == material;
+      case MaskKind::everything:
+        return true;
+      case MaskKind::only_empty:
+        return present == kEmpty;
+      case MaskKind::only_solid:
+        return present != kEmpty;
+      case MaskKind::only_material:
+        return present == material;
     }
     return false;
   }

@@ -19,11 +19,12 @@ std::uint64_t voxel_count(const EditDescriptor& edit);
 /// Whether the geometry has a voxel in this box. Exact, O(1).
 bool touches(const EditDescriptor& edit, const VoxelBox& box);
 
-/// Chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z. This order is part of the
-/// protocol: a commit lists one previous version per touched chunk in it. `edge`: 16, 32, 64 or 128.
+/// Chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z. This order is part of
+/// the protocol: a commit lists one previous version per touched chunk in it. `edge`: 16, 32, 64 or 128.
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge);
 
-/// Number of chunks touched_chunks() would list, counted by the bounding box: an upper bound for limits. O(1).
+/// Number of chunks touched_chunks() would list, counted by the bounding box: an upper bound for limits.
+/// O(1).
 std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge);
 
 /// Half-open stretch of a flattened chunk.

@@ -11,9 +11,9 @@
 namespace runstone {
 
 struct EditRecord {
-  Version version;      // epoch and sequence; seq >= 1
+  Version version;  // epoch and sequence; seq >= 1
   OperationId op;
-  TimeUs time_us = 0;   // UTC, never decreasing along the log
+  TimeUs time_us = 0;  // UTC, never decreasing along the log
   Cause cause = Cause::player;
   EditDescriptor edit;
   friend bool operator==(const EditRecord&, const EditRecord&) = default;
@@ -21,7 +21,8 @@ struct EditRecord {
 
 inline constexpr std::uint8_t kEditRecordVersion = 1;
 
-/// Canonical bytes without the checksum: version byte, then varints, then the bounding box, then the descriptor.
+/// Canonical bytes without the checksum: version byte, then varints, then the bounding box, then the
+/// descriptor.
 Bytes encode_record(const EditRecord& record);
 
 /// The reverse; only canonical bytes pass, and the bounding box must be the descriptor's.

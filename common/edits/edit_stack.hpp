@@ -1,8 +1,8 @@
-// The edit stack: all edits pending on a chunk, latest on top, applied in one sweep over its runs (thesis 9.2,
-// stack-based edit indexing; 7.3.3, edit indices and edit areas). Server commit, client prediction, replay and
-// rollback all call apply_stack(): same code, same result.
-// Source of the evaluation: per elementary interval, only the edits from the topmost unconditional one upward
-// matter, since it overwrites whatever was there; masks above it are then tested in order.
+// The edit stack: all edits pending on a chunk, latest on top, applied in one sweep over its runs
+// (thesis 9.2, stack-based edit indexing; 7.3.3, edit indices and edit areas). Server commit, client
+// prediction, replay and rollback all call apply_stack(): same code, same result. Source of the evaluation:
+// of each voxel, only the edits from the topmost unconditional one upward matter, since it overwrites
+// whatever was there; masks above it are then tested in order.
 #pragma once
 #include <array>
 #include <bitset>
@@ -12,14 +12,16 @@
 
 #include "common/core/coords.hpp"
 #include "common/core/digest.hpp"
+#include "common/edits/apply_scratch.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "common/edits/edit_geometry.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
-/// Layers in which a voxel changed, per axis x, y, z: bit i is the layer with that coordinate = i. The faces to
-/// mesh again lie in these layers and, per axis, one layer to either side (in the neighbour chunk at the border).
+/// Layers in which a voxel changed, per axis x, y, z: bit i is the layer with that coordinate = i. The faces
+/// to mesh again lie in these layers and, per axis, one layer to either side (in the neighbour chunk at the
+/// border).
 struct DirtyLayers {
   std::array<std::bitset<kSideMax>, 3> layer;
   bool any() const { return layer[0].any(); }
@@ -31,25 +33,23 @@ struct DirtyLayers {
 };
 
 struct ApplyResult {
-  bool changed = false;          // any voxel has another material than before
+  bool changed = false;  // any voxel has another material than before
   DirtyLayers dirty;
-  std::vector<EditArea> areas;   // runs replaced, ascending; edit indices, first and after count in the new runs
+  std::vector<EditArea> areas;  // maximal groups of runs replaced, ascending; `first` counts in the new runs
   std::uint64_t voxels_changed = 0;
 };
 
-/// Reused between calls, so that a steady state allocates nothing. Belongs to one thread.
-struct ApplyScratch {
-  std::vector<IndexSpan> spans;
-  std::vector<std::uint64_t> events;
-  std::vector<std::uint32_t> active;
-  std::vector<Run> runs;
-};
+/// Applies `edits` (bottom of the stack first) to the chunk whose first voxel is `origin`; the digest
+/// follows. Equal to applying them one after another, voxel by voxel, bit for bit. Edits that miss the chunk
+/// do nothing. The result is canonical. Finds the changes first, in ascending order (one edit: by walking the
+/// runs inside its spans; several: in one sweep, edit_sweep.hpp), then replaces the runs of the edit areas in
+/// place or in one go. Requires a valid chunk and valid edits. Any thread, one scratch each. Cost: O(rows of
+/// the edits + runs crossed + log runs) to search, O(runs behind the first edit area) to write.
+ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
+                        std::span<const EditDescriptor> edits, ApplyScratch& scratch);
 
-/// Applies `edits` (bottom of the stack first) to the chunk whose first voxel is `origin`; the digest follows.
-/// Equal to applying them one after another, voxel by voxel, bit for bit. Edits that miss the chunk do nothing.
-/// Few narrow spans are spliced in place; otherwise one sweep builds new runs. The result is canonical.
-/// Cost: splice O(spans * (log runs + runs moved)); sweep O(runs + spans log spans).
-ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
-                        ApplyScratch& scratch);
+/// The same, into a result that is reused: allocates nothing in a steady state.
+void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
+                 ApplyScratch& scratch, ApplyResult& result);
 
 }  // namespace runstone

@@ -1,0 +1,157 @@
+#include "common/edits/edit_descriptor.hpp"
+
+#include <array>
+
+namespace runstone {
+namespace {
+
+bool inside_world(std::int64_t c) { return c >= -kWorldLimit && c < kWorldLimit; }
+
+Result<void> validate_shape(const SetVoxel& shape) {
+  if (!inside_world(shape.at.x) || !inside_world(shape.at.y) || !inside_world(shape.at.z)) {
+    return fail(ErrorCode::bad_value, "voxel outside the world");
+  }
+  return {};
+}
+
+Result<void> validate_shape(const FillBox& shape) {
+  const VoxelBox& b = shape.box;
+  if (b.empty()) return fail(ErrorCode::bad_value, "box is empty");
+  const std::array<std::array<std::int64_t, 2>, 3> ranges = {
+      {{b.min.x, b.max.x}, {b.min.y, b.max.y}, {b.min.z, b.max.z}}};
+  for (const auto& [first, end] : ranges) {
+    if (!inside_world(first) || !inside_world(end - 1))
+      return fail(ErrorCode::bad_value, "box reaches outside the world");
+    if (end - first > kEditBoxSideMax) return fail(ErrorCode::limit_exceeded, "box side too long");
+  }
+  return {};
+}
+
+Result<void> validate_shape(const FillSphere& shape) {
+  if (shape.radius > kEditRadiusMax) return fail(ErrorCode::limit_exceeded, "sphere radius too large");
+  for (const std::int64_t c : {shape.centre.x, shape.centre.y, shape.centre.z}) {
+    if (!inside_world(c - shape.radius) || !inside_world(c + shape.radius)) {
+      return fail(ErrorCode::bad_value, "sphere reaches outside the world");
+    }
+  }
+  return {};
+}
+
+void write_position(ByteWriter& w, VoxelPos p) {
+  w.svarint(p.x);
+  w.svarint(p.y);
+  w.svarint(p.z);
+}
+
+void write_shape(ByteWriter& w, const SetVoxel& shape) { write_position(w, shape.at); }
+
+void write_shape(ByteWriter& w, const FillBox& shape) {
+  const VoxelBox& b = shape.box;
+  write_position(w, b.min);
+  w.varint(static_cast<std::uint64_t>(b.max.x - b.min.x - 1));
+  w.varint(static_cast<std::uint64_t>(b.max.y - b.min.y - 1));
+  w.varint(static_cast<std::uint64_t>(b.max.z - b.min.z - 1));
+}
+
+void write_shape(ByteWriter& w, const FillSphere& shape) {
+  write_position(w, shape.centre);
+  w.varint(shape.radius);
+}
+
+std::int32_t read_coordinate(ByteReader& r) {
+  return static_cast<std::int32_t>(
+      r.svarint_in(-kWorldLimit, kWorldLimit - 1, "coordinate outside the world"));
+}
+
+VoxelPos read_position(ByteReader& r) {
+  VoxelPos p;
+  p.x = read_coordinate(r);
+  p.y = read_coordinate(r);
+  p.z = read_coordinate(r);
+  return p;
+}
+
+std::int32_t read_side(ByteReader& r) {
+  return 1 + static_cast<std::int32_t>(r.varint_max(kEditBoxSideMax - 1, "box side too long"));
+}
+
+Material read_material(ByteReader& r) {
+  return static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
+}
+
+EditShape read_shape(ByteReader& r, std::uint8_t tag) {
+  switch (static_cast<EditKind>(tag)) {
+    case EditKind::set_voxel:
+      return SetVoxel{read_position(r)};
+    case EditKind::fill_box: {
+      FillBox shape;
+      shape.box.min = read_position(r);
+      shape.box.max.x = shape.box.min.x + read_side(r);
+      shape.box.max.y = shape.box.min.y + read_side(r);
+      shape.box.max.z = shape.box.min.z + read_side(r);
+      return shape;
+    }
+    case EditKind::fill_sphere: {
+      FillSphere shape;
+      shape.centre = read_position(r);
+      shape.radius = static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "sphere radius too large"));
+      return shape;
+    }
+  }
+  return SetVoxel{};  // unknown tags were rejected before
+}
+
+}  // namespace
+
+EditKind kind_of(const EditDescriptor& edit) { return static_cast<EditKind>(edit.shape.index() + 1); }
+
+Result<void> validate(const EditDescriptor& edit) {
+  if (static_cast<std::uint8_t>(edit.mask.kind) > static_cast<std::uint8_t>(MaskKind::only_material)) {
+    return fail(ErrorCode::bad_value, "unknown mask kind");
+  }
+  if (edit.mask.kind != MaskKind::only_material && edit.mask.material != kEmpty) {
+    return fail(ErrorCode::bad_value, "mask material without an only_material mask");
+  }
+  return std::visit([](const auto& shape) { return validate_shape(shape); }, edit.shape);
+}
+
+void encode(const EditDescriptor& edit, Bytes& out) {
+  RUNSTONE_ASSERT(validate(edit).has_value());
+  ByteWriter w(out);
+  w.u8(static_cast<std::uint8_t>(kind_of(edit)));
+  w.u8(static_cast<std::uint8_t>(edit.mask.kind));
+  if (edit.mask.kind == MaskKind::only_material) w.varint(edit.mask.material);
+  w.varint(edit.material);
+  std::visit([&w](const auto& shape) { write_shape(w, shape); }, edit.shape);
+}
+
+Bytes encode(const EditDescriptor& edit) {
+  Bytes out;
+  encode(edit, out);
+  return out;
+}
+
+Result<EditDescriptor> decode_descriptor(ByteView in) {
+  ByteReader r(in);
+  EditDescriptor edit;
+  const std::uint8_t tag = r.u8();
+  if (tag < static_cast<std::uint8_t>(EditKind::set_voxel) ||
+      tag > static_cast<std::uint8_t>(EditKind::fill_sphere)) {
+    r.reject(ErrorCode::unknown_kind, "unknown edit kind");
+  }
+  const std::uint8_t mask = r.u8();
+  if (mask > static_cast<std::uint8_t>(MaskKind::only_material)) {
+    r.reject(ErrorCode::unknown_kind, "unknown mask kind");
+  }
+  if (r.ok()) {
+    edit.mask.kind = static_cast<MaskKind>(mask);
+    if (edit.mask.kind == MaskKind::only_material) edit.mask.material = read_material(r);
+    edit.material = read_material(r);
+    edit.shape = read_shape(r, tag);
+  }
+  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
+  return edit;
+}
+
+}  // namespace runstone

@@ -1,0 +1,78 @@
+#include "common/edits/edit_stack.hpp"
+
+#include "common/core/assert.hpp"
+#include "common/edits/change_tally.hpp"
+#include "common/edits/edit_stack_strategies.hpp"
+#include "common/edits/edit_sweep.hpp"
+
+namespace runstone {
+namespace {
+
+void stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+              std::vector<StackedEdit>& stack) {
+  stack.clear();
+  for (const EditDescriptor& edit : edits) {
+    RUNSTONE_DASSERT(validate(edit).has_value());
+    if (const auto shape = clip(edit, origin, chunk.extent, chunk.order)) {
+      stack.push_back({*shape, edit.mask, edit.material});
+    }
+  }
+}
+
+// Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
+void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest, ApplyScratch& scratch,
+                    ApplyResult& result) {
+  scratch.changes.clear();
+  scratch.runs.clear();
+  ChangeTally tally(chunk, scratch.changes, scratch.factors);
+  if (search == ChangeSearch::walk) {
+    walk_changes(chunk, scratch, tally);
+  } else {
+    sweep_changes(chunk, scratch, tally);
+  }
+  tally.finish();
+  if (scratch.changes.empty()) return;
+  digest = digest + tally.digest_difference();
+  result.changed = true;
+  result.dirty = tally.dirty();
+  result.voxels_changed = tally.voxels();
+  plan_patch(chunk, scratch.changes, result.areas, scratch.runs);
+}
+
+void reset(ApplyResult& result) {
+  result.changed = false;
+  result.dirty = {};
+  result.areas.clear();
+  result.voxels_changed = 0;
+}
+
+}  // namespace
+
+void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
+                 ApplyScratch& scratch, ApplyResult& result) {
+  reset(result);
+  stack_up(chunk, origin, edits, scratch.stack);
+  if (scratch.stack.empty()) return;
+  const auto search = scratch.stack.size() == 1 ? ChangeSearch::walk : ChangeSearch::sweep;
+  search_changes(search, chunk, digest, scratch, result);
+  write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
+}
+
+ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
+                        std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
+  ApplyResult result;
+  apply_stack(chunk, digest, origin, edits, scratch, result);
+  return result;
+}
+
+ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& digest, VoxelPos origin,
+                           std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
+  ApplyResult result;
+  stack_up(chunk, origin, edits, scratch.stack);
+  if (scratch.stack.empty()) return result;
+  search_changes(strategy.search, chunk, digest, scratch, result);
+  write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
+  return result;
+}
+
+}  // namespace runstone

@@ -1,0 +1,230 @@
+#include "tests/support/edit_oracle.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+namespace runstone {
+
+std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit) {
+  const auto print = [&out](VoxelPos p) { out << '(' << p.x << ',' << p.y << ',' << p.z << ')'; };
+  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {
+    out << "voxel ";
+    print(voxel->at);
+  } else if (const auto* box = std::get_if<FillBox>(&edit.shape)) {
+    out << "box ";
+    print(box->box.min);
+    out << " .. ";
+    print(box->box.max);
+  } else if (const auto* sphere = std::get_if<FillSphere>(&edit.shape)) {
+    out << "sphere ";
+    print(sphere->centre);
+    out << " r " << sphere->radius;
+  }
+  out << " := " << edit.material;
+  switch (edit.mask.kind) {
+    case MaskKind::everything:
+      break;
+    case MaskKind::only_empty:
+      out << " where empty";
+      break;
+    case MaskKind::only_solid:
+      out << " where solid";
+      break;
+    case MaskKind::only_material:
+      out << " where = " << edit.mask.material;
+      break;
+  }
+  return out;
+}
+
+}  // namespace runstone
+
+namespace runstone::test {
+namespace {
+
+bool is_admitted(const Mask& mask, Material present) {
+  if (mask.kind == MaskKind::only_empty) return present == 0;
+  if (mask.kind == MaskKind::only_solid) return present > 0;
+  if (mask.kind == MaskKind::only_material) return present == mask.material;
+  return true;
+}
+
+std::int32_t pick(SplitMix64& rng, std::int32_t low, std::int32_t high) {
+  return high < low ? low : rng.between(low, high);
+}
+
+}  // namespace
+
+bool oracle_covers(const EditDescriptor& edit, VoxelPos at) {
+  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {
+    return voxel->at.x == at.x && voxel->at.y == at.y && voxel->at.z == at.z;
+  }
+  if (const auto* fill = std::get_if<FillBox>(&edit.shape)) {
+    const VoxelBox& b = fill->box;
+    const bool below = at.x < b.max.x && at.y < b.max.y && at.z < b.max.z;
+    const bool above = at.x >= b.min.x && at.y >= b.min.y && at.z >= b.min.z;
+    return below && above;
+  }
+  // |d| < r + 1/2, with both sides doubled and squared.
+  const auto& sphere = std::get<FillSphere>(edit.shape);
+  const std::int64_t dx = 2 * (static_cast<std::int64_t>(at.x) - sphere.centre.x);
+  const std::int64_t dy = 2 * (static_cast<std::int64_t>(at.y) - sphere.centre.y);
+  const std::int64_t dz = 2 * (static_cast<std::int64_t>(at.z) - sphere.centre.z);
+  const std::int64_t diameter = 2 * static_cast<std::int64_t>(sphere.radius) + 1;
+  return dx * dx + dy * dy + dz * dz < diameter * diameter;
+}
+
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits) {
+  OracleOutcome outcome;
+  for (int z = 0; z < chunk.side_z(); ++z) {
+    for (int y = 0; y < chunk.side_y(); ++y) {
+      for (int x = 0; x < chunk.side_x(); ++x) {
+        const Material before = chunk.at(x, y, z);
+        Material now = before;
+        for (const EditDescriptor& edit : edits) {
+          const bool inside = oracle_covers(edit, {origin.x + x, origin.y + y, origin.z + z});
+          if (inside && is_admitted(edit.mask, now)) now = edit.material;
+        }
+        if (now == before) continue;
+        chunk.set(x, y, z, now);
+        ++outcome.voxels_changed;
+        outcome.dirty[0].insert(static_cast<unsigned>(x));
+        outcome.dirty[1].insert(static_cast<unsigned>(y));
+        outcome.dirty[2].insert(static_cast<unsigned>(z));
+      }
+    }
+  }
+  return outcome;
+}
+
+std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around, std::int32_t reach) {
+  std::vector<VoxelPos> out;
+  for (std::int32_t x = around.x - reach; x <= around.x + reach; ++x) {
+    for (std::int32_t y = around.y - reach; y <= around.y + reach; ++y) {
+      for (std::int32_t z = around.z - reach; z <= around.z + reach; ++z) {
+        if (oracle_covers(edit, {x, y, z})) out.push_back({x, y, z});
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
+                                                                                  const RunChunk& after) {
+  // Lists runs as (begin, end, material); a run that is in both lists is kept.
+  using Listed = std::tuple<std::uint32_t, std::uint32_t, Material>;
+  const auto list = [](const RunChunk& chunk) {
+    std::vector<Listed> runs;
+    std::uint32_t begin = 0;
+    for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
+      runs.emplace_back(begin, chunk.runs.end(i), chunk.runs.material(i));
+      begin = chunk.runs.end(i);
+    }
+    return runs;
+  };
+  const std::vector<Listed> old_runs = list(before);
+  const std::vector<Listed> new_runs = list(after);
+  const std::set<Listed> old_set(old_runs.begin(), old_runs.end());
+  const std::set<Listed> new_set(new_runs.begin(), new_runs.end());
+  std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> areas;
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < old_runs.size() || j < new_runs.size()) {
+    const std::size_t i0 = i;
+    const std::size_t j0 = j;
+    while (i < old_runs.size() && new_set.count(old_runs[i]) == 0) ++i;
+    while (j < new_runs.size() && old_set.count(new_runs[j]) == 0) ++j;
+    if (i != i0 || j != j0) {
+      areas.emplace_back(static_cast<std::uint32_t>(j0), static_cast<std::uint32_t>(i - i0),
+                         static_cast<std::uint32_t>(j - j0));
+    }
+    ++i;  // a kept run, in both lists
+    ++j;
+  }
+  return areas;
+}
+
+EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent) {
+  EditDescriptor edit;
+  const std::array<std::int32_t, 3> sides = {extent.x, extent.y, extent.z};
+  const std::array<std::int32_t, 3> low = {origin.x, origin.y, origin.z};
+  std::array<std::int32_t, 3> at{};
+  std::array<std::int32_t, 3> end{};
+  const std::int32_t margin = rng.below(4) == 0 ? 12 : 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool at_border = rng.below(4) == 0;
+    at[i] = at_border ? (rng.below(2) == 0 ? 0 : sides[i] - 1) : pick(rng, -margin, sides[i] - 1 + margin);
+    end[i] = at[i] + 1 + static_cast<std::int32_t>(rng.below(rng.below(3) == 0 ? 40 : 6));
+    if (rng.below(8) == 0) {  // whole lines and layers
+      at[i] = 0 - static_cast<std::int32_t>(rng.below(2));
+      end[i] = sides[i] + static_cast<std::int32_t>(rng.below(2));
+    }
+    at[i] += low[i];
+    end[i] += low[i];
+  }
+  switch (rng.below(3)) {
+    case 0:
+      edit.shape = SetVoxel{{at[0], at[1], at[2]}};
+      break;
+    case 1:
+      edit.shape = FillBox{{{at[0], at[1], at[2]}, {end[0], end[1], end[2]}}};
+      break;
+    default: {
+      const std::uint32_t size = rng.below(8);
+      const auto radius = static_cast<std::uint16_t>(rng.below(size == 0 ? 60 : size < 3 ? 20 : 6));
+      edit.shape = FillSphere{{at[0], at[1], at[2]}, radius};
+    }
+  }
+  edit.material = static_cast<Material>(rng.below(3) == 0 ? 0 : rng.below(8));
+  if (rng.below(2) == 0) {
+    edit.mask.kind = static_cast<MaskKind>(rng.below(4));
+    if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.below(8));
+  }
+  return edit;
+}
+
+EditDescriptor random_edit_anywhere(SplitMix64& rng) {
+  EditDescriptor edit;
+  const auto span = [&rng](std::int32_t low, std::int32_t high) {  // extremes are frequent
+    const std::uint32_t draw = rng.below(6);
+    return draw == 0   ? low
+           : draw == 1 ? high
+           : draw == 2 ? pick(rng, std::max(low, -100), std::min(high, 100))
+                       : pick(rng, low, high);
+  };
+  const auto id = [&rng] { return static_cast<Material>(rng.below(4) == 0 ? 65535 : rng.below(65536)); };
+  switch (rng.below(3)) {
+    case 0:
+      edit.shape = SetVoxel{{span(-kWorldLimit, kWorldLimit - 1), span(-kWorldLimit, kWorldLimit - 1),
+                             span(-kWorldLimit, kWorldLimit - 1)}};
+      break;
+    case 1: {
+      FillBox fill;
+      const auto side = [&](std::int32_t& min, std::int32_t& max) {
+        const std::int32_t length = span(1, kEditBoxSideMax);
+        min = span(-kWorldLimit, kWorldLimit - length);
+        max = min + length;
+      };
+      side(fill.box.min.x, fill.box.max.x);
+      side(fill.box.min.y, fill.box.max.y);
+      side(fill.box.min.z, fill.box.max.z);
+      edit.shape = fill;
+      break;
+    }
+    default: {
+      FillSphere sphere;
+      const std::int32_t r = span(0, kEditRadiusMax);
+      sphere.radius = static_cast<std::uint16_t>(r);
+      sphere.centre = {span(-kWorldLimit + r, kWorldLimit - 1 - r),
+                       span(-kWorldLimit + r, kWorldLimit - 1 - r),
+                       span(-kWorldLimit + r, kWorldLimit - 1 - r)};
+      edit.shape = sphere;
+    }
+  }
+  edit.material = id();
+  edit.mask.kind = static_cast<MaskKind>(rng.below(4));
+  if (edit.mask.kind == MaskKind::only_material) edit.mask.material = id();
+  return edit;
+}
+
+}  // namespace runstone::test

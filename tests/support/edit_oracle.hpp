@@ -1,0 +1,52 @@
+// The edit oracle: edits voxel by voxel on a dense chunk, straight from their definitions. Shares no code and
+// no formula with common/edits. Also random edits that cluster around a chunk, for property tests and
+// benchmarks.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <iosfwd>
+#include <set>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "common/core/hash.hpp"
+#include "common/edits/edit_descriptor.hpp"
+#include "common/runs/run_chunk.hpp"
+#include "tests/support/dense_chunk.hpp"
+
+namespace runstone {
+
+/// Prints "sphere (1,2,3) r 4 := 7 where = 2".
+std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit);
+
+}  // namespace runstone
+
+namespace runstone::test {
+
+/// Whether the geometry holds this voxel.
+bool oracle_covers(const EditDescriptor& edit, VoxelPos at);
+
+struct OracleOutcome {
+  std::uint64_t voxels_changed = 0;         // against the chunk before the whole stack
+  std::array<std::set<unsigned>, 3> dirty;  // coordinates of changed voxels along x, y, z
+};
+
+/// Applies the edits one after another, each voxel by voxel, to the chunk whose first voxel is `origin`.
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits);
+
+/// Voxels of the geometry, found by trying every voxel up to `reach` away from `around`.
+std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around, std::int32_t reach);
+
+/// (first, before, after) of the groups of runs that differ between two run lists, by comparing all runs.
+std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
+                                                                                  const RunChunk& after);
+
+/// Any kind, mask and material, valid, near the chunk at `origin`: mostly inside, often partly, sometimes
+/// wholly outside. Materials 0 .. 7, so that masks meet what earlier edits left.
+EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent);
+
+/// Any valid edit, all fields over their whole range, extremes included.
+EditDescriptor random_edit_anywhere(SplitMix64& rng);
+
+}  // namespace runstone::test
