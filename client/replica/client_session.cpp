@@ -1,0 +1,260 @@
+#include "client/replica/client_session.hpp"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+bool is_final(GoodbyeReason reason) {
+  return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated;
+}
+
+}  // namespace
+
+ClientSession::ClientSession(SessionConfig config) : config_(std::move(config)) {}
+
+// ---- the connection
+// --------------------------------------------------------------------------------------------
+
+void ClientSession::connected(const Nonce& nonce, TimeUs now_us) {
+  disconnected();
+  end_.reset();
+  hello_ = {};
+  hello_.key = config_.keys.public_key;
+  hello_.instance = config_.instance;
+  hello_.nonce = nonce;
+  hello_.name = config_.name;
+  hello_.encodings = config_.encodings;
+  outgoing_.push_back(hello_);
+  state_ = SessionState::greeting;
+  heard_us_ = now_us;
+}
+
+void ClientSession::disconnected() {
+  state_ = SessionState::offline;
+  outgoing_.clear();
+  waiting_.clear();
+  view_sent_.reset();
+  pose_sent_.reset();
+  others_.clear();
+  wants_close_ = false;
+}
+
+void ClientSession::close(GoodbyeReason reason, std::string text) {
+  if (state_ != SessionState::offline && !wants_close_) outgoing_.push_back(Goodbye{reason, std::move(text)});
+  wants_close_ = true;
+}
+
+void ClientSession::fail_with(GoodbyeReason reason, std::string text, bool final) {
+  end_ = SessionEnd{reason, text, false, final};
+  close(reason, std::move(text));
+}
+
+void ClientSession::receive(Message message, const Arrival& arrival) {
+  if (state_ == SessionState::offline || wants_close_) return;
+  heard_us_ = arrival.now_us;
+  std::visit(
+      [&](auto& m) {
+        using T = std::decay_t<decltype(m)>;
+        if constexpr (std::is_same_v<T, Goodbye>) {
+          on_goodbye(m);
+        } else if constexpr (std::is_same_v<T, Welcome>) {
+          if (state_ == SessionState::greeting) return on_welcome(std::move(m));
+          fail_with(GoodbyeReason::unexpected_message, "welcome twice", false);
+        } else if constexpr (std::is_same_v<T, Ready>) {
+          if (state_ == SessionState::proving) return on_ready(m, arrival.now_us);
+          fail_with(GoodbyeReason::unexpected_message, "ready out of turn", false);
+        } else if (state_ != SessionState::open) {
+          fail_with(GoodbyeReason::unexpected_message, "message before ready", false);
+        } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
+          replica_.receive(std::move(m), arrival);
+        } else if constexpr (std::is_same_v<T, Commit>) {
+          const auto taken = replica_.receive(m, arrival);
+          if (!taken) fail_with(GoodbyeReason::malformed_message, taken.error().what, false);
+        } else if constexpr (std::is_same_v<T, Reject> || std::is_same_v<T, Audit>) {
+          replica_.receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, Durable>) {
+          replica_.receive(m);
+        } else if constexpr (std::is_same_v<T, PlayerPoses>) {
+          on_poses(m);
+        } else if constexpr (std::is_same_v<T, Roster>) {
+          on_roster(m);
+        } else if constexpr (std::is_same_v<T, Pong>) {
+          clock_.add(m.sent_us, m.server_us, arrival.received_us);
+          ++pongs_;
+        } else {
+          fail_with(GoodbyeReason::unexpected_message, "message of a client", false);
+        }
+      },
+      message);
+}
+
+// ---- handshake
+// -------------------------------------------------------------------------------------------------
+
+void ClientSession::on_welcome(Welcome welcome) {
+  if (welcome.protocol != kProtocolVersion) {
+    return fail_with(GoodbyeReason::wrong_protocol, "server speaks another protocol version", true);
+  }
+  if (!verify(welcome.server_key, server_transcript(hello_, welcome), welcome.signature)) {
+    return fail_with(GoodbyeReason::not_authenticated, "server signature is wrong", true);
+  }
+  const auto [pin, first_use] = config_.pinned.try_emplace(welcome.world_id, welcome.server_key);
+  if (!first_use && pin->second != welcome.server_key) {
+    return fail_with(GoodbyeReason::not_authenticated,
+                     "server key differs from the one pinned for this world", true);
+  }
+  if (welcome_ && welcome_->world_id != welcome.world_id) {
+    replica_.reset();  // another world under the same address: nothing we hold means anything there
+    clock_.reset();
+  } else if (welcome_ && welcome_->epoch != welcome.epoch) {
+    clock_.reset();
+  }
+  outgoing_.push_back(Proof{sign(config_.keys, client_transcript(hello_, welcome))});
+  welcome_ = std::move(welcome);
+  state_ = SessionState::proving;
+}
+
+void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
+  author_ = ready.author;
+  ++openings_;
+  state_ = SessionState::open;
+  opened_us_ = now_us;
+  ping_us_ = now_us - kPingEveryUs;
+  move_us_ = now_us - kMoveEveryUs;
+  replica_.set_view(view());
+  waiting_ = replica_.open({.chunk_edge = welcome_->chunk_edge,
+                            .author = author_,
+                            .instance = config_.instance,
+                            .epoch = welcome_->epoch,
+                            .durable = welcome_->durable,
+                            .head = welcome_->head,
+                            .decided = ready.decided});
+  send_view();
+  tick(now_us);
+}
+
+void ClientSession::on_goodbye(const Goodbye& goodbye) {
+  end_ = SessionEnd{goodbye.reason, goodbye.text, true, is_final(goodbye.reason)};
+  wants_close_ = true;
+}
+
+// ---- while open
+// ------------------------------------------------------------------------------------------------
+
+void ClientSession::tick(TimeUs now_us) {
+  if (state_ == SessionState::offline || wants_close_) return;
+  if (now_us - heard_us_ > kServerSilenceUsMax) {
+    return fail_with(GoodbyeReason::timed_out, "server is silent", false);
+  }
+  if (!is_open()) return;
+  const TimeUs every = pongs_ < kPingsFirst || !clock_.known() ? kPingEveryFirstUs : kPingEveryUs;
+  if (now_us - ping_us_ >= every) {
+    outgoing_.push_back(Ping{now_us});
+    ping_us_ = now_us;
+  }
+  if (now_us - move_us_ >= kMoveEveryUs && pose_sent_ != pose_) {
+    outgoing_.push_back(Move{pose_});
+    pose_sent_ = pose_;
+    move_us_ = now_us;
+  }
+  replica_.tick(now_us);
+  const auto requests = replica_.take_requests();
+  for (std::size_t first = 0; first < requests.size(); first += kChunkRequestKeysMax) {
+    const std::size_t last = std::min(requests.size(), first + kChunkRequestKeysMax);
+    outgoing_.push_back(ChunkRequest{{requests.begin() + static_cast<std::ptrdiff_t>(first),
+                                      requests.begin() + static_cast<std::ptrdiff_t>(last)}});
+  }
+  send_waiting_edits(now_us);
+}
+
+Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us) {
+  if (welcome_ && !welcome_->materials.knows(edit.material)) {
+    return fail(ErrorCode::not_found, "material is not in the world's table");
+  }
+  const auto seq = replica_.submit(edit, submitted_us, now_us);
+  if (seq && is_open()) {
+    waiting_.push_back(*seq);
+    send_waiting_edits(now_us);
+  }
+  return seq;
+}
+
+void ClientSession::send_waiting_edits(TimeUs now_us) {
+  // An edit that got no answer: its commit was dropped on the way to us. The server tells by the operation id
+  // whether it was decided, so asking twice does no harm.
+  if (waiting_.empty()) {
+    for (const auto& [seq, own] : replica_.own_edits().all()) {
+      if (own.decided) continue;
+      if (own.sent_us == OwnEdit::kNever || now_us - own.sent_us < kAnswerUsMax) break;
+      waiting_.push_back(seq);
+    }
+  }
+  if (waiting_.empty()) return;
+  // Without a clock offset the others could not tell how old the edit is.
+  if (!clock_.known() && now_us - opened_us_ < kOffsetWaitUsMax) return;
+  for (const ClientSequence seq : std::exchange(waiting_, {})) {
+    const auto it = replica_.own_edits().all().find(seq);
+    if (it == replica_.own_edits().all().end() || it->second.decided) continue;
+    outgoing_.push_back(
+        EditRequest{seq, clock_.to_server(it->second.submitted_us).value_or(0), it->second.edit});
+    replica_.mark_sent(seq, now_us);
+  }
+}
+
+void ClientSession::set_view(const View& view) {
+  config_.view = view;
+  replica_.set_view(this->view());
+  if (is_open()) send_view();
+}
+
+View ClientSession::view() const {
+  View view = config_.view;
+  const std::uint8_t limit = welcome_ ? welcome_->view_radius_max : std::uint8_t{kViewRadiusMax};
+  view.radius_h = std::min(view.radius_h, limit);
+  view.radius_v = std::min(view.radius_v, limit);
+  return view;
+}
+
+void ClientSession::send_view() {
+  const View wished = view();
+  if (view_sent_ == wished) return;
+  outgoing_.push_back(wished);
+  view_sent_ = wished;
+}
+
+std::size_t ClientSession::view_chunks() const {
+  const View v = view();
+  const int radius = v.radius_h;
+  std::size_t columns = 0;
+  for (int dx = -radius; dx <= radius; ++dx) {
+    for (int dz = -radius; dz <= radius; ++dz) columns += dx * dx + dz * dz <= radius * radius ? 1U : 0U;
+  }
+  return columns * (2U * v.radius_v + 1U);
+}
+
+bool ClientSession::loaded() const {
+  return replica_.confirmed_count() == view_chunks() && replica_.awaiting_count() == 0;
+}
+
+void ClientSession::on_roster(const Roster& roster) {
+  std::map<AuthorId, OtherPlayer> present;
+  for (const PlayerName& player : roster.players) {
+    if (player.author == author_) continue;
+    OtherPlayer& other = present[player.author];
+    other.name = player.name;
+    if (const auto known = others_.find(player.author); known != others_.end())
+      other.pose = known->second.pose;
+  }
+  others_ = std::move(present);
+}
+
+void ClientSession::on_poses(const PlayerPoses& poses) {
+  for (const PlayerPose& player : poses.players) {
+    if (player.author != author_) others_[player.author].pose = player.pose;
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,137 @@
+// ClientSession: one client's side of the protocol, around a Replica: handshake, view, edits, pings,
+// resumption. It consumes messages and produces messages; who carries them (a socket, a simulated link) is
+// not its business.
+//   offline -> connected() -> greeting (hello sent) -> proving (welcome checked, proof sent) -> open (ready
+//   came) disconnected() leads back to offline from everywhere; the replica and own edits stay, and are
+//   resumed.
+// The server proves its key with a signature; the key is pinned per world (first use trusts it, a change
+// refuses). Pure: randomness and times are arguments (microseconds of the client's steady clock). One thread.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/replica/clock_offset.hpp"
+#include "client/replica/replica.hpp"
+#include "common/core/result.hpp"
+#include "protocol/codec/handshake.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+inline constexpr TimeUs kPingEveryUs = 1'000'000;
+inline constexpr TimeUs kPingEveryFirstUs =
+    50'000;  // until kPingsFirst pongs are in: the clock offset is wanted soon
+inline constexpr unsigned kPingsFirst = 4;
+inline constexpr TimeUs kServerSilenceUsMax = 15'000'000;  // with a ping a second, silence means a dead link
+inline constexpr TimeUs kMoveEveryUs = 50'000;             // poses sent at most
+inline constexpr TimeUs kOffsetWaitUsMax =
+    1'000'000;  // edits wait this long for the first pong, then go without
+inline constexpr TimeUs kAnswerUsMax = 10'000'000;  // an edit not answered by then is offered again
+
+struct SessionConfig {
+  KeyPair keys;
+  std::string name = "builder";
+  ClientInstance instance = 1;          // random per process
+  std::uint8_t encodings = 3;           // as in Hello
+  View view;                            // wished; the server's limit cuts the radii
+  std::map<WorldId, PublicKey> pinned;  // server keys seen before
+};
+
+enum class SessionState { offline, greeting, proving, open };
+
+/// Why the last connection ended, as far as the protocol knows.
+struct SessionEnd {
+  GoodbyeReason reason = GoodbyeReason::closing;
+  std::string text;
+  bool by_server = false;  // it said goodbye; otherwise we did
+  bool final = false;      // trying again with the same configuration is pointless
+};
+
+struct OtherPlayer {
+  std::string name;
+  std::optional<Pose> pose;
+};
+
+class ClientSession {
+ public:
+  explicit ClientSession(SessionConfig config);
+
+  /// A new byte stream is up. `nonce` must be fresh and random: it keeps old welcomes from being replayed.
+  void connected(const Nonce& nonce, TimeUs now_us);
+  void disconnected();
+  /// Takes one decoded message. After an error the session wants to close (wants_close()) and a goodbye is
+  /// queued.
+  void receive(Message message, const Arrival& arrival);
+  /// Pings, repeated requests, silence. Call about every 10 ms.
+  void tick(TimeUs now_us);
+  /// Messages to send, in order. Edits may overtake the others (they travel in a class of their own).
+  std::vector<Message> take_outgoing();
+  /// The connection should be closed once what is queued is sent.
+  bool wants_close() const { return wants_close_; }
+  /// Says goodbye; wants_close() is true afterwards.
+  void close(GoodbyeReason reason, std::string text);
+
+  /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency counts from there.
+  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  void set_view(const View& view);
+  void set_pose(const Pose& pose) { pose_ = pose; }
+
+  SessionState state() const { return state_; }
+  bool is_open() const { return state_ == SessionState::open; }
+  const std::optional<SessionEnd>& end() const { return end_; }
+  /// Of the current or last connection; empty before the first.
+  const std::optional<Welcome>& welcome() const { return welcome_; }
+  AuthorId author() const { return author_; }
+  OperationId operation(ClientSequence seq) const { return {author_, config_.instance, seq}; }
+  /// The view in force: the wished one within the server's limits.
+  View view() const;
+  /// Chunks in view, and how many of them are confirmed.
+  std::size_t view_chunks() const;
+  /// Every chunk in view is confirmed and none waits to be repaired.
+  bool loaded() const;
+  /// Counts pongs; a ping sent after a moment has come back once it rises by two from then.
+  std::uint64_t pongs() const { return pongs_; }
+  const ClockOffset& clock() const { return clock_; }
+  const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
+  /// Server keys by world: those given, and those of worlds seen for the first time.
+  const std::map<WorldId, PublicKey>& pinned() const { return config_.pinned; }
+  std::uint64_t openings() const { return openings_; }
+
+  Replica& replica() { return replica_; }
+  const Replica& replica() const { return replica_; }
+
+ private:
+  void on_welcome(Welcome welcome);
+  void on_ready(const Ready& ready, TimeUs now_us);
+  void on_goodbye(const Goodbye& goodbye);
+  void on_roster(const Roster& roster);
+  void on_poses(const PlayerPoses& poses);
+  void fail_with(GoodbyeReason reason, std::string text, bool final);
+  void send_view();
+  void send_waiting_edits(TimeUs now_us);
+
+  SessionConfig config_;
+  SessionState state_ = SessionState::offline;
+  Replica replica_;
+  ClockOffset clock_;
+  std::vector<Message> outgoing_;
+  bool wants_close_ = false;
+  std::optional<SessionEnd> end_;
+  Hello hello_;
+  std::optional<Welcome> welcome_;
+  AuthorId author_ = 0;
+  std::uint64_t openings_ = 0;
+  std::uint64_t pongs_ = 0;
+
+  std::vector<ClientSequence> waiting_;  // own edits to send, ascending
+  std::optional<View> view_sent_;
+  Pose pose_;
+  std::optional<Pose> pose_sent_;
+  TimeUs opened_us_ = 0, ping_us_ = 0, heard_us_ = 0, move_us_ = 0;
+  std::map<AuthorId, OtherPlayer> others_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,55 @@
+#include "client/replica/own_edits.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+
+ClientSequence OwnEdits::add(OwnEdit edit) {
+  RUNSTONE_ASSERT(!full());
+  edits_.emplace_hint(edits_.end(), ++last_, std::move(edit));
+  return last_;
+}
+
+OwnEdit* OwnEdits::find(ClientSequence seq) {
+  const auto it = edits_.find(seq);
+  return it == edits_.end() ? nullptr : &it->second;
+}
+
+std::vector<ClientSequence> OwnEdits::take_durable(Sequence durable) {
+  std::vector<ClientSequence> out;
+  for (auto it = edits_.begin(); it != edits_.end();) {
+    if (it->second.decided && it->second.version.seq <= durable) {
+      out.push_back(it->first);
+      it = edits_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return out;
+}
+
+std::vector<ClientSequence> OwnEdits::resume(ClientSequence decided, Version head) {
+  std::vector<ClientSequence> offers;
+  for (auto& [seq, own] : edits_) {
+    if (seq > decided) {
+      own.decided = false;
+      own.version = {};
+      own.sent_us = OwnEdit::kNever;
+      offers.push_back(seq);
+    } else if (!own.decided) {
+      own.decided = true;
+      own.version = head;
+    }
+  }
+  return offers;
+}
+
+std::size_t OwnEdits::undecided() const {
+  return static_cast<std::size_t>(
+      std::count_if(edits_.begin(), edits_.end(), [](const auto& entry) { return !entry.second.decided; }));
+}
+
+}  // namespace runstone

@@ -1,0 +1,57 @@
+// OwnEdits: this client's edits from the click until they are known to be on disk (invariant 5).
+//   sent    -> the server has not answered yet; it is predicted on every chunk it touches
+//   decided -> applied at `version`; not predicted, kept to be offered again should the server lose it
+// Rejected and durable edits leave. Client sequences are handed out here, from 1, without gaps.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/edit_descriptor.hpp"
+
+namespace runstone {
+
+/// Own edits held at once; further ones are refused by submit() until the server catches up.
+inline constexpr std::size_t kOwnEditsMax = 16384;
+
+struct OwnEdit {
+  EditDescriptor edit;
+  TimeUs submitted_us = 0;       // this client's steady clock: the click, or the time it was scheduled for
+  TimeUs sent_us = kNever;       // last put on the wire
+  std::vector<ChunkKey> chunks;  // touched, in touched_chunks() order
+  bool decided = false;
+  Version version;  // once decided; an upper bound when the commit itself was missed
+  static constexpr TimeUs kNever = INT64_MIN;
+};
+
+class OwnEdits {
+ public:
+  using Map = std::map<ClientSequence, OwnEdit>;
+
+  /// Takes the next client sequence. Requires !full().
+  ClientSequence add(OwnEdit edit);
+  bool full() const { return edits_.size() >= kOwnEditsMax; }
+  OwnEdit* find(ClientSequence seq);
+  void erase(ClientSequence seq) { edits_.erase(seq); }
+  void clear() { edits_.clear(); }
+
+  /// Removes decided edits at or below the watermark and returns their sequences, ascending.
+  std::vector<ClientSequence> take_durable(Sequence durable);
+
+  /// A new connection: `decided` is what the server knows of this instance. Edits above it are to be offered
+  /// again and count as sent; edits up to it are decided, at `head` or before if their commit was missed.
+  /// Returns those to offer again, ascending.
+  std::vector<ClientSequence> resume(ClientSequence decided, Version head);
+
+  const Map& all() const { return edits_; }
+  std::size_t undecided() const;
+
+ private:
+  Map edits_;
+  ClientSequence last_ = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,156 @@
+// Replica: the client's copy of the chunks in view, always the runs as they came, never a grid.
+//   confirmed  what the server said: the last snapshot and every commit that follows it without a gap
+//   shown      confirmed plus our own edits that the server has not answered yet (the pending stack), by the
+//   same
+//              apply_stack(); the very same object as confirmed where nothing is pending
+// Order comes from versions alone, so messages of different classes may overtake each other:
+//   - an edit of a commit names the sequence its chunk stood at before (`previous`): it is applied if the
+//   chunk stands
+//     there, dropped if the chunk already stands at the edit or later, and held back otherwise;
+//   - a chunk with a gap, or whose digest an audit found wrong, takes nothing but a snapshot that it asks
+//   for;
+//   - a snapshot older than what is held is ignored.
+// After a restart of the server (new epoch) everything newer than what it kept on disk is distrusted, and own
+// edits it lost are offered again; operation ids make that exactly-once. Pure: no clock, no socket; times are
+// arguments (microseconds of the client's steady clock). One thread; the chunks handed out are immutable and
+// may be read from anywhere. Bounds: chunks, by the view; own edits, kOwnEditsMax (full: submit() refuses);
+// commits held back, kInboxEditsMax a chunk (full: they are dropped and the chunk asks for a snapshot that
+// contains them).
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "client/replica/own_edits.hpp"
+#include "client/replica/replica_news.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/edit_stack.hpp"
+#include "common/runs/chunk.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+using ShownPtr = std::shared_ptr<const RunChunk>;
+
+inline constexpr std::size_t kInboxEditsMax = 1024;   // edits held back per chunk
+inline constexpr TimeUs kRequestAgainUs = 2'000'000;  // a chunk asked for is asked for again after this
+
+/// What welcome and ready say about the world and about us.
+struct Opening {
+  std::int32_t chunk_edge = 32;
+  AuthorId author = 0;
+  ClientInstance instance = 0;
+  Epoch epoch = 0;
+  Sequence durable = 0, head = 0;
+  ClientSequence decided = 0;
+};
+
+class Replica {
+ public:
+  /// A connection opens: the first one, or a resumption of the same world. Returns the own edits to send
+  /// (again), in client order; find them in own_edits().
+  std::vector<ClientSequence> open(const Opening& opening);
+  /// Forgets chunks and own edits: another world.
+  void reset();
+  bool opened() const { return opening_.has_value(); }
+  std::int32_t chunk_edge() const { return opening_ ? opening_->chunk_edge : 0; }
+
+  /// Chunks outside leave at once; those inside are expected from the server.
+  void set_view(const View& view);
+  const std::optional<View>& view() const { return view_; }
+
+  /// Shows an own edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled
+  /// time. Fails on an invalid descriptor, before the first opening, and when kOwnEditsMax are held.
+  Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
+  void mark_sent(ClientSequence seq, TimeUs now_us);
+
+  void receive(ChunkSnapshot snapshot, const Arrival& arrival);
+  /// Fails if the commit contradicts itself (a list of previous sequences that does not fit its edit).
+  Result<void> receive(const Commit& commit, const Arrival& arrival);
+  void receive(const Reject& reject, TimeUs now_us);
+  void receive(const Durable& durable);
+  void receive(const Audit& audit, TimeUs now_us);
+  /// Asks again for chunks that were asked for kRequestAgainUs ago and have not come.
+  void tick(TimeUs now_us);
+
+  /// What changed since the last call.
+  ReplicaNews take_news();
+  /// Chunks to ask the server for, ascending.
+  std::vector<ChunkKey> take_requests();
+
+  /// Null if not held.
+  ChunkPtr confirmed(const ChunkKey& key) const;
+  ShownPtr shown(const ChunkKey& key) const;
+  /// Rises with every change of the chunk's picture: of its shown voxels, or of a neighbour's at the common
+  /// border. 0 if nothing is shown.
+  std::uint64_t shown_serial(const ChunkKey& key) const;
+  /// Empty if the chunk is not shown.
+  std::optional<Material> shown_at(VoxelPos at) const;
+  /// Keys of all confirmed chunks, ascending.
+  std::vector<ChunkKey> confirmed_keys() const;
+  std::size_t confirmed_count() const { return confirmed_count_; }
+  /// Chunks that wait for a snapshot they asked for.
+  std::size_t awaiting_count() const;
+  const OwnEdits& own_edits() const { return own_; }
+  Sequence durable() const { return durable_; }
+  /// Newest sequence seen in a commit or a welcome.
+  Sequence newest() const { return newest_; }
+  const ReplicaCounters& counters() const { return counters_; }
+
+ private:
+  struct EditInfo;
+  /// An edit that waits to be applied to one chunk.
+  struct Inbound {
+    std::shared_ptr<const EditInfo> info;
+    Sequence previous = 0;
+  };
+  /// An own edit that confirmed does not contain yet.
+  struct Pending {
+    ClientSequence seq = 0;
+    EditDescriptor edit;
+    Sequence decided_at = 0;      // 0: not answered yet
+    bool until_snapshot = false;  // answered while we could not listen: the next snapshot settles it
+  };
+  struct Entry {
+    ChunkPtr confirmed;  // null until the first snapshot, and after a restart that distrusts it
+    ShownPtr shown;      // null until the first snapshot
+    std::uint64_t serial = 0;
+    std::vector<Pending> pending;  // ascending by seq
+    std::vector<Inbound> inbox;    // ascending by sequence
+    Sequence latest = 0;           // newest edit of this chunk seen on this connection
+    bool awaiting = false;         // asked for a snapshot: nothing else is taken
+    std::optional<TimeUs> requested_us;
+  };
+
+  Entry& entry_for(const ChunkKey& key);
+  void settle(const ChunkKey& key, Entry& entry, bool from_snapshot, TimeUs now_us);
+  void request(const ChunkKey& key, Entry& entry, TimeUs now_us);
+  void show(const ChunkKey& key, Entry& entry, ShownPtr next, const std::vector<EditNews*>& cause);
+  ShownPtr predict(const ChunkKey& key, const Entry& entry);
+  EditNews& news_of(const EditInfo& info, TimeUs now_us);
+  ChunkNews& chunk_news(const ChunkKey& key);
+  bool is_own(const OperationId& op) const;
+  VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }
+
+  std::optional<Opening> opening_;
+  std::optional<View> view_;
+  std::map<ChunkKey, Entry> entries_;
+  std::size_t confirmed_count_ = 0;
+  OwnEdits own_;
+  Sequence durable_ = 0;
+  Sequence newest_ = 0;
+  std::uint64_t last_serial_ = 0;
+  ApplyScratch scratch_;
+  ReplicaCounters counters_;
+
+  std::map<ChunkKey, ChunkNews> chunk_news_;
+  std::vector<std::unique_ptr<EditNews>> edit_news_;
+  std::map<OperationId, EditNews*> confirmed_news_;  // those of edit_news_ that are not predictions
+  std::vector<RejectNews> reject_news_;
+  std::vector<ClientSequence> durable_news_;
+  std::vector<ChunkKey> requests_;
+};
+
+}  // namespace runstone

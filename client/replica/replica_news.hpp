@@ -1,0 +1,88 @@
+// ReplicaNews: what changed in a replica since it was last asked, for the mesher, the latency recorder and
+// the UI.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "common/edits/edit_stack.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+/// When a message came in, on the client's steady clock.
+struct Arrival {
+  TimeUs received_us = 0;  // its last byte was read from the socket
+  TimeUs unpacked_us = 0;  // it was decoded and verified
+  TimeUs now_us = 0;       // the replica takes it: "applied"
+};
+
+inline constexpr TimeUs kTimeUnknown = -1;
+
+/// One chunk whose picture changed. Changes of a chunk are joined until they are taken.
+struct ChunkNews {
+  ChunkKey key;
+  std::uint64_t serial = 0;  // of the shown runs, see Replica::shown_serial()
+  DirtyLayers dirty;         // layers in which a shown voxel changed
+  std::uint8_t borders =
+      0;               // bit per Direction: the neighbour there changed in the layer that touches this chunk
+  bool whole = false;  // nothing was shown here before
+  bool removed = false;            // out of view: nothing is shown any more
+  std::vector<OperationId> edits;  // edits that this change contains, in the order they were applied
+};
+
+/// One edit that reached the replica: its prediction, or its place in the confirmed order.
+struct EditNews {
+  OperationId op;
+  Sequence seq = 0;          // 0 for a prediction
+  bool own = false;          // made by this client instance
+  bool predicted = false;    // shown ahead of the server's answer
+  bool in_snapshot = false;  // came with a snapshot after its commit had been held back
+  TimeUs submitted_us = 0;   // server steady clock, as sent; 0 unknown; unused for predictions
+  TimeUs ordered_us = 0;     // server steady clock; unused for predictions
+  TimeUs received_us = 0;    // this client's steady clock; so are the next two
+  TimeUs unpacked_us = 0;
+  TimeUs applied_us = 0;
+  /// Chunks to mesh again because of it, neighbours at a border included; empty: nothing visible changed.
+  std::vector<ChunkKey> chunks;
+};
+
+/// The server refused one of our edits; its prediction is gone.
+struct RejectNews {
+  ClientSequence seq = 0;
+  RejectReason reason = RejectReason::busy;
+  std::string detail;
+};
+
+struct ReplicaNews {
+  std::vector<ChunkNews> chunks;  // ascending by key
+  std::vector<EditNews> edits;    // in the order applied
+  std::vector<RejectNews> rejects;
+  std::vector<ClientSequence> durable;  // own edits now known to be on disk
+};
+
+/// Counts since the replica was made. `chunk edits` count an edit once per chunk.
+struct ReplicaCounters {
+  std::uint64_t snapshots_taken = 0;    // became the confirmed chunk
+  std::uint64_t snapshots_stale = 0;    // older than what we hold: ignored
+  std::uint64_t snapshots_outside = 0;  // not in view: ignored
+  std::uint64_t commits = 0;
+  std::uint64_t chunk_edits_applied = 0;
+  std::uint64_t chunk_edits_contained = 0;  // already in the snapshot: dropped
+  std::uint64_t chunk_edits_buffered = 0;   // came ahead of their snapshot
+  std::uint64_t buffer_overflows = 0;
+  std::uint64_t gaps = 0;
+  std::uint64_t requests = 0;  // chunks asked for again
+  std::uint64_t audited = 0;   // compared at equal version
+  std::uint64_t drifted = 0;   // and found different: repaired by a new snapshot
+  std::uint64_t own_submitted = 0;
+  std::uint64_t own_confirmed = 0;
+  std::uint64_t own_rejected = 0;
+  std::uint64_t own_durable = 0;
+  std::uint64_t own_offered_again = 0;
+  std::uint64_t dropped_by_epoch = 0;  // chunks newer than what a restarted server kept
+};
+
+}  // namespace runstone
