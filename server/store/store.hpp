@@ -1,19 +1,20 @@
 // Store: the world on disk: base, one edit log, snapshots, players, meta (docs/edit-log.md gives the schema).
-// The interface is what the log writer, the loader, replay and import need; SQLite implements it, another database
-// may later. It blocks on the disk, so the world strand never calls it: one writer thread owns a Store, and readers
-// open their own.
-// Rules that keep a world safe:
+// The interface is what the log writer, the loader, replay and import need; SQLite implements it, another
+// database may later. It blocks on the disk, so the world strand never calls it: one writer thread owns a
+// Store, and readers open their own. Rules that keep a world safe:
 //   - append() returns after the data is on disk (WAL, synchronous FULL): what it took is durable;
 //   - a snapshot may only be saved at a version <= the last durable sequence;
 //   - a row that does not decode or whose checksum is wrong is an error that names file, table and row. It is
 //     never overwritten, regenerated or skipped in silence.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -29,10 +30,11 @@ namespace runstone {
 inline constexpr std::uint32_t kStoreFormatVersion = 1;
 
 struct StoreError {
-  enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request };
+  enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked };
   Kind kind = Kind::io;
-  std::string file;   // the database
-  std::string where;  // table and row, for example "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
+  std::string file;  // the database
+  std::string
+      where;  // table and row, for example "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
   std::string what;
   std::string message() const;  // one line: "FILE: WHERE: WHAT"
 };
@@ -43,7 +45,7 @@ using StoreResult = Result<T, StoreError>;
 struct WorldMeta {
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;
-  std::string generator;              // name
+  std::string generator;  // name
   std::uint32_t generator_version = 1;
   std::uint64_t seed = 0;
   std::string generator_parameters;
@@ -55,7 +57,7 @@ struct WorldMeta {
 struct PlayerRow {
   AuthorId author = 0;  // from 1
   PublicKey key{};
-  std::string name;     // last used
+  std::string name;  // last used
 };
 
 /// Highest client sequence decided per client instance; survives compaction of the log.
@@ -72,7 +74,8 @@ class Store {
   virtual const WorldMeta& meta() const = 0;
   virtual const std::string& file() const = 0;
 
-  // ---- start -----------------------------------------------------------------------------------------------
+  // ---- start
+  // -----------------------------------------------------------------------------------------------
   /// Raises the epoch by one and returns it, durably. Called once per server start.
   virtual StoreResult<Epoch> raise_epoch() = 0;
   /// Epoch of the last start (0: never started).
@@ -84,32 +87,43 @@ class Store {
   virtual StoreResult<std::vector<PlayerRow>> players() = 0;
   virtual StoreResult<std::vector<HighWater>> high_waters() = 0;
 
-  // ---- writing -----------------------------------------------------------------------------------------------
-  /// One transaction: new players, then records, then the high-water marks they imply. Durable on return. Records
-  /// must continue the log without a gap; nothing is written otherwise.
-  virtual StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) = 0;
+  // ---- writing
+  // -----------------------------------------------------------------------------------------------
+  /// One transaction: new players, then records, then the high-water marks they imply. Durable on return.
+  /// Records must continue the log without a gap; nothing is written otherwise.
+  virtual StoreResult<void> append(std::span<const PlayerRow> players,
+                                   std::span<const EditRecord> records) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint, in one transaction.
   virtual StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                            std::optional<Sequence> checkpoint) = 0;
   /// Import only, while the log is empty: base chunks at version (0, 0).
   virtual StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) = 0;
 
-  // ---- reading -----------------------------------------------------------------------------------------------
+  // ---- reading
+  // -----------------------------------------------------------------------------------------------
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
   /// Calls `each` for records first..last (both included) in order; stops early when it returns false.
   /// Each record's checksum is verified and the sequence checked to be without gaps.
-  virtual StoreResult<void> read_log(Sequence first, Sequence last, const std::function<bool(const EditRecord&)>& each) = 0;
+  virtual StoreResult<void> read_log(Sequence first, Sequence last,
+                                     const std::function<bool(const EditRecord&)>& each) = 0;
   /// Keys and versions of all snapshots, ascending.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() = 0;
   virtual StoreResult<std::vector<ChunkKey>> base_keys() = 0;
+
+  /// Reads and verifies every row of every table, and runs the database's own check. Slow: for audits.
+  virtual StoreResult<void> check() = 0;
 };
 
-/// A world is a folder that holds `world.sqlite`. Refuses a folder that already holds one.
-StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta);
+/// A world is a folder that holds `world.sqlite`; the folder is made if need be. Refuses a folder that
+/// already holds one. The new world is open for writing.
+StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta,
+                                                 const std::string& vfs = "");
 
 enum class StoreAccess { read_only, read_write };
-/// Opens an existing world; a lock refuses a second writer. `vfs`: SQLite VFS name, for tests; empty for the default.
-StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access, const std::string& vfs = "");
+/// Opens an existing world; a lock refuses a second writer. `vfs`: SQLite VFS name, for tests; empty for the
+/// default.
+StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access,
+                                               const std::string& vfs = "");
 
 }  // namespace runstone

@@ -1,0 +1,49 @@
+// ChunkTable: `base` or `snapshot`, chunks by key. What is read is decoded, validated and its digest
+// recomputed from runs; anything wrong is Kind::corrupt and names table and chunk.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/meta_table.hpp"
+#include "server/store/sql.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+/// "1,0,-3", and " lod=2" behind it when that is not 0.
+std::string name_of(const ChunkKey& key);
+
+class ChunkTable {
+ public:
+  enum class Kind { base, snapshot };
+  static StoreResult<ChunkTable> open(sql::Database& database, Kind kind);
+
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge);
+  /// Keys and versions of all rows, ascending. Fails if their fold is not `expected`.
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys(const RowFold& expected);
+  /// Inserts or replaces one row in the caller's transaction and moves the fold with it. Refuses
+  /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, and a version older
+  /// than the stored one.
+  StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge, RowFold& fold);
+  /// Meta key of this table's fold.
+  const std::string& fold_key() const { return fold_key_; }
+
+ private:
+  ChunkTable(std::string file, std::string table, sql::Statement load, sql::Statement keys,
+             sql::Statement version, sql::Statement save)
+      : file_(std::move(file)),
+        table_(std::move(table)),
+        fold_key_(table_ + "_fold"),
+        load_(std::move(load)),
+        keys_(std::move(keys)),
+        version_(std::move(version)),
+        save_(std::move(save)) {}
+  Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key, std::string what) const;
+
+  std::string file_, table_, fold_key_;
+  sql::Statement load_, keys_, version_, save_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,135 @@
+#include "server/store/log_table.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/edits/edit_geometry.hpp"
+
+namespace runstone {
+
+namespace {
+
+constexpr const char* kSelect =
+    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, min_x, min_y, min_z, max_x, max_y, "
+    "max_z, "
+    "descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
+
+constexpr auto kSequenceMax = static_cast<Sequence>(std::numeric_limits<std::int64_t>::max());
+
+bool in_range(std::int64_t value, std::uint64_t max) {
+  return value >= 0 && static_cast<std::uint64_t>(value) <= max;
+}
+
+/// The record of the current row; nothing if a column does not decode or the checksum is wrong.
+std::optional<EditRecord> record_of(const sql::Statement& row) {
+  const std::int64_t epoch = row.integer(1);
+  const std::int64_t author = row.integer(2);
+  const std::int64_t cause = row.integer(6);
+  auto edit = decode_descriptor(row.blob(13));
+  if (!in_range(epoch, std::numeric_limits<Epoch>::max()) ||
+      !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) || !edit) {
+    return std::nullopt;
+  }
+  const VoxelBox box = bounding_box(*edit);
+  const std::array<std::int64_t, 6> sides = {box.min.x, box.min.y, box.min.z,
+                                             box.max.x, box.max.y, box.max.z};
+  for (int i = 0; i < 6; ++i) {
+    if (row.integer(7 + i) != sides[static_cast<std::size_t>(i)]) return std::nullopt;
+  }
+  EditRecord record{{static_cast<Epoch>(epoch), static_cast<Sequence>(row.integer(0))},
+                    {static_cast<AuthorId>(author), static_cast<ClientInstance>(row.integer(3)),
+                     static_cast<ClientSequence>(row.integer(4))},
+                    row.integer(5),
+                    static_cast<Cause>(cause),
+                    *std::move(edit)};
+  if (static_cast<std::uint64_t>(row.integer(14)) != record_checksum(record)) return std::nullopt;
+  return record;
+}
+
+}  // namespace
+
+StoreResult<LogTable> LogTable::open(sql::Database& database) {
+  // A damaged log id would make its row invisible below; the two ends of the key order show it at once.
+  const auto strangers = database.integer(
+      "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE log > 0)");
+  if (!strangers) return Unexpected<StoreError>{strangers.error()};
+  if (*strangers != 0) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, database.file(), "edit_log", "holds rows of a log other than 0"}};
+  }
+  auto last = database.prepare("SELECT epoch, seq FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
+  if (!last) return Unexpected<StoreError>{last.error()};
+  auto insert = database.prepare(
+      "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, min_x, min_y, "
+      "min_z, max_x, "
+      "max_y, max_z, descriptor, checksum) VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
+      "?14, ?15)");
+  if (!insert) return Unexpected<StoreError>{insert.error()};
+  return LogTable(database, *std::move(last), *std::move(insert));
+}
+
+Unexpected<StoreError> LogTable::corrupt(Sequence seq, std::string what) const {
+  return {
+      {StoreError::Kind::corrupt, database_->file(), "edit_log seq=" + std::to_string(seq), std::move(what)}};
+}
+
+StoreResult<std::optional<Version>> LogTable::last() {
+  const sql::ResetAtEnd reset_at_end(last_);
+  const auto found = last_.step();
+  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!*found) return std::optional<Version>();
+  const std::int64_t seq = last_.integer(1);
+  if (!in_range(last_.integer(0), std::numeric_limits<Epoch>::max()) || seq < 1) {
+    return corrupt(static_cast<Sequence>(seq), "has an impossible version");
+  }
+  return std::optional<Version>({static_cast<Epoch>(last_.integer(0)), static_cast<Sequence>(seq)});
+}
+
+StoreResult<void> LogTable::insert(const EditRecord& record) {
+  const VoxelBox box = bounding_box(record.edit);
+  const Bytes descriptor = encode(record.edit);
+  return insert_.bind(1, static_cast<std::int64_t>(record.version.seq))
+      .bind(2, std::int64_t{record.version.epoch})
+      .bind(3, std::int64_t{record.op.author})
+      .bind(4, static_cast<std::int64_t>(record.op.instance))
+      .bind(5, static_cast<std::int64_t>(record.op.seq))
+      .bind(6, record.time_us)
+      .bind(7, static_cast<std::int64_t>(record.cause))
+      .bind(8, std::int64_t{box.min.x})
+      .bind(9, std::int64_t{box.min.y})
+      .bind(10, std::int64_t{box.min.z})
+      .bind(11, std::int64_t{box.max.x})
+      .bind(12, std::int64_t{box.max.y})
+      .bind(13, std::int64_t{box.max.z})
+      .bind(14, ByteView(descriptor))
+      .bind(15, static_cast<std::int64_t>(record_checksum(record)))
+      .run();
+}
+
+StoreResult<void> LogTable::read(Sequence first, Sequence last_wanted,
+                                 const std::function<bool(const EditRecord&)>& each) {
+  const auto end = last();
+  if (!end) return Unexpected<StoreError>{end.error()};
+  const Sequence last_there = end->has_value() ? (*end)->seq : 0;
+  const Sequence until = std::min({last_wanted, last_there, kSequenceMax});
+  // A statement of its own: `each` may read the log too.
+  auto rows = database_->prepare(kSelect);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  Sequence next = std::max<Sequence>(first, 1);
+  Epoch epoch = 0;
+  if (next <= until) rows->bind(1, static_cast<std::int64_t>(next)).bind(2, static_cast<std::int64_t>(until));
+  for (; next <= until; ++next) {
+    const auto more = rows->step();
+    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!*more || static_cast<Sequence>(rows->integer(0)) != next) return corrupt(next, "is missing");
+    const auto record = record_of(*rows);
+    if (!record) return corrupt(next, "checksum is wrong");
+    if (record->version.epoch < epoch) return corrupt(next, "has an older epoch than the edit before it");
+    epoch = record->version.epoch;
+    if (!each(*record)) return {};
+  }
+  return {};
+}
+
+}  // namespace runstone

@@ -1,0 +1,217 @@
+#include "server/store/meta_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+namespace {
+
+std::int64_t checksum_of(std::string_view key, const MetaValue& value) {
+  RowChecksum sum("meta");
+  sum.text(key);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    sum.text("integer").integer(*integer);
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    sum.text("text").text(*text);
+  } else {
+    sum.text("blob").blob(*std::get_if<Bytes>(&value));
+  }
+  return sum.value();
+}
+
+template <std::size_t N>
+Bytes bytes_of(const std::array<std::uint8_t, N>& value) {
+  return {value.begin(), value.end()};
+}
+
+/// Reads typed values out of rows and remembers the first key that would not do.
+class MetaReader {
+ public:
+  explicit MetaReader(const MetaRows& rows) : rows_(rows) {}
+
+  std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high) {
+    const auto* value = get<std::int64_t>(key);
+    if (value == nullptr) return low;
+    if (*value < low || *value > high) reject(key);
+    return *value;
+  }
+  std::string text(std::string_view key) {
+    const auto* value = get<std::string>(key);
+    return value == nullptr ? std::string() : *value;
+  }
+  template <std::size_t N>
+  std::array<std::uint8_t, N> bytes(std::string_view key) {
+    std::array<std::uint8_t, N> out{};
+    const auto* value = get<Bytes>(key);
+    if (value == nullptr) return out;
+    if (value->size() != N) {
+      reject(key);
+    } else {
+      std::copy(value->begin(), value->end(), out.begin());
+    }
+    return out;
+  }
+  void reject(std::string_view key) {
+    if (bad_key_.empty()) bad_key_ = key;
+  }
+  const std::string& bad_key() const { return bad_key_; }
+
+ private:
+  template <class T>
+  const T* get(std::string_view key) {
+    const auto row = rows_.find(key);
+    const T* value = row == rows_.end() ? nullptr : std::get_if<T>(&row->second);
+    if (value == nullptr) reject(key);
+    return value;
+  }
+  const MetaRows& rows_;
+  std::string bad_key_;
+};
+
+constexpr std::int64_t kIntegerMin = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kIntegerMax = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+MetaRows rows_of(const WorldMeta& meta) {
+  Bytes spawn;
+  ByteWriter writer(spawn);
+  for (const double coordinate : {meta.spawn.x, meta.spawn.y, meta.spawn.z}) {
+    writer.u64(std::bit_cast<std::uint64_t>(coordinate));
+  }
+  return {{"world_id", bytes_of(meta.world_id)},
+          {"chunk_edge", std::int64_t{meta.chunk_edge}},
+          {"generator", meta.generator},
+          {"generator_version", std::int64_t{meta.generator_version}},
+          {"seed", static_cast<std::int64_t>(meta.seed)},
+          {"generator_parameters", meta.generator_parameters},
+          {"materials", to_toml(meta.materials)},
+          {"server_key_seed", bytes_of(meta.server_key_seed)},
+          {"spawn", std::move(spawn)}};
+}
+
+Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
+  MetaReader in(rows);
+  WorldMeta meta;
+  meta.world_id = in.bytes<kWorldIdBytes>("world_id");
+  meta.chunk_edge = static_cast<std::uint16_t>(in.integer("chunk_edge", 16, kSideMax));
+  if (!std::has_single_bit(meta.chunk_edge)) in.reject("chunk_edge");
+  meta.generator = in.text("generator");
+  meta.generator_version = static_cast<std::uint32_t>(in.integer("generator_version", 0, 0xffffffff));
+  meta.seed = static_cast<std::uint64_t>(in.integer("seed", kIntegerMin, kIntegerMax));
+  meta.generator_parameters = in.text("generator_parameters");
+  auto materials = parse_material_table(in.text("materials"), "meta");
+  if (materials) {
+    meta.materials = *std::move(materials);
+  } else {
+    in.reject("materials");
+  }
+  meta.server_key_seed = in.bytes<32>("server_key_seed");
+  const auto spawn = in.bytes<24>("spawn");
+  ByteReader reader(spawn);
+  for (double* coordinate : {&meta.spawn.x, &meta.spawn.y, &meta.spawn.z}) {
+    *coordinate = std::bit_cast<double>(reader.u64());
+  }
+  if (!in.bad_key().empty()) return Unexpected<std::string>{in.bad_key()};
+  return meta;
+}
+
+StoreResult<MetaTable> MetaTable::open(sql::Database& database) {
+  auto all = database.prepare("SELECT key, value, checksum FROM meta ORDER BY key");
+  if (!all) return Unexpected<StoreError>{all.error()};
+  auto one = database.prepare("SELECT key, value, checksum FROM meta WHERE key = ?1");
+  if (!one) return Unexpected<StoreError>{one.error()};
+  auto write = database.prepare("INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, ?2, ?3)");
+  if (!write) return Unexpected<StoreError>{write.error()};
+  return MetaTable(database.file(), *std::move(all), *std::move(one), *std::move(write));
+}
+
+Unexpected<StoreError> MetaTable::corrupt(std::string_view key, std::string what) const {
+  return {{StoreError::Kind::corrupt, file_, "meta key=" + std::string(key), std::move(what)}};
+}
+
+StoreResult<MetaValue> MetaTable::read_row(sql::Statement& row, std::string_view key) {
+  MetaValue value;
+  switch (row.type(1)) {
+    case sql::Type::integer:
+      value = row.integer(1);
+      break;
+    case sql::Type::text:
+      value = std::string(row.text(1));
+      break;
+    case sql::Type::blob:
+      value = Bytes(row.blob(1).begin(), row.blob(1).end());
+      break;
+    case sql::Type::other:
+      return corrupt(key, "has a value of an unknown type");
+  }
+  if (row.integer(2) != checksum_of(key, value)) return corrupt(key, "checksum is wrong");
+  return value;
+}
+
+StoreResult<MetaRows> MetaTable::read_all() {
+  const sql::ResetAtEnd reset_at_end(all_);
+  MetaRows rows;
+  for (;;) {
+    const auto more = all_.step();
+    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!*more) return rows;
+    const std::string key(all_.text(0));
+    auto value = read_row(all_, key);
+    if (!value) return Unexpected<StoreError>{value.error()};
+    rows.insert_or_assign(key, *std::move(value));
+  }
+}
+
+StoreResult<void> MetaTable::put(const std::string& key, const MetaValue& value) {
+  write_.bind(1, std::string_view(key));
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    write_.bind(2, *integer);
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    write_.bind(2, std::string_view(*text));
+  } else {
+    write_.bind(2, ByteView(*std::get_if<Bytes>(&value)));
+  }
+  return write_.bind(3, checksum_of(key, value)).run();
+}
+
+StoreResult<MetaValue> MetaTable::get(const std::string& key) {
+  const sql::ResetAtEnd reset_at_end(one_);
+  const auto found = one_.bind(1, std::string_view(key)).step();
+  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!*found) return corrupt(key, "is missing");
+  return read_row(one_, key);
+}
+
+StoreResult<std::uint64_t> MetaTable::counter(const std::string& key) {
+  const auto value = get(key);
+  if (!value) return Unexpected<StoreError>{value.error()};
+  const auto* integer = std::get_if<std::int64_t>(&*value);
+  if (integer == nullptr || *integer < 0) return corrupt(key, "is no counter");
+  return static_cast<std::uint64_t>(*integer);
+}
+
+StoreResult<RowFold> MetaTable::fold(const std::string& key) {
+  const auto value = get(key);
+  if (!value) return Unexpected<StoreError>{value.error()};
+  const auto* bytes = std::get_if<Bytes>(&*value);
+  if (bytes == nullptr || bytes->size() != 16) return corrupt(key, "is no fold");
+  ByteReader reader(*bytes);
+  const std::uint64_t count = reader.u64();
+  return RowFold{count, reader.u64()};
+}
+
+StoreResult<void> MetaTable::put_fold(const std::string& key, const RowFold& fold) {
+  Bytes bytes;
+  ByteWriter writer(bytes);
+  writer.u64(fold.count);
+  writer.u64(fold.sum);
+  return put(key, bytes);
+}
+
+}  // namespace runstone

@@ -1,0 +1,39 @@
+// PlayerTable: who has an author number (`player`), and how far each of their client processes got
+// (`player_instance`): the marks that make an edit offered twice an edit applied once.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "server/store/sql.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+class PlayerTable {
+ public:
+  static StoreResult<PlayerTable> open(sql::Database& database);
+
+  /// Ascending by author, each row verified.
+  StoreResult<std::vector<PlayerRow>> players();
+  /// Ascending by author, then instance (as a signed number), each row verified.
+  StoreResult<std::vector<HighWater>> high_waters();
+
+  /// A new author, or the new name of a known one. In the caller's transaction, as raise().
+  StoreResult<void> put(const PlayerRow& player);
+  /// Moves a mark up; never down.
+  StoreResult<void> raise(const HighWater& mark);
+
+ private:
+  PlayerTable(std::string file, sql::Statement players, sql::Statement marks, sql::Statement put,
+              sql::Statement raise)
+      : file_(std::move(file)),
+        players_(std::move(players)),
+        marks_(std::move(marks)),
+        put_(std::move(put)),
+        raise_(std::move(raise)) {}
+
+  std::string file_;
+  sql::Statement players_, marks_, put_, raise_;
+};
+
+}  // namespace runstone

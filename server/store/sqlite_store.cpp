@@ -1,0 +1,191 @@
+#include "server/store/sqlite_store.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock, StoreAccess access,
+                         MetaTable meta_table, PlayerTable player_table, LogTable log_table, ChunkTable base,
+                         ChunkTable snapshots)
+    : lock_(std::move(lock)),
+      database_(std::move(database)),
+      meta_table_(std::move(meta_table)),
+      player_table_(std::move(player_table)),
+      log_(std::move(log_table)),
+      base_(std::move(base)),
+      snapshots_(std::move(snapshots)),
+      access_(access) {}
+
+Unexpected<StoreError> SqliteStore::refuse(std::string where, std::string what) const {
+  return {{StoreError::Kind::bad_request, file(), std::move(where), std::move(what)}};
+}
+
+StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& body) {
+  if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
+  if (broken_) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::io, file(), "", "an earlier commit failed; open the world again"}};
+  }
+  auto transaction = sql::Transaction::begin(*database_);
+  if (!transaction) return Unexpected<StoreError>{transaction.error()};
+  if (auto done = body(); !done) return done;
+  auto committed = transaction->commit();
+  broken_ = !committed.has_value();
+  return committed;
+}
+
+StoreResult<Epoch> SqliteStore::raise_epoch() {
+  const Epoch next = epoch_ + 1;
+  const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next}); });
+  if (!written) return Unexpected<StoreError>{written.error()};
+  epoch_ = next;
+  return epoch_;
+}
+
+StoreResult<Sequence> SqliteStore::last_sequence() {
+  const auto last = log_.last();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  return last->has_value() ? (*last)->seq : Sequence{0};
+}
+
+StoreResult<Sequence> SqliteStore::checkpoint() {
+  const auto checkpoint = meta_table_.counter("checkpoint");
+  if (!checkpoint) return checkpoint;
+  const auto last = last_sequence();
+  if (!last) return last;
+  if (*checkpoint > *last) {
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "edit_log",
+                                   "ends at seq=" + std::to_string(*last) +
+                                       ", before the checkpoint seq=" + std::to_string(*checkpoint)}};
+  }
+  return checkpoint;
+}
+
+StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table_.players(); }
+
+StoreResult<std::vector<HighWater>> SqliteStore::high_waters() { return player_table_.high_waters(); }
+
+StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> records) {
+  const auto last = last_sequence();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  Sequence expected = *last;
+  for (const EditRecord& record : records) {
+    ++expected;
+    const std::string where = "edit_log seq=" + std::to_string(record.version.seq);
+    if (record.version.seq != expected)
+      return refuse(where, "the log continues at " + std::to_string(expected));
+    if (record.version.epoch != epoch_) return refuse(where, "the epoch is " + std::to_string(epoch_));
+  }
+  return {};
+}
+
+StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
+                                      std::span<const EditRecord> records) {
+  return write([&]() -> StoreResult<void> {
+    if (auto continues = check_continues(records); !continues) return continues;
+    for (const PlayerRow& player : players) {
+      if (player.author == 0) return refuse("player author=0", "is the server itself");
+      if (auto put = player_table_.put(player); !put) return put;
+    }
+    std::map<std::pair<AuthorId, ClientInstance>, ClientSequence> marks;
+    for (const EditRecord& record : records) {
+      if (auto inserted = log_.insert(record); !inserted) return inserted;
+      ClientSequence& mark = marks[{record.op.author, record.op.instance}];
+      mark = std::max(mark, record.op.seq);
+    }
+    for (const auto& [client, decided] : marks) {
+      if (auto raised = player_table_.raise({client.first, client.second, decided}); !raised) return raised;
+    }
+    return {};
+  });
+}
+
+StoreResult<void> SqliteStore::save_chunks(ChunkTable& table,
+                                           std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) {
+  if (chunks.empty()) return {};
+  auto fold = meta_table_.fold(table.fold_key());
+  if (!fold) return Unexpected<StoreError>{fold.error()};
+  for (const auto& [key, chunk] : chunks) {
+    if (auto saved = table.save(key, *chunk, meta_.chunk_edge, *fold); !saved) return saved;
+  }
+  return meta_table_.put_fold(table.fold_key(), *fold);
+}
+
+StoreResult<void> SqliteStore::save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                              std::optional<Sequence> checkpoint) {
+  return write([&]() -> StoreResult<void> {
+    const auto last = log_.last();
+    if (!last) return Unexpected<StoreError>{last.error()};
+    const Version durable = last->value_or(Version{});
+    for (const auto& [key, chunk] : chunks) {
+      if (chunk->version > durable) {
+        return refuse("snapshot chunk=" + name_of(key), "its version is not durable yet");
+      }
+    }
+    if (auto saved = save_chunks(snapshots_, chunks); !saved) return saved;
+    if (!checkpoint) return {};
+    const auto before = meta_table_.counter("checkpoint");
+    if (!before) return Unexpected<StoreError>{before.error()};
+    if (*checkpoint > durable.seq) return refuse("meta key=checkpoint", "is ahead of the log");
+    if (*checkpoint < *before) return refuse("meta key=checkpoint", "may not move back");
+    return meta_table_.put("checkpoint", static_cast<std::int64_t>(*checkpoint));
+  });
+}
+
+StoreResult<void> SqliteStore::save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) {
+  return write([&]() -> StoreResult<void> {
+    const auto last = last_sequence();
+    if (!last) return Unexpected<StoreError>{last.error()};
+    if (*last != 0) return refuse("base", "cannot change once the log has edits");
+    for (const auto& [key, chunk] : chunks) {
+      if (chunk->version != Version{})
+        return refuse("base chunk=" + name_of(key), "base chunks stand at version (0, 0)");
+    }
+    return save_chunks(base_, chunks);
+  });
+}
+
+StoreResult<std::optional<Chunk>> SqliteStore::load_snapshot(const ChunkKey& key) {
+  return snapshots_.load(key, meta_.chunk_edge);
+}
+
+StoreResult<std::optional<Chunk>> SqliteStore::load_base(const ChunkKey& key) {
+  return base_.load(key, meta_.chunk_edge);
+}
+
+StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last,
+                                        const std::function<bool(const EditRecord&)>& each) {
+  return log_.read(first, last, each);
+}
+
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::keys_of(ChunkTable& table) {
+  // Rows and their fold must be read at one moment, while another process may be writing.
+  if (const auto begun = database_->run("SAVEPOINT keys"); !begun) {
+    return Unexpected<StoreError>{begun.error()};
+  }
+  auto fold = meta_table_.fold(table.fold_key());
+  auto keys = fold ? table.keys(*fold) : Unexpected<StoreError>{fold.error()};
+  if (const auto ended = database_->run("RELEASE keys"); !ended && keys) {
+    return Unexpected<StoreError>{ended.error()};
+  }
+  return keys;
+}
+
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {
+  return keys_of(snapshots_);
+}
+
+StoreResult<std::vector<ChunkKey>> SqliteStore::base_keys() {
+  auto rows = keys_of(base_);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  std::vector<ChunkKey> keys;
+  keys.reserve(rows->size());
+  for (const auto& [key, version] : *rows) keys.push_back(key);
+  return keys;
+}
+
+}  // namespace runstone

@@ -1,0 +1,82 @@
+// SqliteStore: a world in one SQLite database (WAL, synchronous FULL). The rules of Store live here; the
+// tables know only their rows. See docs/edit-log.md, "The database".
+#pragma once
+#include <memory>
+#include <string>
+
+#include "server/store/chunk_table.hpp"
+#include "server/store/log_table.hpp"
+#include "server/store/meta_table.hpp"
+#include "server/store/player_table.hpp"
+#include "server/store/sql.hpp"
+#include "server/store/store.hpp"
+#include "server/store/writer_lock.hpp"
+
+namespace runstone {
+
+struct SqliteOptions {
+  std::string vfs;   // SQLite VFS by name; empty: the default
+  bool sync = true;  // false is for one test only: it shows that the power-loss test notices a missing fsync
+};
+
+/// As create_world() and open_world(), which use the default options.
+StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder, const WorldMeta& meta,
+                                                        const SqliteOptions& options);
+StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
+                                                      const SqliteOptions& options);
+
+class SqliteStore final : public Store {
+ public:
+  /// Everything is checked before the object exists: marks, meta rows, log ids.
+  static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder, StoreAccess access,
+                                                        const SqliteOptions& options, WriterLock lock);
+
+  const WorldMeta& meta() const override { return meta_; }
+  const std::string& file() const override { return database_->file(); }
+  StoreResult<Epoch> raise_epoch() override;
+  Epoch epoch() const override { return epoch_; }
+  StoreResult<Sequence> last_sequence() override;
+  StoreResult<Sequence> checkpoint() override;
+  StoreResult<std::vector<PlayerRow>> players() override;
+  StoreResult<std::vector<HighWater>> high_waters() override;
+  StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override;
+  StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                   std::optional<Sequence> checkpoint) override;
+  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
+  StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
+  StoreResult<void> read_log(Sequence first, Sequence last,
+                             const std::function<bool(const EditRecord&)>& each) override;
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
+  StoreResult<std::vector<ChunkKey>> base_keys() override;
+  StoreResult<void> check() override;
+
+ private:
+  SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock, StoreAccess access,
+              MetaTable meta_table, PlayerTable player_table, LogTable log_table, ChunkTable base,
+              ChunkTable snapshots);
+  /// Calls `body` in one transaction and commits. After a commit that failed nobody knows what is on disk, so
+  /// every later write is refused.
+  StoreResult<void> write(const std::function<StoreResult<void>()>& body);
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys_of(ChunkTable& table);
+  StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
+  StoreResult<void> check_continues(std::span<const EditRecord> records);
+  StoreResult<void> check_chunks(ChunkTable& table);
+  StoreResult<void> check_marks_cover_log();
+  Unexpected<StoreError> refuse(std::string where, std::string what) const;
+
+  // Order matters: statements die before their database, and the database is closed before the lock is let
+  // go.
+  WriterLock lock_;
+  std::unique_ptr<sql::Database> database_;
+  MetaTable meta_table_;
+  PlayerTable player_table_;
+  LogTable log_;
+  ChunkTable base_, snapshots_;
+  StoreAccess access_;
+  WorldMeta meta_;
+  Epoch epoch_ = 0;
+  bool broken_ = false;
+};
+
+}  // namespace runstone

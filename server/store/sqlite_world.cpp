@@ -1,0 +1,184 @@
+// Making and opening a world: files, lock, marks and pragmas. What happens with it afterwards is
+// sqlite_store.cpp.
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "server/store/sqlite_store.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+namespace {
+
+std::string file_in(const std::string& folder) { return folder + "/world.sqlite"; }
+
+Unexpected<StoreError> failure(StoreError::Kind kind, const std::string& file, std::string what) {
+  return {{kind, file, "", std::move(what)}};
+}
+
+/// Asked through the VFS, because a test's files need not be the system's.
+StoreResult<bool> exists(const std::string& file, const std::string& vfs) {
+  sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
+  if (system == nullptr)
+    return failure(StoreError::Kind::bad_request, file, "no SQLite VFS is called " + vfs);
+  int there = 0;
+  if (system->xAccess(system, file.c_str(), SQLITE_ACCESS_EXISTS, &there) != SQLITE_OK) {
+    return failure(StoreError::Kind::io, file, "cannot be looked up");
+  }
+  return there != 0;
+}
+
+/// Makes the folder; its name in the parent folder is on disk before anything in it is promised to be.
+StoreResult<void> make_folder(const std::string& folder, const std::string& file) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return failure(StoreError::Kind::io, file, "the folder cannot be made: " + error.message());
+  const auto parent = std::filesystem::absolute(folder, error).lexically_normal() / "..";
+  const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    ::fsync(descriptor);  // best effort: some file systems cannot sync a folder
+    ::close(descriptor);
+  }
+  return {};
+}
+
+StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool sync) {
+  if (access == StoreAccess::read_only)
+    return database.run("PRAGMA query_only = ON; PRAGMA trusted_schema = OFF;");
+  const auto mode = database.text("PRAGMA journal_mode = WAL");
+  if (!mode) return Unexpected<StoreError>{mode.error()};
+  if (*mode != "wal")
+    return failure(StoreError::Kind::io, database.file(), "the file system has no shared memory for WAL");
+  // Overwritten rows of the log's tree hold nothing secret, so freed pages need not be zeroed.
+  if (auto set = database.run(
+          "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
+      !set) {
+    return set;
+  }
+  return database.run(sync ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = OFF");
+}
+
+StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta, bool sync) {
+  // The schema is committed in rollback mode and WAL comes afterwards: marks and tables then stand in the
+  // main file itself, where check_marks() looks, and a crash before the commit leaves a file without them.
+  if (auto set = database.run(sync ? "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;"
+                                   : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF;");
+      !set) {
+    return set;
+  }
+  auto transaction = sql::Transaction::begin(database);
+  if (!transaction) return Unexpected<StoreError>{transaction.error()};
+  if (auto made = create_schema(database); !made) return made;
+  auto table = MetaTable::open(database);
+  if (!table) return Unexpected<StoreError>{table.error()};
+  MetaRows rows = rows_of(meta);
+  rows["epoch"] = std::int64_t{0};
+  rows["checkpoint"] = std::int64_t{0};
+  for (const auto& [key, value] : rows) {
+    if (auto put = table->put(key, value); !put) return put;
+  }
+  for (const char* key : {"base_fold", "snapshot_fold"}) {
+    if (auto put = table->put_fold(key, {}); !put) return put;
+  }
+  return transaction->commit();
+}
+
+}  // namespace
+
+StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder, StoreAccess access,
+                                                            const SqliteOptions& options, WriterLock lock) {
+  const std::string file = file_in(folder);
+  const auto mode = access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
+  auto opened = sql::Database::open(file, mode, options.vfs);
+  if (!opened) return Unexpected<StoreError>{opened.error()};
+  auto database = std::make_unique<sql::Database>(*std::move(opened));
+  if (const auto set = set_pragmas(*database, access, options.sync); !set)
+    return Unexpected<StoreError>{set.error()};
+  auto meta_table = MetaTable::open(*database);
+  if (!meta_table) return Unexpected<StoreError>{meta_table.error()};
+  auto players = PlayerTable::open(*database);
+  if (!players) return Unexpected<StoreError>{players.error()};
+  auto log = LogTable::open(*database);
+  if (!log) return Unexpected<StoreError>{log.error()};
+  auto base = ChunkTable::open(*database, ChunkTable::Kind::base);
+  if (!base) return Unexpected<StoreError>{base.error()};
+  auto snapshots = ChunkTable::open(*database, ChunkTable::Kind::snapshot);
+  if (!snapshots) return Unexpected<StoreError>{snapshots.error()};
+
+  const auto rows = meta_table->read_all();
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  auto meta = meta_of(*rows);
+  if (!meta) {
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
+                                   "is missing or has an impossible value"}};
+  }
+  const auto epoch = meta_table->counter("epoch");
+  if (!epoch) return Unexpected<StoreError>{epoch.error()};
+
+  std::unique_ptr<SqliteStore> store(
+      new SqliteStore(std::move(database), std::move(lock), access, *std::move(meta_table),
+                      *std::move(players), *std::move(log), *std::move(base), *std::move(snapshots)));
+  store->meta_ = *std::move(meta);
+  store->epoch_ = static_cast<Epoch>(*epoch);
+  return store;
+}
+
+StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder, const WorldMeta& meta,
+                                                        const SqliteOptions& options) {
+  const std::string file = file_in(folder);
+  if (auto readable = meta_of(rows_of(meta)); !readable) {
+    return failure(StoreError::Kind::bad_request, file, "a new world cannot have this " + readable.error());
+  }
+  if (const auto made = make_folder(folder, file); !made) return Unexpected<StoreError>{made.error()};
+  auto lock = WriterLock::take(folder, file);
+  if (!lock) return Unexpected<StoreError>{lock.error()};
+  const auto there = exists(file, options.vfs);
+  if (!there) return Unexpected<StoreError>{there.error()};
+  if (*there) return failure(StoreError::Kind::exists, file, "is there already");
+  {
+    auto database = sql::Database::open(file, sql::Database::Mode::create, options.vfs);
+    if (!database) return Unexpected<StoreError>{database.error()};
+    if (const auto written = write_new_world(*database, meta, options.sync); !written) {
+      return Unexpected<StoreError>{written.error()};
+    }
+  }
+  auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock));
+  if (!store) return Unexpected<StoreError>{store.error()};
+  return std::unique_ptr<Store>(*std::move(store));
+}
+
+StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
+                                                      const SqliteOptions& options) {
+  const std::string file = file_in(folder);
+  const auto there = exists(file, options.vfs);
+  if (!there) return Unexpected<StoreError>{there.error()};
+  if (!*there) return failure(StoreError::Kind::not_a_world, file, "is not there");
+  if (const auto marked = check_marks(file, options.vfs); !marked)
+    return Unexpected<StoreError>{marked.error()};
+  WriterLock lock;
+  if (access == StoreAccess::read_write) {
+    auto taken = WriterLock::take(folder, file);
+    if (!taken) return Unexpected<StoreError>{taken.error()};
+    lock = *std::move(taken);
+  }
+  auto store = SqliteStore::open(folder, access, options, std::move(lock));
+  if (!store) return Unexpected<StoreError>{store.error()};
+  return std::unique_ptr<Store>(*std::move(store));
+}
+
+StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta,
+                                                 const std::string& vfs) {
+  return create_sqlite_world(folder, meta, {vfs, true});
+}
+
+StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access,
+                                               const std::string& vfs) {
+  return open_sqlite_world(folder, access, {vfs, true});
+}
+
+}  // namespace runstone

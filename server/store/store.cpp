@@ -1,0 +1,15 @@
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+std::string StoreError::message() const {
+  std::string line = file;
+  for (const std::string* part : {&where, &what}) {
+    if (part->empty()) continue;
+    if (!line.empty()) line += ": ";
+    line += *part;
+  }
+  return line;
+}
+
+}  // namespace runstone

@@ -1,0 +1,108 @@
+#include "server/store/world_schema.hpp"
+
+#include <xxhash.h>
+
+#include <string>
+
+namespace runstone {
+
+namespace {
+
+// Keyed by small composite keys, `edit_log` and `player_instance` live in the key's own tree: a single-voxel
+// edit costs one cell. Chunk rows are long, so they keep a rowid; their blob comes last, so that reading keys
+// and versions never follows its overflow pages.
+constexpr const char* kTables = R"sql(
+CREATE TABLE meta(
+  key TEXT NOT NULL PRIMARY KEY,
+  value ANY NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+CREATE TABLE base(
+  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
+  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY(lod, x, y, z)
+) STRICT;
+CREATE TABLE edit_log(
+  log INTEGER NOT NULL, seq INTEGER NOT NULL, epoch INTEGER NOT NULL,
+  author INTEGER NOT NULL, instance INTEGER NOT NULL, client_seq INTEGER NOT NULL,
+  time_us INTEGER NOT NULL, cause INTEGER NOT NULL,
+  min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, min_z INTEGER NOT NULL,
+  max_x INTEGER NOT NULL, max_y INTEGER NOT NULL, max_z INTEGER NOT NULL,
+  descriptor BLOB NOT NULL,
+  checksum INTEGER NOT NULL,
+  PRIMARY KEY(log, seq)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE snapshot(
+  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
+  epoch INTEGER NOT NULL, seq INTEGER NOT NULL,
+  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY(lod, x, y, z)
+) STRICT;
+CREATE TABLE player(
+  author INTEGER NOT NULL PRIMARY KEY,
+  key BLOB NOT NULL UNIQUE,
+  name TEXT NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE player_instance(
+  author INTEGER NOT NULL, instance INTEGER NOT NULL,
+  decided INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  PRIMARY KEY(author, instance)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+}  // namespace
+
+StoreResult<void> create_schema(sql::Database& database) {
+  const std::string marks = "PRAGMA application_id=" + std::to_string(kApplicationId) +
+                            "; PRAGMA user_version=" + std::to_string(kStoreFormatVersion) + ";";
+  if (auto set = database.run(marks.c_str()); !set) return set;
+  return database.run(kTables);
+}
+
+StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
+  const auto fail_as = [&](StoreError::Kind kind, std::string what) {
+    return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
+  };
+  auto header = sql::Database::open(file, sql::Database::Mode::header, vfs);
+  if (!header) return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + header.error().what);
+  const auto id = header->integer("PRAGMA application_id");
+  if (!id || *id != kApplicationId) return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
+  const auto version = header->integer("PRAGMA user_version");
+  if (!version) return Unexpected<StoreError>{version.error()};
+  if (*version > kStoreFormatVersion) {
+    return fail_as(StoreError::Kind::newer_version,
+                   "is of world format " + std::to_string(*version) + "; this program knows up to " +
+                       std::to_string(kStoreFormatVersion) + ". Nothing was changed.");
+  }
+  if (*version < 1)
+    return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(*version));
+  return {};
+}
+
+RowChecksum& RowChecksum::integer(std::int64_t value) {
+  ByteWriter(bytes_).u64(static_cast<std::uint64_t>(value));
+  return *this;
+}
+
+RowChecksum& RowChecksum::blob(ByteView value) {
+  ByteWriter writer(bytes_);
+  writer.u64(value.size());
+  writer.bytes(value);
+  return *this;
+}
+
+RowChecksum& RowChecksum::text(std::string_view value) {
+  return blob({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+}
+
+std::int64_t RowChecksum::value() const {
+  return static_cast<std::int64_t>(XXH3_64bits(bytes_.data(), bytes_.size()));
+}
+
+}  // namespace runstone

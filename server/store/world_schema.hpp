@@ -1,0 +1,38 @@
+// The schema of world.sqlite, its marks in the file header, and the row checksum. docs/edit-log.md describes
+// every column.
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "common/core/bytes.hpp"
+#include "server/store/sql.hpp"
+
+namespace runstone {
+
+/// "RunS": PRAGMA application_id of every world. PRAGMA user_version holds kStoreFormatVersion.
+inline constexpr std::int32_t kApplicationId = 0x52756e53;
+
+/// Makes all tables and sets both marks, in the caller's transaction.
+StoreResult<void> create_schema(sql::Database& database);
+
+/// Reads the marks from the main file alone, so that a file which is refused stays untouched. `vfs` as in
+/// sql::Database::open. Fails with not_a_world, newer_version or corrupt.
+StoreResult<void> check_marks(const std::string& file, const std::string& vfs);
+
+/// Checksum of one row: XXH3-64 of the table's name and every other column in schema order. Integers go in as
+/// 8 bytes little-endian, text and blobs as their length (8 bytes) and their bytes. edit_log alone differs:
+/// its checksum is record_checksum() of the record.
+class RowChecksum {
+ public:
+  explicit RowChecksum(std::string_view table) { text(table); }
+  RowChecksum& integer(std::int64_t value);
+  RowChecksum& blob(ByteView value);
+  RowChecksum& text(std::string_view value);
+  /// As stored: the 64 bits as a signed integer.
+  std::int64_t value() const;
+
+ private:
+  Bytes bytes_;
+};
+
+}  // namespace runstone

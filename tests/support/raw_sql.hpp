@@ -1,0 +1,29 @@
+// raw_sql: changes a world's database behind the store's back, as damage and other programs do.
+#pragma once
+#include <sqlite3.h>
+
+#include <string>
+
+namespace runstone::test {
+
+/// Runs statements on a closed (or WAL-shared) database. Returns the first column of the last row as text;
+/// "ERROR: ..." when something went wrong.
+inline std::string raw_sql(const std::string& file, const std::string& sql, const char* vfs = nullptr) {
+  sqlite3* database = nullptr;
+  std::string result;
+  if (sqlite3_open_v2(file.c_str(), &database, SQLITE_OPEN_READWRITE, vfs) != SQLITE_OK) {
+    result = std::string("ERROR: ") + sqlite3_errmsg(database);
+  } else {
+    const auto keep = [](void* out, int columns, char** values, char**) {
+      if (columns > 0 && values[0] != nullptr) *static_cast<std::string*>(out) = values[0];
+      return 0;
+    };
+    if (sqlite3_exec(database, sql.c_str(), keep, &result, nullptr) != SQLITE_OK) {
+      result = std::string("ERROR: ") + sqlite3_errmsg(database);
+    }
+  }
+  sqlite3_close(database);
+  return result;
+}
+
+}  // namespace runstone::test

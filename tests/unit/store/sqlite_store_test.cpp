@@ -1,0 +1,380 @@
+#include "server/store/sqlite_store.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+std::unique_ptr<Store> created(const std::string& folder) {
+  auto store = create_world(folder, sample_meta());
+  if (!store) FAIL(store.error().message());
+  return *std::move(store);
+}
+
+std::unique_ptr<Store> opened(const std::string& folder, StoreAccess access = StoreAccess::read_write) {
+  auto store = open_world(folder, access);
+  if (!store) FAIL(store.error().message());
+  return *std::move(store);
+}
+
+/// A world that was started once and holds `count` records.
+std::unique_ptr<Store> filled(const std::string& folder, SplitMix64& rng, std::size_t count) {
+  auto store = created(folder);
+  REQUIRE(store->raise_epoch().has_value());
+  const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
+  REQUIRE(store->append(players, sample_records(rng, 1, 1, count)).has_value());
+  return store;
+}
+
+std::vector<EditRecord> log_of(Store& store, Sequence first = 1, Sequence last = ~Sequence{0}) {
+  std::vector<EditRecord> records;
+  const auto read = store.read_log(first, last, [&](const EditRecord& record) {
+    records.push_back(record);
+    return true;
+  });
+  if (!read) FAIL(read.error().message());
+  return records;
+}
+
+std::vector<char> bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a new world opens again with everything that creation pinned", "[store]") {
+  const TempFolder folder;
+  const std::string world = folder / "a/b";
+  created(world);
+  const auto store = opened(world);
+  const WorldMeta expected = sample_meta();
+  CHECK(store->file() == world + "/world.sqlite");
+  CHECK(store->meta().world_id == expected.world_id);
+  CHECK(store->meta().chunk_edge == expected.chunk_edge);
+  CHECK(store->meta().generator == expected.generator);
+  CHECK(store->meta().generator_version == expected.generator_version);
+  CHECK(store->meta().seed == expected.seed);
+  CHECK(store->meta().generator_parameters == expected.generator_parameters);
+  CHECK(store->meta().materials == expected.materials);
+  CHECK(store->meta().server_key_seed == expected.server_key_seed);
+  CHECK(store->meta().spawn == expected.spawn);
+  CHECK(store->epoch() == 0);
+  CHECK(*store->last_sequence() == 0);
+  CHECK(*store->checkpoint() == 0);
+  CHECK(store->players()->empty());
+  CHECK(store->high_waters()->empty());
+  CHECK(store->snapshot_keys()->empty());
+  CHECK(store->base_keys()->empty());
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("the epoch rises by one at each start and stays", "[store]") {
+  const TempFolder folder;
+  CHECK(*created(folder.path())->raise_epoch() == 1);
+  CHECK(*opened(folder.path())->raise_epoch() == 2);
+  CHECK(opened(folder.path())->epoch() == 2);
+}
+
+TEST_CASE("records, players and marks come back as they were appended", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(1);
+  const auto first = sample_records(rng, 1, 1, 40);
+  const auto second = sample_records(rng, 2, 41, 25);
+  {
+    auto store = created(folder.path());
+    REQUIRE(*store->raise_epoch() == 1);
+    const std::vector<PlayerRow> players = {sample_player(2), sample_player(1)};
+    REQUIRE(store->append(players, first).has_value());
+    CHECK(log_of(*store) == first);
+  }
+  auto store = opened(folder.path());
+  REQUIRE(*store->raise_epoch() == 2);
+  PlayerRow renamed = sample_player(1);
+  renamed.name = "new name";
+  REQUIRE(store->append({&renamed, 1}, second).has_value());
+  CHECK(*store->last_sequence() == 65);
+  CHECK(log_of(*store, 41, 65) == second);
+  CHECK(log_of(*store, 7, 9) == std::vector<EditRecord>(first.begin() + 6, first.begin() + 9));
+  CHECK(log_of(*store, 66, 99).empty());
+  CHECK(log_of(*store).size() == 65);
+
+  const auto players = store->players();
+  REQUIRE(players->size() == 2);
+  CHECK((*players)[0].author == 1);
+  CHECK((*players)[0].name == "new name");
+  CHECK((*players)[0].key == sample_player(1).key);
+  CHECK((*players)[1].name == "builder 2");
+
+  std::map<std::pair<AuthorId, ClientInstance>, ClientSequence> expected;
+  for (const auto* batch : {&first, &second}) {
+    for (const EditRecord& record : *batch) {
+      auto& mark = expected[{record.op.author, record.op.instance}];
+      mark = std::max(mark, record.op.seq);
+    }
+  }
+  const auto marks = store->high_waters();
+  REQUIRE(marks->size() == expected.size());
+  for (const HighWater& mark : *marks) CHECK(mark.decided == expected[{mark.author, mark.instance}]);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a mark never falls when an older client sequence is logged later", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(2);
+  auto store = created(folder.path());
+  REQUIRE(store->raise_epoch().has_value());
+  auto records = sample_records(rng, 1, 1, 2);
+  records[0].op = {1, 5, 90};
+  records[1].op = {1, 5, 70};
+  REQUIRE(store->append({}, {records.data(), 1}).has_value());
+  REQUIRE(store->append({}, {records.data() + 1, 1}).has_value());
+  REQUIRE(store->high_waters()->size() == 1);
+  CHECK(store->high_waters()->front().decided == 90);
+}
+
+TEST_CASE("reading the log stops when asked to and may be nested", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(3);
+  auto store = filled(folder.path(), rng, 10);
+  std::size_t outer = 0, inner = 0;
+  REQUIRE(store
+              ->read_log(1, 10,
+                         [&](const EditRecord&) {
+                           inner += log_of(*store, 3, 4).size();
+                           return ++outer < 4;
+                         })
+              .has_value());
+  CHECK(outer == 4);
+  CHECK(inner == 8);
+}
+
+TEST_CASE("a batch that does not continue the log changes nothing", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(4);
+  auto store = filled(folder.path(), rng, 5);
+  const auto refused = [&](std::vector<EditRecord> records) {
+    const PlayerRow player = sample_player(9);
+    const auto result = store->append({&player, 1}, records);
+    return !result && result.error().kind == StoreError::Kind::bad_request;
+  };
+  CHECK(refused(sample_records(rng, 1, 7, 2)));  // a gap before it
+  CHECK(refused(sample_records(rng, 1, 5, 2)));  // a sequence that exists
+  CHECK(refused(sample_records(rng, 2, 6, 1)));  // an epoch that has not begun
+  CHECK(refused(sample_records(rng, 0, 6, 1)));  // an epoch that is over
+  auto broken = sample_records(rng, 1, 6, 3);
+  broken[2].version.seq = 9;
+  CHECK(refused(broken));  // a gap inside
+  const PlayerRow server = sample_player(0);
+  CHECK(store->append({&server, 1}, {}).error().where == "player author=0");
+  CHECK(*store->last_sequence() == 5);
+  CHECK(store->players()->size() == 2);
+  CHECK(store->append({}, sample_records(rng, 1, 6, 1)).has_value());
+}
+
+TEST_CASE("snapshots replace each other and move the checkpoint", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  const ChunkKey a{0, {1, 0, -3}}, b{2, {-7, 4, 9}};
+  const ChunkPtr a1 = sample_chunk(rng, {1, 3}), a2 = sample_chunk(rng, {1, 8}),
+                 b1 = sample_chunk(rng, {1, 5});
+  {
+    auto store = filled(folder.path(), rng, 10);
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> first = {{a, a1}, {b, b1}};
+    REQUIRE(store->save_snapshots(first, std::nullopt).has_value());
+    CHECK(*store->checkpoint() == 0);
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> second = {{a, a2}};
+    REQUIRE(store->save_snapshots(second, 8).has_value());
+    REQUIRE(store->save_snapshots(second, 8).has_value());
+    REQUIRE(store->save_snapshots({}, 9).has_value());
+  }
+  auto store = opened(folder.path());
+  CHECK(*store->checkpoint() == 9);
+  const auto chunk = store->load_snapshot(a);
+  REQUIRE(chunk->has_value());
+  CHECK((*chunk)->voxels == a2->voxels);
+  CHECK((*chunk)->version == a2->version);
+  CHECK((*chunk)->digest == a2->digest);
+  CHECK((*store->load_snapshot(b))->voxels == b1->voxels);
+  CHECK_FALSE(store->load_snapshot({0, {-7, 4, 9}})->has_value());
+  CHECK_FALSE(store->load_base(a)->has_value());
+  const auto keys = store->snapshot_keys();
+  REQUIRE(keys->size() == 2);
+  CHECK((*keys)[0] == std::pair{a, Version{1, 8}});
+  CHECK((*keys)[1] == std::pair{b, Version{1, 5}});
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a snapshot that would harm the world is refused and nothing of its job is kept", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(6);
+  auto store = filled(folder.path(), rng, 10);
+  const ChunkKey key{0, {1, 2, 3}}, other{0, {4, 5, 6}};
+  const auto where_refused = [&](const Chunk& chunk, std::optional<Sequence> checkpoint) {
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{other, sample_chunk(rng, {1, 1})},
+                                                               {key, std::make_shared<const Chunk>(chunk)}};
+    const auto saved = store->save_snapshots(chunks, checkpoint);
+    if (saved || saved.error().kind != StoreError::Kind::bad_request) return std::string("not refused");
+    return saved.error().where;
+  };
+  Chunk chunk = *sample_chunk(rng, {1, 11});
+  CHECK(where_refused(chunk, {}) == "snapshot chunk=1,2,3");  // not durable yet
+  chunk.version = {1, 10};
+  CHECK(where_refused(chunk, 11) == "meta key=checkpoint");  // ahead of the log
+  Chunk drifted = chunk;
+  drifted.digest.lane[1] ^= 1;
+  CHECK(where_refused(drifted, {}) == "snapshot chunk=1,2,3");
+  Chunk small = chunk;
+  small.voxels = uniform_chunk(Extent::cube(8), 1);
+  small.digest = digest_of(small.voxels);
+  CHECK(where_refused(small, {}) == "snapshot chunk=1,2,3");
+  CHECK(store->snapshot_keys()->empty());
+
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> good = {{key, std::make_shared<const Chunk>(chunk)}};
+  REQUIRE(store->save_snapshots(good, 10).has_value());
+  chunk.version = {1, 9};
+  CHECK(where_refused(chunk, {}) == "snapshot chunk=1,2,3");  // older than the stored one
+  chunk.version = {1, 10};
+  CHECK(where_refused(chunk, 9) == "meta key=checkpoint");  // backwards
+  CHECK(store->snapshot_keys()->size() == 1);
+}
+
+TEST_CASE("base chunks are taken once, and only while the log is empty", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(7);
+  auto store = created(folder.path());
+  const ChunkKey a{0, {0, -1, 5}}, b{0, {0, 0, 0}};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{b, sample_chunk(rng, {})},
+                                                             {a, sample_chunk(rng, {})}};
+  REQUIRE(store->save_base(chunks).has_value());
+  CHECK(*store->base_keys() == std::vector<ChunkKey>{a, b});
+  CHECK((*store->load_base(a))->voxels == chunks[1].second->voxels);
+  CHECK((*store->load_base(a))->version == Version{});
+  CHECK(store->save_base({chunks.data(), 1}).error().kind == StoreError::Kind::bad_request);  // twice
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> edited = {{{0, {9, 9, 9}}, sample_chunk(rng, {1, 1})}};
+  CHECK(store->save_base(edited).error().where == "base chunk=9,9,9");
+  REQUIRE(store->raise_epoch().has_value());
+  REQUIRE(store->append({}, sample_records(rng, 1, 1, 1)).has_value());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> late = {{{0, {8, 8, 8}}, sample_chunk(rng, {})}};
+  CHECK(store->save_base(late).error().kind == StoreError::Kind::bad_request);
+  CHECK(store->base_keys()->size() == 2);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a second writer is refused while readers come and go", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(8);
+  auto writer = filled(folder.path(), rng, 3);
+  const auto second = open_world(folder.path(), StoreAccess::read_write);
+  REQUIRE_FALSE(second.has_value());
+  CHECK(second.error().kind == StoreError::Kind::locked);
+  CHECK(second.error().message() ==
+        folder / "world.sqlite: another program is writing this world (it holds world.lock)");
+
+  auto reader = opened(folder.path(), StoreAccess::read_only);
+  CHECK(*reader->last_sequence() == 3);
+  REQUIRE(writer->append({}, sample_records(rng, 1, 4, 2)).has_value());
+  CHECK(*reader->last_sequence() == 5);
+  CHECK(log_of(*reader).size() == 5);
+  CHECK(reader->append({}, sample_records(rng, 1, 6, 1)).error().kind == StoreError::Kind::bad_request);
+  CHECK(reader->raise_epoch().error().kind == StoreError::Kind::bad_request);
+  CHECK(reader->save_snapshots({}, 1).error().kind == StoreError::Kind::bad_request);
+  writer.reset();
+  CHECK(*reader->last_sequence() == 5);
+  CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
+}
+
+TEST_CASE("a world of a newer format is refused and its bytes stay as they are", "[store]") {
+  const TempFolder folder;
+  created(folder.path());
+  const std::string file = folder / "world.sqlite";
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 2").empty());
+  const auto before = bytes_of(file);
+  for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
+    const auto store = open_world(folder.path(), access);
+    REQUIRE_FALSE(store.has_value());
+    CHECK(store.error().kind == StoreError::Kind::newer_version);
+    CHECK(store.error().message() ==
+          file + ": is of world format 2; this program knows up to 1. Nothing was changed.");
+  }
+  CHECK(bytes_of(file) == before);
+  CHECK_FALSE(std::filesystem::exists(file + "-wal"));
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 0").empty());
+  CHECK(open_world(folder.path(), StoreAccess::read_only).error().kind == StoreError::Kind::corrupt);
+}
+
+TEST_CASE("what is not a world is refused and left alone", "[store]") {
+  const TempFolder folder;
+  const std::string file = folder / "world.sqlite";
+  const auto kind = [&] { return open_world(folder.path(), StoreAccess::read_write).error().kind; };
+  CHECK(kind() == StoreError::Kind::not_a_world);  // nothing there
+  CHECK(std::filesystem::is_empty(folder.path()));
+  std::ofstream(file) << "hello, I am a text file and long enough to be mistaken for something else";
+  const auto text = bytes_of(file);
+  CHECK(kind() == StoreError::Kind::not_a_world);
+  CHECK(bytes_of(file) == text);
+  CHECK(create_world(folder.path(), sample_meta()).error().kind == StoreError::Kind::exists);
+  CHECK(bytes_of(file) == text);
+  std::filesystem::remove(file);
+  std::ofstream(file).flush();
+  REQUIRE(raw_sql(file, "CREATE TABLE meta(key, value)").empty());  // a database of somebody else
+  CHECK(kind() == StoreError::Kind::not_a_world);
+}
+
+TEST_CASE("a world is created once and only from meta that can be read back", "[store]") {
+  const TempFolder folder;
+  WorldMeta meta = sample_meta();
+  meta.chunk_edge = 48;
+  CHECK(create_world(folder.path(), meta).error().kind == StoreError::Kind::bad_request);
+  CHECK(std::filesystem::is_empty(folder.path()));
+  created(folder.path());
+  CHECK(create_world(folder.path(), sample_meta()).error().kind == StoreError::Kind::exists);
+  CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
+}
+
+TEST_CASE("a folder that cannot be written is reported", "[store]") {
+  // Not even root can make a folder there, so that this holds in containers too.
+  const auto made = create_world("/proc/runstone-world", sample_meta());
+  REQUIRE_FALSE(made.has_value());
+  CHECK(made.error().kind == StoreError::Kind::io);
+  CHECK(made.error().file == "/proc/runstone-world/world.sqlite");
+  const TempFolder folder;
+  created(folder.path());
+  std::filesystem::remove(folder / "world.lock");
+  std::filesystem::create_directory(folder / "world.lock");  // open() for writing fails for root as well
+  const auto opened_again = open_world(folder.path(), StoreAccess::read_write);
+  REQUIRE_FALSE(opened_again.has_value());
+  CHECK(opened_again.error().kind == StoreError::Kind::io);
+  CHECK(opened_again.error().file == folder / "world.lock");
+}
+
+TEST_CASE("a write that another program blocks is reported and works later", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(9);
+  auto store = filled(folder.path(), rng, 3);
+  // Another connection holds the write lock for longer than the store waits for it.
+  sqlite3* other = nullptr;
+  REQUIRE(sqlite3_open((folder / "world.sqlite").c_str(), &other) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_OK);
+  const auto blocked = store->append({}, sample_records(rng, 1, 4, 1));
+  CHECK(blocked.error().kind == StoreError::Kind::locked);
+  CHECK(sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(other);
+  CHECK(store->append({}, sample_records(rng, 1, 4, 1)).has_value());
+}
+
+TEST_CASE("an error message names file, place and cause in one line", "[store]") {
+  CHECK(StoreError{StoreError::Kind::corrupt, "w/world.sqlite", "edit_log seq=7", "checksum is wrong"}
+            .message() == "w/world.sqlite: edit_log seq=7: checksum is wrong");
+  CHECK(StoreError{StoreError::Kind::io, "w/world.sqlite", "", "disk full"}.message() ==
+        "w/world.sqlite: disk full");
+}
