@@ -1,6 +1,7 @@
 // WorldPorts: all that the world strand needs from outside. The server program implements them with threads,
-// sockets and SQLite; the simulation with queues and virtual time. Every call returns at once; answers come back
-// later as calls of WorldServer on the world strand. Bounded, with a written answer to "full" at each place.
+// sockets and SQLite; the simulation with queues and virtual time. Every call returns at once; answers come
+// back later as calls of WorldServer on the world strand. Bounded, with a written answer to "full" at each
+// place.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,6 +15,9 @@
 
 namespace runstone {
 
+/// What the world strand has to tell the operator; the port names the logger.
+enum class WorldLogLevel { debug, info, warn, error };
+
 /// Row of `player` to be written with the next batch.
 struct NewPlayer {
   AuthorId author = 0;
@@ -25,11 +29,14 @@ class WorldPorts {
  public:
   virtual ~WorldPorts() = default;
 
-  /// Queues a message behind the session's earlier ones of its class. False: the session's queue is full and the
-  /// message was dropped; the caller decides what that means (commits: chunk marked stale; control: session closed).
+  /// Queues a message behind the session's earlier ones of its class. False: the session's queue is full and
+  /// the message was dropped; the caller decides what that means (commits: chunk marked stale; control:
+  /// session closed).
   virtual bool send(SessionId session, const EncodedMessage& message) = 0;
-  /// Encodes a snapshot on a worker and queues it like send(); the session's encoding is known to the port.
-  /// False as above.
+  /// The encoding agreed with a session; called once, before its first send_snapshot().
+  virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
+  /// Encodes a snapshot on a worker in the session's encoding and queues it like send(). False as above; a
+  /// port with a bounded queue calls WorldServer::drained() when there is room again.
   virtual bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) = 0;
   /// Sends goodbye after what is queued, then closes. disconnected() follows.
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
@@ -38,12 +45,15 @@ class WorldPorts {
   virtual bool log_has_room(std::size_t records) const = 0;
   /// Hands a commit's records to the log writer. Answer: WorldServer::durable() once they are on disk.
   virtual void log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) = 0;
-  /// Asks for a chunk: newest snapshot, else base, else generated, from a worker. Answer: WorldServer::chunk_loaded()
-  /// or chunk_failed(). Asked at most once per chunk until answered.
+  /// Asks for a chunk: newest snapshot, else base, else generated, from a worker. Answer:
+  /// WorldServer::chunk_loaded() or chunk_failed(). Asked at most once per chunk until answered.
   virtual void load_chunk(const ChunkKey& key) = 0;
-  /// Hands over immutable chunks to be written as snapshots (each version <= durable), and the sequence up to which
-  /// everything is then contained in snapshots. Answer: WorldServer::snapshots_saved().
+  /// Hands over immutable chunks to be written as snapshots (each version <= durable), and the sequence up to
+  /// which everything is then contained in snapshots. Answer: WorldServer::snapshots_saved().
   virtual void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) = 0;
+
+  /// One line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
+  virtual void log(WorldLogLevel /*level*/, const std::string& /*line*/) {}
 };
 
 }  // namespace runstone

@@ -1,0 +1,84 @@
+#include "server/interest/interest.hpp"
+
+#include <algorithm>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+
+void Interest::open(SessionId session) {
+  const bool is_new = sessions_.emplace(session, SessionInterest(limit_)).second;
+  RUNSTONE_ASSERT(is_new);
+}
+
+void Interest::close(SessionId session) {
+  const auto found = sessions_.find(session);
+  if (found == sessions_.end()) return;
+  for (const auto& [key, state] : found->second.chunks()) leave(session, key, state);
+  sessions_.erase(found);
+}
+
+const SessionInterest* Interest::find(SessionId session) const {
+  const auto found = sessions_.find(session);
+  return found == sessions_.end() ? nullptr : &found->second;
+}
+
+SessionInterest& Interest::at(SessionId session) {
+  const auto found = sessions_.find(session);
+  RUNSTONE_ASSERT(found != sessions_.end());
+  return found->second;
+}
+
+void Interest::set_view(SessionId session, const View& view) {
+  for (const auto& left : at(session).set_view(view)) leave(session, left.key, left.was);
+}
+
+std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) { return at(session).nearest_wanted(); }
+
+std::optional<ChunkKey> Interest::next_for_audit(SessionId session) { return at(session).next_for_audit(); }
+
+bool Interest::set_state(SessionId session, const ChunkKey& key, ChunkInterest state) {
+  SessionInterest& mine = at(session);
+  const auto was = mine.state(key);
+  if (!was) return false;
+  if (*was == state) return true;
+  mine.set_state(key, state);
+  enter(session, key, state);
+  leave(session, key, *was);
+  return true;
+}
+
+void Interest::enter(SessionId session, const ChunkKey& key, ChunkInterest now) {
+  if (now == ChunkInterest::subscribed) users_[key].subscribers.push_back(session);
+  if (now == ChunkInterest::waiting) users_[key].waiting.push_back(session);
+}
+
+void Interest::leave(SessionId session, const ChunkKey& key, ChunkInterest was) {
+  if (was != ChunkInterest::subscribed && was != ChunkInterest::waiting) return;
+  const auto found = users_.find(key);
+  RUNSTONE_ASSERT(found != users_.end());
+  std::erase(was == ChunkInterest::subscribed ? found->second.subscribers : found->second.waiting, session);
+  if (found->second.subscribers.empty() && found->second.waiting.empty()) {
+    users_.erase(found);
+    released_.push_back(key);
+  }
+}
+
+std::span<const SessionId> Interest::subscribers(const ChunkKey& key) const {
+  const auto found = users_.find(key);
+  if (found == users_.end()) return {};
+  return found->second.subscribers;
+}
+
+std::vector<SessionId> Interest::waiting(const ChunkKey& key) const {
+  const auto found = users_.find(key);
+  if (found == users_.end()) return {};
+  return found->second.waiting;
+}
+
+bool Interest::subscribes(SessionId session, const ChunkKey& key) const {
+  const SessionInterest* found = find(session);
+  return found != nullptr && found->state(key) == ChunkInterest::subscribed;
+}
+
+}  // namespace runstone

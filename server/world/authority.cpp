@@ -1,0 +1,78 @@
+#include "server/world/authority.hpp"
+
+#include <algorithm>
+
+#include "common/edits/edit_geometry.hpp"
+
+namespace runstone {
+namespace {
+
+// What an edit costs at most in a commit message: fields and tables of OrderedEdit, the descriptor, and a
+// varint per touched chunk. Commits end well before kServerEditBytesMax.
+constexpr std::size_t kOrderedEditBytesMax = 128 + kDescriptorBytesMax;
+constexpr std::size_t kPreviousBytesMax = 10;
+constexpr std::size_t kCommitBytesTarget = kServerEditBytesMax / 2;
+static_assert(kOrderedEditBytesMax + kPreviousBytesMax * kTouchedChunksMax < kServerEditBytesMax / 2,
+              "one more edit over the target still fits the message");
+
+}  // namespace
+
+Authority::Authority(const EditLimits& limits, const LogPosition& log)
+    : limits_(limits),
+      epoch_(log.epoch),
+      head_(log.last),
+      last_time_us_(log.last_time_us),
+      chunks_(limits.chunk_edge) {}
+
+void Authority::restack(const EditRecord& record) {
+  for (const ChunkCoord at : touched_chunks(record.edit, limits_.chunk_edge)) {
+    chunks_.restack({0, at}, record.version, record.edit);
+  }
+}
+
+std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
+  if (decided_.knows(offer.op)) return RejectReason::already_decided;
+  if (const auto refusal = check_edit(offer.edit, limits_)) {
+    decided_.raise(offer.op);
+    return refusal;
+  }
+  if (!log_has_room) return RejectReason::busy;
+  decided_.raise(offer.op);
+  queue_.push_back(offer);
+  return std::nullopt;
+}
+
+std::optional<OrderedBatch> Authority::commit(const Now& now) {
+  if (queue_.empty()) return std::nullopt;
+  last_time_us_ =
+      std::max(last_time_us_, now.utc_us);  // the wall clock may be set back; the log's time never goes
+  OrderedBatch batch;
+  batch.commit.epoch = epoch_;
+  batch.commit.first = head_ + 1;
+  std::size_t bytes = 0;
+  while (!queue_.empty() && batch.records.size() < kCommitEditsMax && bytes < kCommitBytesTarget) {
+    const EditOffer offer = std::move(queue_.front());
+    queue_.pop_front();
+    const Version version{epoch_, ++head_};
+    OrderedEdit ordered;
+    ordered.op = offer.op;
+    ordered.cause = offer.cause;
+    ordered.submitted_us = offer.submitted_us;
+    ordered.ordered_us = now.steady_us;
+    ordered.edit = offer.edit;
+    for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge)) {
+      const ChunkKey key{0, at};
+      ordered.previous.push_back(chunks_.push(key, version, offer.edit));
+      batch.touched.push_back(key);
+    }
+    bytes += kOrderedEditBytesMax + kPreviousBytesMax * ordered.previous.size();
+    batch.commit.edits.push_back(std::move(ordered));
+    batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit});
+  }
+  std::sort(batch.touched.begin(), batch.touched.end());
+  batch.touched.erase(std::unique(batch.touched.begin(), batch.touched.end()), batch.touched.end());
+  for (const ChunkKey& key : batch.touched) chunks_.publish(key);
+  return batch;
+}
+
+}  // namespace runstone

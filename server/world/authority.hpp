@@ -1,0 +1,87 @@
+// Authority: gives edits their one order. An offered edit is checked and queued or refused at once; commit()
+// gives what is queued consecutive sequence numbers, moves the versions of the chunks touched, and publishes
+// each touched chunk that is in memory exactly once. It knows no clock, socket, disk or thread; same offers,
+// same result. Rules:
+//   - sequences have no gaps and continue the log of the last start; the epoch is that of this start;
+//   - a commit needs no voxels: a chunk that is not in memory keeps its edits on its stack until it is
+//   loaded;
+//   - an operation (author, instance, client sequence) is decided once: see DecidedMarks.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/edits/edit_record.hpp"
+#include "protocol/codec/messages.hpp"
+#include "server/world/decided_marks.hpp"
+#include "server/world/edit_check.hpp"
+#include "server/world/world_chunks.hpp"
+#include "server/world/world_time.hpp"
+
+namespace runstone {
+
+/// Where the log stands when a server starts.
+struct LogPosition {
+  Epoch epoch = 1;          // of this start, already raised
+  Sequence last = 0;        // last sequence in the log: all of it is durable
+  TimeUs last_time_us = 0;  // of that record; 0 without one
+};
+
+struct EditOffer {
+  OperationId op;
+  Cause cause = Cause::player;
+  TimeUs submitted_us = 0;
+  EditDescriptor edit;
+};
+
+/// One commit: the message, the records for the log, and the chunks it touched, ascending.
+struct OrderedBatch {
+  Commit commit;
+  std::vector<EditRecord> records;
+  std::vector<ChunkKey> touched;
+};
+
+class Authority {
+ public:
+  Authority(const EditLimits& limits, const LogPosition& log);
+
+  // ---- start: before the first offer
+  // -------------------------------------------------------------------------
+  WorldChunks& chunks() { return chunks_; }
+  const WorldChunks& chunks() const { return chunks_; }
+  DecidedMarks& decided() { return decided_; }
+  const DecidedMarks& decided() const { return decided_; }
+  /// A record of the log above the checkpoint: back on the stacks of the chunks it touches. In log order.
+  void restack(const EditRecord& record);
+
+  // ---- edits
+  // -----------------------------------------------------------------------------------------------
+  /// Nothing: queued, and its client sequence is decided. Else why not:
+  ///   already_decided, busy (only if `log_has_room` is false), or what check_edit() says.
+  /// Final refusals decide the client sequence too; `busy` does not, so the client may offer it again before
+  /// it offers a later one.
+  std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
+  /// Decides a client sequence without an edit: it was refused for a reason outside the authority's sight.
+  void refuse(const OperationId& op) { decided_.raise(op); }
+
+  std::size_t queued() const { return queue_.size(); }
+  /// Orders as many queued edits as one commit message may carry; nothing if none is queued. Call again until
+  /// then. O(per touched chunk: runs + its edits).
+  std::optional<OrderedBatch> commit(const Now& now);
+
+  Epoch epoch() const { return epoch_; }
+  /// Last sequence ordered.
+  Sequence head() const { return head_; }
+
+ private:
+  EditLimits limits_;
+  Epoch epoch_;
+  Sequence head_;
+  TimeUs last_time_us_;
+  WorldChunks chunks_;
+  DecidedMarks decided_;
+  std::deque<EditOffer> queue_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,80 @@
+#include "server/world/delivery.hpp"
+
+namespace runstone {
+namespace {
+
+bool is_stalled(const WorldState& world, const WorldSession& session, const Now& now) {
+  return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
+}
+
+bool send_snapshot(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                   const Now& now) {
+  if (world.ports.send_snapshot(session, key, chunk)) {
+    world.interest.set_state(session, key, ChunkInterest::subscribed);
+    ++world.counters.snapshots_sent;
+    return true;
+  }
+  ++world.counters.queue_full;
+  world.find(session)->stalled_us = now.steady_us;
+  world.interest.set_state(session, key, ChunkInterest::wanted);
+  return false;
+}
+
+}  // namespace
+
+void ask_load(WorldState& world, const ChunkKey& key) {
+  if (world.authority.chunks().begin_load(key)) world.ports.load_chunk(key);
+}
+
+void deliver(WorldState& world, SessionId session, const Now& now) {
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr || mine->state != SessionState::open || is_stalled(world, *mine, now)) return;
+  mine->stalled_us.reset();
+  WorldChunks& chunks = world.authority.chunks();
+  const SessionInterest& interest = *world.interest.find(session);
+  while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
+    const auto key = world.interest.nearest_wanted(session);
+    if (!key) return;
+    if (const ChunkPtr chunk = chunks.find(*key)) {
+      if (!send_snapshot(world, session, *key, chunk, now)) return;
+    } else if (chunks.residency(*key) == Residency::quarantined) {
+      world.interest.set_state(session, *key, ChunkInterest::unavailable);
+    } else {
+      world.interest.set_state(session, *key, ChunkInterest::waiting);
+      ask_load(world, *key);
+    }
+  }
+}
+
+void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
+  const ChunkPtr chunk = world.authority.chunks().find(key);
+  for (const SessionId session : world.interest.waiting(key)) {
+    if (chunk == nullptr) {
+      world.interest.set_state(session, key, ChunkInterest::unavailable);
+    } else if (is_stalled(world, *world.find(session), now)) {
+      world.interest.set_state(session, key, ChunkInterest::wanted);
+    } else {
+      send_snapshot(world, session, key, chunk, now);
+    }
+    deliver(world, session, now);
+  }
+}
+
+void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys, const Now& now) {
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr) return;
+  mine->stalled_us = now.steady_us;
+  for (const ChunkKey& key : keys) {
+    if (!world.interest.subscribes(session, key)) continue;
+    world.interest.set_state(session, key, ChunkInterest::wanted);
+    ++world.counters.chunks_stale;
+  }
+}
+
+void collect_released(WorldState& world) {
+  for (const ChunkKey& key : world.interest.take_released()) {
+    if (!world.interest.is_used(key)) world.authority.chunks().released(key);
+  }
+}
+
+}  // namespace runstone

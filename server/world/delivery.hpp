@@ -1,0 +1,23 @@
+// Delivery: chunks on their way to sessions. Subscribing and taking the snapshot's version are one step here,
+// so whatever commit comes after the snapshot reaches the session.
+#pragma once
+#include <string>
+
+#include "server/world/world_state.hpp"
+
+namespace runstone {
+
+/// Sends the session's nearest wanted chunks: those in memory at once, the others after a load. Stops when
+/// its queue is full or it waits for enough loads.
+void deliver(WorldState& world, SessionId session, const Now& now);
+/// Asks for a chunk unless it is here, on its way or quarantined.
+void ask_load(WorldState& world, const ChunkKey& key);
+/// A load ended: whoever waits gets the chunk, or nothing if it is quarantined.
+void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now);
+/// A commit did not fit the session's queue: these chunks are stale for it, are unsubscribed and will be sent
+/// again as snapshots once the queue has room.
+void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys, const Now& now);
+/// Hands chunks that lost their last user to eviction.
+void collect_released(WorldState& world);
+
+}  // namespace runstone

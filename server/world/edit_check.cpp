@@ -1,0 +1,31 @@
+#include "server/world/edit_check.hpp"
+
+#include <algorithm>
+
+#include "common/edits/edit_geometry.hpp"
+
+namespace runstone {
+
+std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits) {
+  if (!validate(edit)) return RejectReason::bad_edit;
+  const bool knows_mask =
+      edit.mask.kind != MaskKind::only_material || edit.mask.material < limits.material_count;
+  if (edit.material >= limits.material_count || !knows_mask) return RejectReason::unknown_material;
+  if (touched_chunks_bound(edit, limits.chunk_edge) > limits.touched_chunks_max)
+    return RejectReason::too_large;
+  if (voxel_count(edit) > limits.volume_max) return RejectReason::too_large;
+  return std::nullopt;
+}
+
+bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {
+  const VoxelBox box = bounding_box(edit);
+  const auto outside = [](double at, std::int32_t low, std::int32_t high) {
+    return std::max({low - at, at - high, 0.0});
+  };
+  const double dx = outside(from.x, box.min.x, box.max.x);
+  const double dy = outside(from.y, box.min.y, box.max.y);
+  const double dz = outside(from.z, box.min.z, box.max.z);
+  return dx * dx + dy * dy + dz * dz <= reach * reach;
+}
+
+}  // namespace runstone

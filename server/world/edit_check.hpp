@@ -1,0 +1,25 @@
+// Edit check: whether an edit may enter the order at all. Bounds come first that cost O(1), so that an
+// oversized edit costs nothing.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "common/edits/edit_descriptor.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+struct EditLimits {
+  std::int32_t chunk_edge = 32;
+  std::size_t material_count = 1;        // ids below are known
+  std::uint64_t volume_max = 1'000'000;  // voxels of the geometry
+  std::uint64_t touched_chunks_max = kTouchedChunksMax;
+};
+
+/// Nothing if the edit is allowed; else why not: bad_edit, unknown_material (the mask's too) or too_large.
+std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
+
+/// Whether the geometry's bounding box comes within `reach` voxels of `from`.
+bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach);
+
+}  // namespace runstone

@@ -1,0 +1,58 @@
+#include "server/world/request_steps.hpp"
+
+#include <algorithm>
+
+#include "server/world/delivery.hpp"
+
+namespace runstone {
+
+void on_view(WorldState& world, SessionId session, View view, const Now& now) {
+  view.radius_h = std::min(view.radius_h, world.config.view_radius_max);
+  view.radius_v = std::min(view.radius_v, world.config.view_radius_max);
+  world.interest.set_view(session, view);
+  collect_released(world);
+  deliver(world, session, now);
+}
+
+void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request, const Now& now) {
+  for (const ChunkKey& key : request.keys) {
+    if (world.interest.subscribes(session, key))
+      world.interest.set_state(session, key, ChunkInterest::wanted);
+  }
+  deliver(world, session, now);
+  collect_released(world);
+}
+
+void on_edit(WorldState& world, SessionId session, const EditRequest& request, const Now& now) {
+  WorldSession& mine = *world.find(session);
+  const OperationId op{mine.author, mine.instance, request.client_seq};
+  const double reach = world.config.reach_max;
+  std::optional<RejectReason> refusal;
+  if (world.authority.decided().knows(op)) {
+    refusal = RejectReason::already_decided;
+  } else if (!mine.edits.take(1, now.steady_us)) {
+    refusal = RejectReason::rate_limited;  // like busy: not final, the client may offer it again
+  } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
+    refusal = RejectReason::out_of_reach;
+    world.authority.refuse(op);
+  } else {
+    const bool has_room = world.accepts_edits && world.ports.log_has_room(world.authority.queued() + 1);
+    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit}, has_room);
+  }
+  if (!refusal) return;
+  ++world.counters.edits_rejected;
+  send_or_close(world, session, Reject{request.client_seq, *refusal, ""});
+}
+
+void on_move(WorldState& world, SessionId session, const Move& move) {
+  WorldSession& mine = *world.find(session);
+  if (mine.pose == move.pose) return;
+  mine.pose = move.pose;
+  mine.pose_changed = true;
+}
+
+void on_ping(WorldState& world, SessionId session, const Ping& ping, const Now& now) {
+  send_or_skip(world, session, encode_message(Pong{ping.sent_us, now.steady_us}));
+}
+
+}  // namespace runstone

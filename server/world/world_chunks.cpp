@@ -1,0 +1,181 @@
+#include "server/world/world_chunks.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kChunkOverheadBytes = 192;  // entry, control block, vectors: about
+
+std::size_t bytes_of(const Chunk& chunk) { return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes; }
+
+std::string text_of(Version v) { return std::to_string(v.epoch) + ":" + std::to_string(v.seq); }
+
+}  // namespace
+
+WorldChunks::Entry* WorldChunks::entry(const ChunkKey& key) {
+  const auto found = entries_.find(key);
+  return found == entries_.end() ? nullptr : &found->second;
+}
+const WorldChunks::Entry* WorldChunks::entry(const ChunkKey& key) const {
+  const auto found = entries_.find(key);
+  return found == entries_.end() ? nullptr : &found->second;
+}
+
+void WorldChunks::set_saved(const ChunkKey& key, Version version) {
+  Entry& e = entries_[key];
+  RUNSTONE_ASSERT(e.stack.empty());
+  e.version = e.saved = version;
+}
+
+void WorldChunks::restack(const ChunkKey& key, Version version, const EditDescriptor& edit) {
+  if (version <= entries_[key].saved) return;
+  push(key, version, edit);
+}
+
+Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescriptor& edit) {
+  Entry& e = entries_[key];
+  RUNSTONE_ASSERT(e.version < version);
+  const Sequence previous = e.version.seq;
+  e.version = version;
+  if (e.residency == Residency::quarantined) {
+    auto& first = quarantined_[key];
+    if (!first) first = version.seq;
+    return previous;
+  }
+  e.stack.push_back(edit);
+  e.stack_seqs.push_back(version.seq);
+  dirty_.insert(key);
+  return previous;
+}
+
+void WorldChunks::settle(const ChunkKey& key, Entry& e, Chunk chunk) {
+  // Edits the loaded chunk already contains lie at the bottom of the stack.
+  const auto first_new = std::upper_bound(e.stack_seqs.begin(), e.stack_seqs.end(), chunk.version.seq);
+  const auto skip = static_cast<std::size_t>(first_new - e.stack_seqs.begin());
+  const std::span<const EditDescriptor> edits = std::span(e.stack).subspan(skip);
+  if (!edits.empty()) {
+    apply_stack(chunk.voxels, chunk.digest, origin_of(key.at, edge_), edits, scratch_);
+    chunk.version = e.version;
+  }
+  e.stack.clear();
+  e.stack_seqs.clear();
+  e.published = std::make_shared<const Chunk>(std::move(chunk));
+  e.residency = Residency::resident;
+  ++resident_count_;
+  resident_bytes_ += bytes_of(*e.published);
+}
+
+void WorldChunks::unpublish(Entry& e) {
+  --resident_count_;
+  resident_bytes_ -= bytes_of(*e.published);
+  e.published = nullptr;
+}
+
+void WorldChunks::publish(const ChunkKey& key) {
+  Entry* e = entry(key);
+  if (e == nullptr || e->residency != Residency::resident || e->stack.empty()) return;
+  Chunk copy = *e->published;
+  unpublish(*e);
+  settle(key, *e, std::move(copy));
+}
+
+Residency WorldChunks::residency(const ChunkKey& key) const {
+  const Entry* e = entry(key);
+  return e == nullptr ? Residency::absent : e->residency;
+}
+
+ChunkPtr WorldChunks::find(const ChunkKey& key) const {
+  const Entry* e = entry(key);
+  return e == nullptr ? nullptr : e->published;
+}
+
+Version WorldChunks::version(const ChunkKey& key) const {
+  const Entry* e = entry(key);
+  return e == nullptr ? Version{} : e->version;
+}
+
+std::size_t WorldChunks::stack_size(const ChunkKey& key) const {
+  const Entry* e = entry(key);
+  return e == nullptr ? 0 : e->stack.size();
+}
+
+bool WorldChunks::begin_load(const ChunkKey& key) {
+  Entry& e = entries_[key];
+  if (e.residency != Residency::absent) return false;
+  e.residency = Residency::loading;
+  return true;
+}
+
+std::optional<std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk) {
+  Entry* e = entry(key);
+  if (e == nullptr || e->residency != Residency::loading) return std::nullopt;
+  std::string wrong;
+  if (chunk.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) {
+    wrong = "its sides are not the world's";
+  } else if (chunk.version < e->saved || e->version < chunk.version) {
+    wrong = "it stands at version " + text_of(chunk.version) + ", the world at " + text_of(e->version) +
+            " with a snapshot at " + text_of(e->saved);
+  }
+  if (!wrong.empty()) {
+    quarantine(key);
+    return wrong;
+  }
+  settle(key, *e, std::move(chunk));
+  return std::nullopt;
+}
+
+void WorldChunks::quarantine(const ChunkKey& key) {
+  Entry* e = entry(key);
+  if (e == nullptr || e->residency != Residency::loading) return;
+  e->residency = Residency::quarantined;
+  quarantined_[key] = e->stack_seqs.empty() ? std::nullopt : std::optional(e->stack_seqs.front());
+  e->stack = {};
+  e->stack_seqs = {};
+  dirty_.erase(key);
+}
+
+void WorldChunks::released(const ChunkKey& key) {
+  Entry* e = entry(key);
+  if (e == nullptr || e->residency != Residency::resident || e->is_candidate) return;
+  e->is_candidate = true;
+  idle_.push_back(key);
+}
+
+void WorldChunks::evict(std::size_t bytes_max, std::size_t steps_max,
+                        const std::function<bool(const ChunkKey&)>& is_used) {
+  for (std::size_t step = 0; step < steps_max && resident_bytes_ > bytes_max && !idle_.empty(); ++step) {
+    const ChunkKey key = idle_.front();
+    idle_.pop_front();
+    Entry& e = *entry(key);
+    e.is_candidate = false;
+    if (is_used(key)) continue;  // it becomes a candidate again when its last user leaves
+    if (e.version != e.saved) {
+      released(key);  // not yet in a snapshot: look again later
+      continue;
+    }
+    unpublish(e);
+    e.residency = Residency::absent;
+    if (e.version == Version{}) entries_.erase(key);
+  }
+}
+
+void WorldChunks::mark_saved(const ChunkKey& key, Version version) {
+  Entry* e = entry(key);
+  RUNSTONE_ASSERT(e != nullptr && version <= e->version);
+  e->saved = std::max(e->saved, version);
+  if (e->saved == e->version) dirty_.erase(key);
+}
+
+std::optional<Sequence> WorldChunks::first_quarantined_edit() const {
+  std::optional<Sequence> first;
+  for (const auto& [key, seq] : quarantined_) {
+    if (seq && (!first || *seq < *first)) first = seq;
+  }
+  return first;
+}
+
+}  // namespace runstone

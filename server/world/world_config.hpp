@@ -1,0 +1,64 @@
+// What the world strand is told at its start: the world, its limits, and what the store remembers.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/materials/material_table.hpp"
+#include "protocol/codec/handshake.hpp"
+#include "protocol/codec/messages.hpp"
+#include "server/world/authority.hpp"
+#include "server/world/snapshot_keeper.hpp"
+
+namespace runstone {
+
+struct WorldConfig {
+  // The world.
+  WorldId world_id{};
+  std::uint16_t chunk_edge = 32;
+  std::int32_t y_min = 0, y_max = 0;  // generator bounds, voxels
+  WorldPos spawn;
+  MaterialTable materials;
+  KeyPair server_keys;
+  // Limits of sessions.
+  std::size_t sessions_max = 256;             // beyond it: server_full
+  std::uint8_t view_radius_max = 16;          // chunks; larger views are cut to it
+  std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
+  double reach_max = 0;                       // voxels from the player's pose to the edit; 0: no limit
+  std::uint64_t edits_per_second = 2'000;     // per session; 0: no limit
+  std::uint64_t edit_burst = 4'000;
+  std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
+  TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
+  TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
+  ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers both
+  // Rhythm.
+  TimeUs pose_interval_us = 100'000;
+  TimeUs audit_interval_us = 1'000'000;
+  std::size_t audit_chunks = 8;            // per session and interval
+  TimeUs retry_interval_us = 100'000;      // after a full queue, unless drained() comes first
+  std::size_t restack_load_edits = 1'024;  // an absent chunk with a longer stack is loaded
+  // Memory and disk.
+  std::size_t resident_bytes_max = 512ULL << 20;
+  SnapshotPolicy snapshots;
+};
+
+/// What the store remembers. Log records above the checkpoint follow by WorldServer::restack().
+struct WorldStart {
+  struct Mark {
+    AuthorId author = 0;
+    ClientInstance instance = 0;
+    ClientSequence decided = 0;
+  };
+  LogPosition log;
+  Sequence checkpoint = 0;
+  std::vector<std::pair<ChunkKey, Version>> snapshots;
+  std::vector<NewPlayer> players;
+  std::vector<Mark> decided;
+};
+
+/// Fills a buffer with unpredictable bytes (predictable ones in tests).
+using RandomBytes = std::function<void(std::span<std::uint8_t>)>;
+
+}  // namespace runstone

@@ -1,0 +1,214 @@
+#include "server/world/world_server.hpp"
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "server/world/broadcast.hpp"
+#include "server/world/delivery.hpp"
+#include "server/world/handshake_steps.hpp"
+#include "server/world/request_steps.hpp"
+#include "server/world/world_state.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kEvictionStepsPerTick = 512;
+
+std::string text_of(const ChunkKey& key) {
+  return "chunk=" + std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," +
+         std::to_string(key.at.z);
+}
+
+/// Messages that an open session may send.
+bool needs_open(const Message& message) {
+  return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
+         std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
+         std::holds_alternative<Ping>(message);
+}
+
+void on_open_message(WorldState& world, SessionId session, const Message& message, const Now& now) {
+  if (const auto* view = std::get_if<View>(&message)) return on_view(world, session, *view, now);
+  if (const auto* request = std::get_if<ChunkRequest>(&message)) {
+    return on_chunk_request(world, session, *request, now);
+  }
+  if (const auto* edit = std::get_if<EditRequest>(&message)) return on_edit(world, session, *edit, now);
+  if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
+  if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
+}
+
+void close_silent_sessions(WorldState& world, const Now& now) {
+  std::vector<std::pair<SessionId, bool>> silent;
+  for (const auto& [id, session] : world.sessions) {
+    const bool is_open = session.state == SessionState::open;
+    const TimeUs since = is_open ? session.heard_us : session.connected_us;
+    const TimeUs limit = is_open ? world.config.idle_us_max : world.config.handshake_us_max;
+    if (now.steady_us - since >= limit) silent.emplace_back(id, is_open);
+  }
+  for (const auto& [id, was_open] : silent) {
+    close_session(world, id, GoodbyeReason::timed_out,
+                  was_open ? "no message for too long" : "the handshake took too long");
+  }
+}
+
+void retry_owed(WorldState& world, const Now& now) {
+  std::vector<SessionId> open;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionState::open) open.push_back(id);
+  }
+  for (const SessionId id : open) {
+    WorldSession& session = *world.find(id);
+    if (session.owes_durable) {
+      const Durable durable{world.authority.epoch(), world.durable};
+      session.owes_durable = !send_or_skip(world, id, encode_message(durable));
+    }
+    deliver(world, id, now);
+  }
+}
+
+}  // namespace
+
+WorldServer::WorldServer(WorldConfig config, const WorldStart& start, WorldPorts& ports, RandomBytes random)
+    : state_(std::make_unique<WorldState>(std::move(config), start, ports, std::move(random))) {}
+WorldServer::~WorldServer() = default;
+
+void WorldServer::restack(const EditRecord& record) { state_->authority.restack(record); }
+
+void WorldServer::connected(SessionId session, const Now& now) {
+  WorldSession fresh;
+  fresh.connected_us = fresh.heard_us = now.steady_us;
+  const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
+  RUNSTONE_ASSERT(is_new);
+}
+
+void WorldServer::received(SessionId session, Message&& message, const Now& now) {
+  WorldState& world = *state_;
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr) return;
+  ++world.counters.messages;
+  mine->heard_us = now.steady_us;
+  if (std::holds_alternative<Goodbye>(message)) {
+    close_session(world, session, GoodbyeReason::closing, "as you wish");
+    return;
+  }
+  if (mine->state == SessionState::awaits_hello && std::holds_alternative<Hello>(message)) {
+    on_hello(world, session, *std::get_if<Hello>(&message));
+  } else if (mine->state == SessionState::awaits_proof && std::holds_alternative<Proof>(message)) {
+    on_proof(world, session, *std::get_if<Proof>(&message), now);
+  } else if (mine->state == SessionState::open && needs_open(message)) {
+    on_open_message(world, session, message, now);
+  } else if (mine->state != SessionState::open && needs_open(message)) {
+    close_session(world, session, GoodbyeReason::not_authenticated, "the handshake comes first");
+  } else {
+    close_session(world, session, GoodbyeReason::unexpected_message, "not now, or not from a client");
+  }
+}
+
+void WorldServer::disconnected(SessionId session) {
+  forget_session(*state_, session);
+  collect_released(*state_);
+}
+
+void WorldServer::drained(SessionId session, const Now& now) {
+  WorldSession* mine = state_->find(session);
+  if (mine == nullptr) return;
+  mine->stalled_us.reset();
+  deliver(*state_, session, now);
+}
+
+void WorldServer::commit(const Now& now) { commit_and_broadcast(*state_, now); }
+
+void WorldServer::step_keeper(const Now& now) {
+  WorldState& world = *state_;
+  world.keeper.step(world.authority, world.durable, now, world.ports,
+                    [&](const ChunkKey& key) { ask_load(world, key); });
+}
+
+void WorldServer::tick(const Now& now) {
+  WorldState& world = *state_;
+  commit(now);
+  close_silent_sessions(world, now);
+  broadcast_roster(world);
+  if (now.steady_us - world.poses_us >= world.config.pose_interval_us) {
+    world.poses_us = now.steady_us;
+    broadcast_poses(world);
+  }
+  if (now.steady_us - world.audits_us >= world.config.audit_interval_us) {
+    world.audits_us = now.steady_us;
+    send_audits(world);
+  }
+  retry_owed(world, now);
+  step_keeper(now);
+  collect_released(world);
+  world.authority.chunks().evict(world.config.resident_bytes_max, kEvictionStepsPerTick,
+                                 [&](const ChunkKey& key) { return world.interest.is_used(key); });
+}
+
+void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now) {
+  WorldState& world = *state_;
+  if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
+    ++world.counters.chunks_failed;
+    world.ports.log(WorldLogLevel::error, text_of(key) + " quarantined: " + *wrong);
+  }
+  deliver_loaded(world, key, now);
+  // A chunk that was loaded for its stack alone has no user; it may go once it is written.
+  if (!world.interest.is_used(key)) world.authority.chunks().released(key);
+  step_keeper(now);
+}
+
+void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Now& now) {
+  WorldState& world = *state_;
+  ++world.counters.chunks_failed;
+  world.authority.chunks().quarantine(key);
+  world.ports.log(WorldLogLevel::error, text_of(key) + " quarantined: " + what);
+  deliver_loaded(world, key, now);
+  step_keeper(now);
+}
+
+void WorldServer::durable(Sequence seq, const Now& now) {
+  WorldState& world = *state_;
+  RUNSTONE_ASSERT(seq <= world.authority.head());
+  if (seq <= world.durable) return;
+  world.durable = seq;
+  broadcast_durable(world);
+  step_keeper(now);
+}
+
+void WorldServer::snapshots_saved(const Now& now) {
+  state_->keeper.saved(state_->authority.chunks());
+  step_keeper(now);
+}
+
+void WorldServer::log_failed() { state_->accepts_edits = false; }
+
+void WorldServer::begin_stop(const Now& now) {
+  WorldState& world = *state_;
+  commit(now);  // what was accepted is ordered
+  world.accepts_edits = false;
+  world.keeper.finish();
+  while (!world.sessions.empty()) {
+    close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
+  }
+  collect_released(world);
+  step_keeper(now);
+}
+
+bool WorldServer::is_settled() const {
+  return state_->authority.queued() == 0 && state_->durable == state_->authority.head() &&
+         state_->keeper.is_clean(state_->authority);
+}
+
+Epoch WorldServer::epoch() const { return state_->authority.epoch(); }
+Sequence WorldServer::head() const { return state_->authority.head(); }
+Sequence WorldServer::durable() const { return state_->durable; }
+Sequence WorldServer::checkpoint() const { return state_->keeper.checkpoint(); }
+std::size_t WorldServer::session_count() const { return state_->sessions.size(); }
+std::size_t WorldServer::resident_chunks() const { return state_->authority.chunks().resident_count(); }
+std::size_t WorldServer::resident_bytes() const { return state_->authority.chunks().resident_bytes(); }
+const WorldCounters& WorldServer::counters() const { return state_->counters; }
+ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const { return state_->authority.chunks().find(key); }
+Version WorldServer::chunk_version(const ChunkKey& key) const {
+  return state_->authority.chunks().version(key);
+}
+
+}  // namespace runstone

@@ -1,0 +1,87 @@
+// WorldServer: the face of the world strand. Everything that happens to the world comes in here, one call at
+// a time, with the time as an argument; everything it wants done goes out by WorldPorts. No clock, socket,
+// disk or thread: a test runs it in virtual time. A turn: deliver what arrived by received(), then commit()
+// once. What was queued together becomes one commit, and nothing waits for a tick. Call tick() some 20 times
+// a second. Threads: all calls on one strand. Ports must not call back in; their answers come as later calls.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "protocol/codec/messages.hpp"
+#include "server/world/world_config.hpp"
+#include "server/world/world_counters.hpp"
+#include "server/world/world_ports.hpp"
+#include "server/world/world_time.hpp"
+
+namespace runstone {
+
+struct WorldState;
+
+class WorldServer {
+ public:
+  /// `ports` must outlive the server.
+  WorldServer(WorldConfig config, const WorldStart& start, WorldPorts& ports, RandomBytes random);
+  ~WorldServer();
+  WorldServer(const WorldServer&) = delete;
+  WorldServer& operator=(const WorldServer&) = delete;
+
+  /// Before the first session: each record of the log above the checkpoint, in order.
+  void restack(const EditRecord& record);
+
+  // ---- sessions
+  // ------------------------------------------------------------------------------------------------
+  void connected(SessionId session, const Now& now);
+  /// A verified message. One that the session's state does not allow closes it: not_authenticated before
+  /// ready, unexpected_message otherwise. Messages of sessions that were closed are ignored.
+  void received(SessionId session, Message&& message, const Now& now);
+  void disconnected(SessionId session);
+  /// The session's queues have room again.
+  void drained(SessionId session, const Now& now);
+
+  // ---- turns
+  // ---------------------------------------------------------------------------------------------------
+  /// Orders and sends the edits queued by received(). Cheap when there are none.
+  void commit(const Now& now);
+  /// Timeouts, poses, roster, audits, snapshot rounds, eviction, retries.
+  void tick(const Now& now);
+
+  // ---- answers of the ports
+  // ---------------------------------------------------------------------------------------
+  void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
+  /// `what` names file, table and row. The chunk is quarantined.
+  void chunk_failed(const ChunkKey& key, const std::string& what, const Now& now);
+  /// Everything up to `seq` is on disk.
+  void durable(Sequence seq, const Now& now);
+  /// The oldest unanswered save_snapshots() is on disk.
+  void snapshots_saved(const Now& now);
+  /// The log cannot be written any more: edits are rejected busy from now on.
+  void log_failed();
+
+  // ---- stop
+  // ------------------------------------------------------------------------------------------------------
+  /// Says goodbye to everybody, refuses edits, and writes all snapshots; goes on by the ports' answers.
+  void begin_stop(const Now& now);
+  /// Everything ordered is durable and contained in snapshots (but for quarantined chunks).
+  bool is_settled() const;
+
+  // ---- looking in
+  // ------------------------------------------------------------------------------------------------
+  Epoch epoch() const;
+  Sequence head() const;
+  Sequence durable() const;
+  Sequence checkpoint() const;
+  std::size_t session_count() const;  // in any state
+  std::size_t resident_chunks() const;
+  std::size_t resident_bytes() const;
+  const WorldCounters& counters() const;
+  /// Null unless the chunk is in memory.
+  ChunkPtr find_chunk(const ChunkKey& key) const;
+  /// Version by the order, whether the chunk is in memory or not.
+  Version chunk_version(const ChunkKey& key) const;
+
+ private:
+  void step_keeper(const Now& now);
+  std::unique_ptr<WorldState> state_;
+};
+
+}  // namespace runstone

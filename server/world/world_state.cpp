@@ -1,0 +1,62 @@
+#include "server/world/world_state.hpp"
+
+#include <utility>
+
+namespace runstone {
+namespace {
+
+EditLimits limits_of(const WorldConfig& config) {
+  EditLimits limits;
+  limits.chunk_edge = config.chunk_edge;
+  limits.material_count = config.materials.size();
+  limits.volume_max = config.edit_volume_max;
+  return limits;
+}
+
+}  // namespace
+
+WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts& ports_, RandomBytes random_)
+    : config(std::move(config_)),
+      ports(ports_),
+      random(std::move(random_)),
+      authority(limits_of(config), start.log),
+      keeper(config.snapshots, start.checkpoint),
+      interest(CoordLimit{kWorldLimit / config.chunk_edge}),
+      durable(start.log.last) {
+  for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
+  for (const NewPlayer& player : start.players) players.restore(player.author, player.key, player.name);
+  for (const auto& mark : start.decided)
+    authority.decided().raise({mark.author, mark.instance, mark.decided});
+}
+
+void forget_session(WorldState& world, SessionId session) {
+  const auto found = world.sessions.find(session);
+  if (found == world.sessions.end()) return;
+  if (found->second.state == SessionState::open) world.roster_changed = true;
+  world.sessions.erase(found);
+  world.interest.close(session);
+}
+
+void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text) {
+  if (world.find(session) == nullptr) return;
+  ++world.counters.sessions_closed;
+  world.ports.log(WorldLogLevel::debug, "session=" + std::to_string(session) +
+                                            " closed reason=" + to_string(reason) + " text=\"" + text + "\"");
+  forget_session(world, session);
+  world.ports.close(session, reason, text);
+}
+
+bool send_or_close(WorldState& world, SessionId session, const Message& message) {
+  if (world.ports.send(session, encode_message(message))) return true;
+  ++world.counters.queue_full;
+  close_session(world, session, GoodbyeReason::timed_out, "send queue full: the peer reads too slowly");
+  return false;
+}
+
+bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message) {
+  if (world.ports.send(session, message)) return true;
+  ++world.counters.queue_full;
+  return false;
+}
+
+}  // namespace runstone

@@ -1,0 +1,50 @@
+// WorldState: all that belongs to the world strand, as plain parts. The steps (handshake, requests, delivery,
+// broadcast) are free functions over it; WorldServer is its face.
+#pragma once
+#include <map>
+#include <string>
+
+#include "server/interest/interest.hpp"
+#include "server/world/authority.hpp"
+#include "server/world/players.hpp"
+#include "server/world/snapshot_keeper.hpp"
+#include "server/world/world_config.hpp"
+#include "server/world/world_counters.hpp"
+#include "server/world/world_ports.hpp"
+#include "server/world/world_session.hpp"
+
+namespace runstone {
+
+struct WorldState {
+  WorldState(WorldConfig config_, const WorldStart& start, WorldPorts& ports_, RandomBytes random_);
+
+  WorldConfig config;
+  WorldPorts& ports;
+  RandomBytes random;
+  Authority authority;
+  SnapshotKeeper keeper;
+  Interest interest;
+  Players players;
+  std::map<SessionId, WorldSession> sessions;  // by number: who receives first never depends on a hash
+  WorldCounters counters;
+  Sequence durable = 0;
+  bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
+  bool roster_changed = false;
+  TimeUs poses_us = 0, audits_us = 0;  // when last sent
+
+  WorldSession* find(SessionId session) {
+    const auto found = sessions.find(session);
+    return found == sessions.end() ? nullptr : &found->second;
+  }
+};
+
+/// Sends goodbye with a reason and forgets the session. Unknown sessions are allowed.
+void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text);
+/// Forgets a session that is gone.
+void forget_session(WorldState& world, SessionId session);
+/// Sends a message the session must not miss: closes the session if its queue is full. True if it is queued.
+bool send_or_close(WorldState& world, SessionId session, const Message& message);
+/// Sends a message that a later one of its kind replaces: a full queue only counts.
+bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message);
+
+}  // namespace runstone
