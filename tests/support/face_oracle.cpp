@@ -225,10 +225,11 @@ std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {
   for (auto& plane : planes) {
     Cells& cells = plane.second;
     while (!cells.empty()) {
-      const auto [corner, material] = *cells.begin();
-      const auto [v0, u0] = corner;
+      const Material material = cells.begin()->second;
+      const int v0 = cells.begin()->first.first;
+      const int u0 = cells.begin()->first.second;
       // Cells of the row from u0 on that are open and of this material, up to `most`.
-      const auto open_width = [&cells, u0 = u0, material = material](int v, int most) {
+      const auto open_width = [&cells, u0, material](int v, int most) {
         int width = 0;
         for (; width < most; ++width) {
           const auto cell = cells.find({v, u0 + width});

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "common/mesh/rdm/divider.hpp"
-#include "common/runs/layer.hpp"
 #include "common/runs/run_cursor.hpp"
 
 namespace runstone::rdm {
@@ -17,7 +16,6 @@ class Appender {
       : visibility_(visibility), out_(out) {
     out_.clear();
   }
-  std::uint32_t filled() const { return out_.empty() ? 0 : out_.back().end; }
   void append_to(std::uint32_t end, Material material) {
     if (!out_.empty() && out_.back().material == material) {
       out_.back().end = end;
@@ -71,6 +69,29 @@ void fast_layer(const Runs& runs, OrderedExtent e, std::uint32_t at, Appender& o
   }
 }
 
+/// Swaps the two axes of a layer with rows of `row_length`, by way of its materials in `layer`.
+void transpose(std::uint32_t row_length, const VisibilityTable& visibility, std::vector<Material>& layer,
+               std::vector<MeshRun>& runs) {
+  const std::uint32_t area = runs.back().end;
+  const std::uint32_t rows = area / row_length;
+  layer.resize(area);
+  std::uint32_t i = 0;
+  std::uint32_t u = 0;
+  std::uint32_t to = 0;  // place of voxel i in the turned layer: row + u * rows
+  for (const MeshRun& run : runs) {
+    for (; i < run.end; ++i) {
+      layer[to] = run.material;
+      to += rows;
+      if (++u == row_length) {
+        u = 0;
+        to -= area - 1;
+      }
+    }
+  }
+  Appender appender(visibility, runs);
+  for (i = 0; i < area; ++i) appender.append_to(i + 1, layer[i]);
+}
+
 }  // namespace
 
 void chunk_runs(const RunChunk& chunk, const VisibilityTable& visibility, std::vector<MeshRun>& out) {
@@ -88,15 +109,6 @@ void layer_runs(const RunChunk& chunk, Axis axis, std::uint32_t at, Axis u_axis,
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   const std::array<Axis, 3> axes = axes_of(chunk.order);
   Appender appender(visibility, out);
-
-  if (u_axis != (axis == axes[0] ? axes[1] : axes[0]) && !chunk.is_uniform()) {
-    const auto sides = chunk.extent.sides();
-    const std::uint32_t area = chunk.volume() / sides[static_cast<std::size_t>(axis)];
-    layer.resize(area);
-    read_layer(chunk, axis, at, u_axis, layer);
-    for (std::uint32_t i = 0; i < area; ++i) appender.append_to(i + 1, layer[i]);
-    return;
-  }
   chunk.runs.visit([&](const auto& runs) {
     if (axis == axes[2]) {
       slow_layer(runs, e, at, appender);
@@ -106,6 +118,8 @@ void layer_runs(const RunChunk& chunk, Axis axis, std::uint32_t at, Axis u_axis,
       fast_layer(runs, e, at, appender);
     }
   });
+  const Axis lower = axis == axes[0] ? axes[1] : axes[0];
+  if (u_axis != lower && out.size() > 1) transpose(axis == axes[0] ? e.m : e.f, visibility, layer, out);
 }
 
 }  // namespace runstone::rdm

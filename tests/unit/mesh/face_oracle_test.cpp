@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
+#include <utility>
 
 #include "common/mesh/quad.hpp"
 #include "tests/support/mesh_scene.hpp"
@@ -21,7 +22,8 @@ QuadLayers layers_of(std::vector<Quad> quads) {
     return static_cast<std::size_t>(q.direction) * kSideMax +
            at.at(static_cast<std::size_t>(axis_of(q.direction)));
   };
-  std::stable_sort(quads.begin(), quads.end(), [&](Quad a, Quad b) { return bin(a) < bin(b); });
+  std::sort(quads.begin(), quads.end(),
+            [&](Quad a, Quad b) { return std::pair(bin(a), a) < std::pair(bin(b), b); });
   QuadLayers out;
   out.quads = quads;
   for (std::size_t i = 0; i < out.first.size(); ++i) {
