@@ -50,7 +50,8 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   const auto offers = own_.resume(opening.decided, {opening.epoch, opening.head});
   for (auto& [key, entry] : entries_) {
     for (Pending& pending : entry.pending) {
-      pending.until_snapshot = pending.seq <= opening.decided;
+      const OwnEdit* own = own_.find(pending.seq);
+      pending.until_snapshot = own == nullptr || own->decided;
       pending.decided_at = 0;
     }
   }
@@ -184,16 +185,12 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   Entry& entry = entry_for(snapshot.key);
   if (entry.confirmed) {
     const Version held = entry.confirmed->version;
-    const bool damaged_or_newer =
-        snapshot.chunk.version > held || (entry.awaiting && snapshot.chunk.version == held);
-    if (!damaged_or_newer) {
-      if (snapshot.chunk.version < held) {
-        ++counters_.snapshots_stale;
-        return;
-      }
-      // Equal version: nothing new, but it settles what was answered while we were away.
-      std::erase_if(entry.pending, [](const Pending& p) { return p.until_snapshot; });
-      settle(snapshot.key, entry, true, arrival.now_us);
+    const bool repairs = entry.awaiting && snapshot.chunk.version == held;
+    if (snapshot.chunk.version <= held && !repairs) {
+      if (snapshot.chunk.version < held) ++counters_.snapshots_stale;
+      // Nothing new, but what was answered while we could not listen is in here, and so in what we hold.
+      const auto settled = std::erase_if(entry.pending, [](const Pending& p) { return p.until_snapshot; });
+      if (settled != 0) show(snapshot.key, entry, predict(snapshot.key, entry), {});
       return;
     }
   } else {
