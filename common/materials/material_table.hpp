@@ -1,8 +1,10 @@
-// MaterialTable: what a material id means. A data file (TOML), as the thesis' table (7.4): row i describes id i,
-// and the table does not change while a world is open. Id 0 is always "air", empty.
+// MaterialTable: what a material id means. A data file (TOML), as the thesis' table (7.4): row i describes id
+// i, and the table does not change while a world is open. Id 0 is always "air", empty.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,28 +17,29 @@
 
 namespace runstone {
 
-/// empty: never drawn, hides nothing. opaque: hides the faces behind it. transparent: drawn in the blended pass;
-/// equal transparent materials hide the faces between them, different ones do not.
+/// empty: never drawn, hides nothing. opaque: hides the faces behind it. transparent: drawn in the blended
+/// pass; equal transparent materials hide the faces between them, different ones do not.
 enum class Visibility : std::uint8_t { empty = 0, opaque = 1, transparent = 2 };
 
 /// How a generator turns this material into a layer of terrain (thesis 7.4 and figure 7.21).
-/// Units are voxels; frequency is cycles per voxel. The thesis' z is up, ours is y.
+/// Units are voxels; frequency is cycles per voxel. The thesis' z is up, ours is y. The surface of a column
+/// lies at distance + elevation * N, N a fractal noise in [-1, 1].
 struct SurfaceRule {
   std::int32_t seed = 1;
-  double elevation = 0;       // noise amplitude, -10000 .. 10000
-  double distance = 0;        // mean height above sea level (y = 0), -10000 .. 10000
-  double frequency = 0.007;   // 0 < f <= 1
+  double elevation = 0;      // noise amplitude, -10000 .. 10000
+  double distance = 0;       // mean height above sea level (y = 0), -10000 .. 10000
+  double frequency = 0.007;  // 0 < f <= 1
   friend bool operator==(const SurfaceRule&, const SurfaceRule&) = default;
 };
 
 struct GenerationRule {
-  SurfaceRule surface;                   // the material fills below this surface
-  std::optional<SurfaceRule> reversed;   // and, if given, only above this one ("reversed surface")
+  SurfaceRule surface;                  // the material fills below this surface
+  std::optional<SurfaceRule> reversed;  // and, if given, only above this one ("reversed surface")
   friend bool operator==(const GenerationRule&, const GenerationRule&) = default;
 };
 
 struct MaterialInfo {
-  std::string name;                               // unique, 1 .. 64 bytes of UTF-8
+  std::string name;  // unique, 1 .. 64 bytes of UTF-8 without control characters
   std::array<std::uint8_t, 4> colour{0, 0, 0, 255};  // sRGB and alpha; alpha < 255 only where transparent
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
@@ -67,16 +70,20 @@ class MaterialTable {
   std::optional<Material> find(std::string_view name) const;
   std::span<const MaterialInfo> rows() const { return rows_; }
 
-  /// Appends a row; fails on a bad or double name, or a full table.
+  /// Appends a row and returns its id. Fails with limit_exceeded when the table is full, and with bad_value
+  /// on a bad or double name, a see-through colour of an opaque material or a number outside its range. O(log
+  /// size).
   Result<Material> add(MaterialInfo info);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
 
  private:
   std::vector<MaterialInfo> rows_;
+  std::map<std::string, Material, std::less<>> ids_;  // row by name
 };
 
-/// Reads `[[material]]` tables; `file` is only for messages. See docs/materials.md for the keys.
+/// Reads `[[material]]` tables in id order, air first; `file` is only for messages. Unknown keys are errors.
+/// See docs/materials.md for the keys.
 Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file);
 
 /// The table as TOML that parse_material_table() reads back to an equal table.

@@ -1,0 +1,109 @@
+// Column: the materials of one vertical line of the world, painted interval by interval; later paint wins.
+// A handful of spans, never a voxel buffer.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/core/ids.hpp"
+#include "common/runs/run_builder.hpp"
+
+namespace runstone {
+
+class Column {
+ public:
+  struct Span {
+    std::int32_t end;  // one past; the span begins where the one before it ends
+    Material material;
+  };
+
+  /// Empties the column and sets its bounds. Requires y_min < y_max.
+  void reset(std::int32_t y_min, std::int32_t y_max) {
+    y_min_ = y_min;
+    spans_.assign(1, {y_max, kEmpty});
+  }
+
+  /// Sets [from, to), clipped to the bounds, to `material`. O(spans).
+  void paint(std::int32_t from, std::int32_t to, Material material) {
+    from = std::max(from, y_min_);
+    to = std::min(to, spans_.back().end);
+    if (from >= to) return;
+    next_.clear();
+    std::int32_t begin = y_min_;
+    bool painted = false;
+    for (const Span& span : spans_) {
+      if (begin < from) push(std::min(span.end, from), span.material);
+      if (!painted && span.end >= to) {
+        push(to, material);
+        painted = true;
+      }
+      if (span.end > to) push(span.end, span.material);
+      begin = span.end;
+    }
+    spans_.swap(next_);
+  }
+
+  /// Sets what is empty in [y_min, to) to `material`.
+  void flood(std::int32_t to, Material material) {
+    std::int32_t begin = y_min_;
+    next_.clear();
+    for (const Span& span : spans_) {
+      if (span.material == kEmpty && begin < to) {
+        push(std::min(span.end, to), material);
+      }
+      if (span.material != kEmpty || span.end > to) push(span.end, span.material);
+      begin = span.end;
+    }
+    spans_.swap(next_);
+  }
+
+  /// Highest non-empty voxel + 1, or y_min if there is none.
+  std::int32_t top() const {
+    for (std::size_t i = spans_.size(); i-- > 0;) {
+      if (spans_[i].material != kEmpty) return spans_[i].end;
+    }
+    return y_min_;
+  }
+
+  /// Material at height y; empty out of bounds. O(spans).
+  Material at(std::int32_t y) const {
+    if (y < y_min_) return kEmpty;
+    for (const Span& span : spans_) {
+      if (y < span.end) return span.material;
+    }
+    return kEmpty;
+  }
+
+  /// Appends the `count` voxels from y = `from` upwards; what is out of bounds is empty.
+  void emit(std::int32_t from, std::uint32_t count, RunBuilder& out) const {
+    const std::int32_t to = from + static_cast<std::int32_t>(count);
+    std::int32_t at = from;
+    const auto until = [&](std::int32_t end, Material material) {
+      end = std::min(end, to);
+      if (end <= at) return;
+      out.append(static_cast<std::uint32_t>(end - at), material);
+      at = end;
+    };
+    until(y_min_, kEmpty);
+    for (const Span& span : spans_) until(span.end, span.material);
+    until(to, kEmpty);
+  }
+
+ private:
+  /// Appends to the list in the making; empty spans vanish and equal neighbours merge.
+  void push(std::int32_t end, Material material) {
+    if (!next_.empty() && end <= next_.back().end) return;
+    if (next_.empty() && end <= y_min_) return;
+    if (!next_.empty() && next_.back().material == material) {
+      next_.back().end = end;
+    } else {
+      next_.push_back({end, material});
+    }
+  }
+
+  std::int32_t y_min_ = 0;
+  std::vector<Span> spans_, next_;
+};
+
+}  // namespace runstone

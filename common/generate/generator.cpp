@@ -1,0 +1,28 @@
+#include "common/generate/generator.hpp"
+
+#include "common/generate/flat_generator.hpp"
+#include "common/generate/generator_parameters.hpp"
+#include "common/generate/terrain_generator.hpp"
+
+namespace runstone {
+
+Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin, const MaterialTable& materials) {
+  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain") {
+    return fail(ErrorCode::not_found, "generator name is unknown to this build");
+  }
+  if (pin.version != 1) return fail(ErrorCode::bad_version, "generator version is unknown to this build");
+  if (pin.name == "empty") {
+    if (!pin.parameters.empty()) return fail(ErrorCode::bad_value, "generator \"empty\" takes no parameters");
+    return FlatGenerator::make_empty();
+  }
+  if (pin.name == "flat") {
+    const auto parameters = parse_flat_parameters(pin.parameters);
+    if (!parameters) return Unexpected<Error>{parameters.error()};
+    return FlatGenerator::make(*parameters, materials);
+  }
+  const auto parameters = parse_terrain_parameters(pin.parameters);
+  if (!parameters) return Unexpected<Error>{parameters.error()};
+  return TerrainGenerator::make(pin.seed, *parameters, materials);
+}
+
+}  // namespace runstone

@@ -1,0 +1,51 @@
+// Parameters of the generators, as a world's pin keeps them: canonical TOML with one `key = value` a line,
+// only the keys that differ from the default, in the order below. Heights are voxels, within kHeightMin ..
+// kHeightMax.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+inline constexpr std::int32_t kHeightMin = -100000;
+inline constexpr std::int32_t kHeightMax = 100000;
+
+/// "flat": from the top one voxel of `surface`, `filling_depth` of `filling`, and `ground` down to y_min.
+struct FlatParameters {
+  std::int32_t height = 0;         // y of the first empty voxel
+  std::int32_t y_min = -64;        // y of the lowest voxel; at most height
+  std::int32_t filling_depth = 3;  // 0 .. 1000
+  std::string surface = "grass";
+  std::string filling = "dirt";
+  std::string ground = "stone";
+  friend bool operator==(const FlatParameters&, const FlatParameters&) = default;
+};
+
+/// "terrain": the table's generation rules, with a sea and what water and height do to the cover.
+struct TerrainParameters {
+  std::int32_t sea_level =
+      38;  // y of the first voxel above the sea; the rules' distances stay relative to y = 0
+  std::int32_t y_min = -64;       // y of the lowest voxel; nothing lies below
+  std::string water = "water";    // fills every empty voxel below sea_level; "" for a dry world
+  std::string beach = "sand";     // covers columns that end at most beach_height above the sea; "" for none
+  std::int32_t beach_height = 3;  // -1000 .. 1000
+  std::string rock = "stone";     // covers columns that end above rock_level; "" for none
+  std::int32_t rock_level = 60;
+  std::string peak = "snow";  // topmost voxel of columns that end above peak_level; "" for none
+  std::int32_t peak_level = 68;
+  friend bool operator==(const TerrainParameters&, const TerrainParameters&) = default;
+};
+
+/// Fail with bad_value on bytes that are no TOML, an unknown key, a wrong type or a number outside its range.
+/// Empty text gives the defaults.
+Result<FlatParameters> parse_flat_parameters(std::string_view toml);
+Result<TerrainParameters> parse_terrain_parameters(std::string_view toml);
+
+/// The canonical text: equal parameters have equal text, and the parse of it gives them back.
+std::string to_toml(const FlatParameters& parameters);
+std::string to_toml(const TerrainParameters& parameters);
+
+}  // namespace runstone

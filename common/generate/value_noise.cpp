@@ -1,0 +1,105 @@
+#include "common/generate/value_noise.hpp"
+
+#include <algorithm>
+
+#include "common/core/assert.hpp"
+#include "common/core/hash.hpp"
+
+namespace runstone {
+namespace {
+
+/// Cells that kSideMax columns can touch at the highest frequency, 4, and the far corner of the last one.
+constexpr std::size_t kCornersMax = 4 * kSideMax + 2;
+
+/// Lattice value in [-1, 1), a multiple of 2^-23 and so exact in a double.
+double corner_value(std::uint64_t key, std::int64_t i, std::int64_t k) {
+  const std::uint64_t cell =
+      (static_cast<std::uint64_t>(i) & 0xffffffffU) | (static_cast<std::uint64_t>(k) << 32);
+  const auto top = static_cast<std::int64_t>(mix64(key ^ cell) >> 40);
+  return static_cast<double>(top - (1 << 23)) * 0x1p-23;
+}
+
+/// 6t^5 - 15t^4 + 10t^3: 0 to 1 with two vanishing derivatives at both ends.
+double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
+
+/// A lattice coordinate as its cell and the fade inside it.
+struct Place {
+  std::int64_t cell;
+  double fade;
+};
+
+Place place_of(std::int32_t voxel, double frequency, double shift) {
+  const double at = static_cast<double>(voxel) * frequency + shift;
+  auto cell = static_cast<std::int64_t>(at);  // towards zero: one too high for negative fractions
+  cell -= static_cast<std::int64_t>(static_cast<double>(cell) > at);
+  return {cell, fade(at - static_cast<double>(cell))};
+}
+
+}  // namespace
+
+ValueNoise::ValueNoise(std::uint64_t seed, double frequency) : octaves_{} {
+  RUNSTONE_ASSERT(frequency > 0 && frequency <= 1);
+  SplitMix64 keys(seed);
+  double weight = 4.0 / 7.0;  // 4/7 + 2/7 + 1/7: the sum stays in [-1, 1]
+  for (Octave& octave : octaves_) {
+    octave.key = keys.next();
+    octave.frequency = frequency;
+    octave.weight = weight;
+    octave.shift_x = static_cast<double>(keys.below(1024)) * 0x1p-10;
+    octave.shift_z = static_cast<double>(keys.below(1024)) * 0x1p-10;
+    frequency *= 2;
+    weight *= 0.5;
+  }
+}
+
+void ValueNoise::fill(std::int32_t x, std::int32_t z, std::uint32_t width, std::uint32_t depth,
+                      std::span<double> out) const {
+  RUNSTONE_ASSERT(width <= kSideMax && depth <= kSideMax && out.size() == std::size_t{width} * depth);
+  std::fill(out.begin(), out.end(), 0.0);
+  for (const Octave& octave : octaves_) add_octave(octave, x, z, width, depth, out);
+}
+
+double ValueNoise::at(std::int32_t x, std::int32_t z) const {
+  std::array<double, 1> out{};
+  fill(x, z, 1, 1, out);
+  return out[0];
+}
+
+void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,
+                            std::uint32_t depth, std::span<double> out) const {
+  if (width == 0 || depth == 0) return;
+  std::array<std::uint32_t, kSideMax> corner;  // of each column along x, from the first cell touched
+  std::array<double, kSideMax> fade_x;
+  const std::int64_t first = place_of(x, octave.frequency, octave.shift_x).cell;
+  for (std::uint32_t i = 0; i < width; ++i) {
+    const Place place = place_of(x + static_cast<std::int32_t>(i), octave.frequency, octave.shift_x);
+    corner[i] = static_cast<std::uint32_t>(place.cell - first);
+    fade_x[i] = place.fade;
+  }
+  const std::size_t corners = std::size_t{corner[width - 1]} + 2;
+  RUNSTONE_ASSERT(corners <= kCornersMax);
+
+  // Terrain frequencies put dozens of columns into one cell: the two lattice rows around z change rarely, and
+  // the blend along z is done once per corner instead of once per column.
+  std::array<double, kCornersMax> near_row, far_row, row;
+  std::int64_t loaded = 0;
+  for (std::uint32_t k = 0; k < depth; ++k) {
+    const Place place = place_of(z + static_cast<std::int32_t>(k), octave.frequency, octave.shift_z);
+    if (k == 0 || place.cell != loaded) {
+      for (std::size_t c = 0; c < corners; ++c) {
+        const std::int64_t i = first + static_cast<std::int64_t>(c);
+        near_row[c] = corner_value(octave.key, i, place.cell);
+        far_row[c] = corner_value(octave.key, i, place.cell + 1);
+      }
+      loaded = place.cell;
+    }
+    for (std::size_t c = 0; c < corners; ++c) row[c] = near_row[c] + (far_row[c] - near_row[c]) * place.fade;
+    double* line = out.data() + std::size_t{k} * width;
+    for (std::uint32_t i = 0; i < width; ++i) {
+      const double left = row[corner[i]];
+      line[i] += octave.weight * (left + (row[corner[i] + 1] - left) * fade_x[i]);
+    }
+  }
+}
+
+}  // namespace runstone

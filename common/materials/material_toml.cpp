@@ -1,0 +1,258 @@
+// The text form of a material table, both ways. The only file of this module that sees a TOML library.
+#include <toml++/toml.h>
+
+#include <charconv>
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include "common/materials/material_table.hpp"
+
+namespace runstone {
+
+std::string TextError::message() const {
+  std::string out = file;
+  if (line != 0) out += ":" + std::to_string(line);
+  if (!key.empty()) out += ": " + key;
+  return out + ": " + what;
+}
+
+namespace {
+
+constexpr const char* kVisibilityNames[] = {"empty", "opaque", "transparent"};
+
+/// The first error wins; every read after it does nothing that matters.
+class TableReader {
+ public:
+  explicit TableReader(std::string_view file) : file_(file) {}
+
+  bool failed() const { return error_.has_value(); }
+  Unexpected<TextError> error() const { return {*error_}; }
+
+  void reject(const toml::node& node, std::string key, std::string what) {
+    reject_line(static_cast<std::uint32_t>(node.source().begin.line), std::move(key), std::move(what));
+  }
+  void reject_line(std::uint32_t line, std::string key, std::string what) {
+    if (!error_) error_ = TextError{file_, line, std::move(key), std::move(what)};
+  }
+
+  void only_keys(const toml::table& table, const std::string& path,
+                 std::initializer_list<std::string_view> known) {
+    for (const auto& [key, node] : table) {
+      bool found = false;
+      for (const auto name : known) found = found || key.str() == name;
+      if (!found) {
+        reject_line(static_cast<std::uint32_t>(key.source().begin.line), path + "." + std::string(key.str()),
+                    "unknown key");
+      }
+    }
+  }
+
+  std::optional<std::string> text(const toml::table& table, const std::string& path, std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return std::nullopt;
+    if (const auto* value = node->as_string()) return value->get();
+    reject(*node, path + "." + std::string(key), "must be a string");
+    return std::nullopt;
+  }
+
+  double number(const toml::table& table, const std::string& path, std::string_view key, double otherwise) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    if (const auto* value = node->as_floating_point()) return value->get();
+    if (const auto* value = node->as_integer()) return static_cast<double>(value->get());
+    reject(*node, path + "." + std::string(key), "must be a number");
+    return otherwise;
+  }
+
+  std::array<std::uint8_t, 4> colour(const toml::table& table, const std::string& path) {
+    const auto written = text(table, path, "colour");
+    std::array<std::uint8_t, 4> out{0, 0, 0, 255};
+    if (!written) {
+      reject(table, path + ".colour", "is missing");
+      return out;
+    }
+    const std::string& s = *written;
+    bool good = (s.size() == 7 || s.size() == 9) && s[0] == '#';
+    for (std::size_t i = 1; good && i < s.size(); i += 2) {
+      const auto [end, status] = std::from_chars(&s[i], &s[i] + 2, out[i / 2], 16);
+      good = status == std::errc{} && end == &s[i] + 2;
+    }
+    if (!good) reject(*table.get("colour"), path + ".colour", "must be \"#rrggbb\" or \"#rrggbbaa\"");
+    return out;
+  }
+
+  Visibility visibility(const toml::table& table, const std::string& path) {
+    const auto written = text(table, path, "visibility");
+    if (!written) return Visibility::opaque;
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      if (*written == kVisibilityNames[i]) return static_cast<Visibility>(i);
+    }
+    reject(*table.get("visibility"), path + ".visibility", R"(must be "empty", "opaque" or "transparent")");
+    return Visibility::opaque;
+  }
+
+  std::optional<SurfaceRule> surface(const toml::table& table, const std::string& path,
+                                     std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return std::nullopt;
+    const std::string here = path + "." + std::string(key);
+    const toml::table* rule = node->as_table();
+    if (rule == nullptr) {
+      reject(*node, here, "must be a table");
+      return std::nullopt;
+    }
+    only_keys(*rule, here, {"seed", "elevation", "distance", "frequency"});
+    SurfaceRule out;
+    if (const toml::node* seed = rule->get("seed")) {
+      const auto* value = seed->as_integer();
+      if (value == nullptr || value->get() < INT32_MIN || value->get() > INT32_MAX) {
+        reject(*seed, here + ".seed", "must be an integer of 32 bits");
+      } else {
+        out.seed = static_cast<std::int32_t>(value->get());
+      }
+    }
+    out.elevation = number(*rule, here, "elevation", out.elevation);
+    out.distance = number(*rule, here, "distance", out.distance);
+    out.frequency = number(*rule, here, "frequency", out.frequency);
+    return out;
+  }
+
+  std::optional<GenerationRule> generation(const toml::table& table, const std::string& path) {
+    const toml::node* node = table.get("generate");
+    if (node == nullptr) return std::nullopt;
+    const std::string here = path + ".generate";
+    const toml::table* rules = node->as_table();
+    if (rules == nullptr) {
+      reject(*node, here, "must be a table");
+      return std::nullopt;
+    }
+    only_keys(*rules, here, {"surface", "reversed"});
+    GenerationRule out;
+    if (const auto rule = surface(*rules, here, "surface")) {
+      out.surface = *rule;
+    } else {
+      reject(*rules, here + ".surface", "is missing");
+    }
+    out.reversed = surface(*rules, here, "reversed");
+    return out;
+  }
+
+ private:
+  std::string file_;
+  std::optional<TextError> error_;
+};
+
+void read_row(TableReader& in, const toml::table& row, const std::string& path, bool first,
+              MaterialTable& out) {
+  in.only_keys(row, path, {"name", "colour", "visibility", "generate"});
+  const auto name = in.text(row, path, "name");
+  if (!name) in.reject(row, path + ".name", "is missing");
+  MaterialInfo info;
+  info.visibility = in.visibility(row, path);
+  // What is never drawn needs no colour.
+  if (info.visibility != Visibility::empty || row.contains("colour")) {
+    info.colour = in.colour(row, path);
+  } else {
+    info.colour = {0, 0, 0, 0};
+  }
+  info.generation = in.generation(row, path);
+  if (in.failed()) return;
+  info.name = *name;
+  if (first) {
+    if (info != out[kEmpty]) {
+      in.reject(row, path, R"(the first material must be name = "air", visibility = "empty", nothing else)");
+    }
+    return;
+  }
+  if (const auto id = out.add(std::move(info)); !id) in.reject(row, path, id.error().what);
+}
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// Shortest decimal that reads back to the same double, always with a mark that makes it a TOML float.
+std::string decimal(double value) {
+  char buffer[32];
+  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  RUNSTONE_ASSERT(status == std::errc{});
+  std::string out(buffer, end);
+  if (out.find_first_of(".e") == std::string::npos) out += ".0";
+  return out;
+}
+
+std::string surface_text(const SurfaceRule& rule) {
+  return "{ seed = " + std::to_string(rule.seed) + ", elevation = " + decimal(rule.elevation) +
+         ", distance = " + decimal(rule.distance) + ", frequency = " + decimal(rule.frequency) + " }";
+}
+
+std::string colour_text(const std::array<std::uint8_t, 4>& colour) {
+  constexpr char kHex[] = "0123456789abcdef";
+  std::string out = "#";
+  const std::size_t count = colour[3] == 255 ? 3 : 4;
+  for (std::size_t i = 0; i < count; ++i) {
+    out += kHex[colour[i] >> 4];
+    out += kHex[colour[i] & 15];
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file) {
+  TableReader in(file);
+  toml::table root;
+  try {
+    root = toml::parse(toml);
+  } catch (const toml::parse_error& bad) {
+    in.reject_line(static_cast<std::uint32_t>(bad.source().begin.line), "", std::string(bad.description()));
+    return in.error();
+  }
+  for (const auto& [key, node] : root) {
+    if (key.str() != "material") {
+      in.reject_line(static_cast<std::uint32_t>(key.source().begin.line), std::string(key.str()),
+                     "unknown key");
+      return in.error();
+    }
+  }
+  MaterialTable out;
+  const toml::node* rows = root.get("material");
+  if (rows == nullptr) {
+    in.reject_line(0, "material", "is missing");
+    return in.error();
+  }
+  if (rows->as_array() == nullptr || !rows->is_array_of_tables()) {
+    in.reject(*rows, "material", "must be written as [[material]] tables");
+    return in.error();
+  }
+  std::size_t number = 0;
+  for (const toml::node& row : *rows->as_array()) {
+    read_row(in, *row.as_table(), "material[" + std::to_string(number) + "]", number == 0, out);
+    if (in.failed()) return in.error();
+    ++number;
+  }
+  return out;
+}
+
+std::string to_toml(const MaterialTable& table) {
+  std::string out;
+  for (const MaterialInfo& row : table.rows()) {
+    if (!out.empty()) out += '\n';
+    out += "[[material]]\nname = " + quoted(row.name) + "\n";
+    out += "colour = " + quoted(colour_text(row.colour)) + "\n";
+    out +=
+        std::string("visibility = \"") + kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
+    if (!row.generation) continue;
+    out += "[material.generate]\nsurface = " + surface_text(row.generation->surface) + "\n";
+    if (row.generation->reversed) out += "reversed = " + surface_text(*row.generation->reversed) + "\n";
+  }
+  return out;
+}
+
+}  // namespace runstone
