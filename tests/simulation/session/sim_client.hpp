@@ -1,0 +1,116 @@
+// SimClient: a ClientSession that connects, edits, looks around and loses its connection, in virtual time.
+#pragma once
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "catch2/catch.hpp"
+#include "client/replica/client_session.hpp"
+#include "tests/simulation/session/sim_server.hpp"
+
+namespace runstone::test {
+
+class SimClient {
+ public:
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number)
+      : time_(time), rng_(rng), server_(server), faults_(faults), session_(config(number)) {
+    pump();
+  }
+
+  ClientSession& session() { return session_; }
+  Replica& replica() { return session_.replica(); }
+
+  /// Submits one random edit; keeps it for the final reckoning.
+  void edit(const EditDescriptor& edit) {
+    const auto seq = session_.submit(edit, time_.now(), time_.now());
+    if (seq) submitted_[*seq] = edit;
+  }
+  void look(const View& view) { session_.set_view(view); }
+  void cut() {
+    if (connection_) connection_->cut();
+  }
+
+  ClientInstance instance() const { return instance_; }
+  const std::map<ClientSequence, EditDescriptor>& submitted() const { return submitted_; }
+  const std::map<ClientSequence, RejectReason>& rejected() const { return rejected_; }
+  const std::set<ClientSequence>& durable() const { return durable_; }
+  bool settled() {
+    return session_.is_open() && session_.loaded() && replica().own_edits().all().empty() &&
+           replica().awaiting_count() == 0;
+  }
+
+ private:
+  SessionConfig config(unsigned number) {
+    SessionConfig c;
+    KeySeed seed{};
+    seed[0] = static_cast<std::uint8_t>(number);
+    c.keys = key_pair_of(seed);
+    c.name = "replica " + std::to_string(number);
+    instance_ = c.instance = 1000 + number;
+    c.encodings = number % 2 == 0 ? 1 : 2;
+    c.view = {{0, 0, 0}, 2, 1};
+    return c;
+  }
+
+  /// Every few milliseconds: connect if needed, tick, send what waits, take the news.
+  void pump() {
+    time_.after(rng_.between(1000, 8000), [this] {
+      if (!connection_ && server_.running() && time_.now() >= retry_at_) connect();
+      if (connection_) {
+        session_.tick(time_.now());
+        for (const Message& message : session_.take_outgoing())
+          connection_->send_from_client(encode_message(message));
+        if (session_.wants_close()) FAIL("session closes: " << session_.end()->text);
+      }
+      for (const RejectNews& r : take_news().rejects) rejected_[r.seq] = r.reason;
+      pump();
+    });
+  }
+  ReplicaNews take_news() {
+    ReplicaNews news = replica().take_news();
+    durable_.insert(news.durable.begin(), news.durable.end());
+    return news;
+  }
+
+  void connect() {
+    ++link_;
+    SimEnd end;
+    end.on_message = [this](FrameClass c, ByteView bytes) -> Result<void> {
+      const std::uint16_t edge =
+          session_.welcome() && session_.state() != SessionState::greeting ? kSimEdge : 0;
+      auto message = decode_message(Sender::server, c, bytes, edge);
+      if (!message) FAIL("client cannot decode: " << message.error().what);
+      session_.receive(std::move(*message), {time_.now(), time_.now(), time_.now()});
+      return {};
+    };
+    end.on_bad_stream = [](const Error& error) { FAIL("client got a bad stream: " << error.what); };
+    end.on_drained = [] {};
+    end.on_closed = [this, link = link_] {
+      if (link != link_ || !connection_) return;
+      connection_.reset();
+      session_.disconnected();
+      retry_at_ = time_.now() + rng_.between(20'000, 500'000);
+    };
+    connection_ = server_.accept(faults_, std::move(end));
+    Nonce nonce{};
+    for (auto& b : nonce) b = static_cast<std::uint8_t>(rng_.next());
+    session_.connected(nonce, time_.now());
+  }
+
+  VirtualTime& time_;
+  SplitMix64& rng_;
+  SimServer& server_;
+  const LinkFaults& faults_;
+  ClientInstance instance_ = 0;
+  ClientSession session_;
+  std::shared_ptr<SimConnection> connection_;
+  std::uint64_t link_ = 0;
+  TimeUs retry_at_ = 0;
+  std::map<ClientSequence, EditDescriptor> submitted_;
+  std::map<ClientSequence, RejectReason> rejected_;
+  std::set<ClientSequence> durable_;
+};
+
+}  // namespace runstone::test
