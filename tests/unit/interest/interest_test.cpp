@@ -1,0 +1,179 @@
+#include "server/interest/interest.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "common/core/hash.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr CoordLimit kLimit{1000};
+
+ChunkKey key_of(std::int32_t x, std::int32_t y, std::int32_t z) { return {0, {x, y, z}}; }
+
+/// The definition, by trying every chunk near the view.
+std::set<ChunkCoord> cells_by_trying(const View& view, CoordLimit limit) {
+  std::set<ChunkCoord> cells;
+  for (std::int32_t x = view.centre.x - 12; x <= view.centre.x + 12; ++x) {
+    for (std::int32_t y = view.centre.y - 12; y <= view.centre.y + 12; ++y) {
+      for (std::int32_t z = view.centre.z - 12; z <= view.centre.z + 12; ++z) {
+        if (view.contains({x, y, z}) && limit.contains({x, y, z})) cells.insert({x, y, z});
+      }
+    }
+  }
+  return cells;
+}
+
+TEST_CASE("a view difference is exactly the chunks of one view outside of the other",
+          "[interest][property]") {
+  SplitMix64 rng(Catch::rngSeed());
+  const auto random_view = [&] {
+    return View{{rng.between(-6, 6), rng.between(-6, 6), rng.between(-6, 6)},
+                static_cast<std::uint8_t>(rng.below(7)),
+                static_cast<std::uint8_t>(rng.below(5))};
+  };
+  for (int step = 0; step < 300; ++step) {
+    const View a = random_view();
+    const View b = random_view();
+    const CoordLimit limit{step % 3 == 0 ? 5 : 1000};
+    CAPTURE(Catch::rngSeed(), step);
+    std::vector<ChunkCoord> found;
+    append_difference(a, b, limit, found);
+    std::set<ChunkCoord> expected = cells_by_trying(a, limit);
+    for (const ChunkCoord& c : cells_by_trying(b, limit)) expected.erase(c);
+    REQUIRE(std::set<ChunkCoord>(found.begin(), found.end()) == expected);
+    REQUIRE(found.size() == expected.size());
+
+    std::vector<ChunkCoord> all;
+    append_difference(a, std::nullopt, limit, all);
+    REQUIRE(all.size() == cells_by_trying(a, limit).size());
+  }
+}
+
+TEST_CASE("a view at the rim of the world ends there and does not overflow", "[interest]") {
+  const CoordLimit limit{kWorldLimit / 16};
+  std::vector<ChunkCoord> cells;
+  append_difference({{INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, std::nullopt, limit, cells);
+  CHECK(cells.empty());
+  append_difference({{limit.limit - 1, 0, 0}, 1, 0}, std::nullopt, limit, cells);
+  CHECK(cells.size() == 4);  // the fifth would lie outside
+}
+
+TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {
+  Interest interest(kLimit);
+  interest.open(1);
+  const View view{{3, -2, 5}, 5, 3};
+  interest.set_view(1, view);
+  std::vector<ChunkKey> order;
+  while (const auto key = interest.nearest_wanted(1)) {
+    order.push_back(*key);
+    REQUIRE(interest.set_state(1, *key, ChunkInterest::subscribed));
+  }
+  REQUIRE(order.size() == cells_by_trying(view, kLimit).size());
+  CHECK(order.front() == ChunkKey{0, view.centre});
+  CHECK(std::is_sorted(order.begin(), order.end(), [&](const ChunkKey& a, const ChunkKey& b) {
+    const auto da = distance2(view, a.at);
+    const auto db = distance2(view, b.at);
+    return da != db ? da < db : a < b;
+  }));
+}
+
+TEST_CASE("a moved view wants only the new shell and releases what it left", "[interest]") {
+  Interest interest(kLimit);
+  interest.open(1);
+  interest.set_view(1, {{0, 0, 0}, 8, 2});
+  while (const auto key = interest.nearest_wanted(1)) interest.set_state(1, *key, ChunkInterest::subscribed);
+  const std::size_t all = interest.find(1)->chunks().size();
+  CHECK(interest.take_released().empty());
+
+  interest.set_view(1, {{1, 0, 0}, 8, 2});
+  const SessionInterest& mine = *interest.find(1);
+  const std::size_t shell = mine.count(ChunkInterest::wanted);
+  CHECK(shell == 17 * 5);  // one new chunk per row of the disc and height
+  CHECK(mine.count(ChunkInterest::subscribed) == all - shell);
+  CHECK(interest.take_released().size() == shell);
+  CHECK_FALSE(interest.subscribes(1, key_of(-8, 0, 0)));
+  CHECK(interest.nearest_wanted(1) != key_of(9, 2, 0));
+}
+
+TEST_CASE("subscribers of a chunk are those who got it, until they leave", "[interest]") {
+  Interest interest(kLimit);
+  for (const SessionId session : {7U, 3U, 5U}) {
+    interest.open(session);
+    interest.set_view(session, {{0, 0, 0}, 1, 1});
+  }
+  const ChunkKey key = key_of(0, 1, 0);
+  interest.set_state(7, key, ChunkInterest::subscribed);
+  interest.set_state(3, key, ChunkInterest::waiting);
+  CHECK(std::vector<SessionId>(interest.subscribers(key).begin(), interest.subscribers(key).end()) ==
+        std::vector<SessionId>{7});
+  CHECK(interest.waiting(key) == std::vector<SessionId>{3});
+  interest.set_state(3, key, ChunkInterest::subscribed);
+  CHECK(interest.subscribers(key).size() == 2);
+  CHECK(interest.waiting(key).empty());
+  CHECK_FALSE(interest.set_state(5, key_of(9, 9, 9), ChunkInterest::subscribed));
+
+  interest.close(7);
+  CHECK(interest.take_released().empty());
+  interest.set_state(3, key, ChunkInterest::wanted);  // stale
+  CHECK(interest.take_released() == std::vector<ChunkKey>{key});
+  CHECK(interest.subscribers(key).empty());
+  CHECK_FALSE(interest.is_used(key));
+  CHECK(interest.nearest_wanted(3) == key_of(0, 0, 0));
+  interest.close(3);
+  interest.close(99);  // unknown: allowed
+}
+
+TEST_CASE("audits go round all subscribed chunks and no others", "[interest]") {
+  Interest interest(kLimit);
+  interest.open(1);
+  CHECK_FALSE(interest.next_for_audit(1).has_value());
+  interest.set_view(1, {{0, 0, 0}, 2, 0});
+  std::set<ChunkKey> subscribed;
+  for (int i = 0; i < 6; ++i) {
+    const ChunkKey key = *interest.nearest_wanted(1);
+    interest.set_state(1, key, ChunkInterest::subscribed);
+    subscribed.insert(key);
+  }
+  std::set<ChunkKey> seen;
+  for (int i = 0; i < 6; ++i) seen.insert(*interest.next_for_audit(1));
+  CHECK(seen == subscribed);
+}
+
+TEST_CASE("random views and states keep users and states in step", "[interest][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 1);
+  Interest interest(kLimit);
+  for (SessionId s = 1; s <= 4; ++s) interest.open(s);
+  for (int step = 0; step < 3000; ++step) {
+    const SessionId session = 1 + rng.below(4);
+    if (rng.below(20) == 0) {
+      interest.set_view(session, {{rng.between(-3, 3), rng.between(-1, 1), rng.between(-3, 3)},
+                                  static_cast<std::uint8_t>(rng.below(4)),
+                                  static_cast<std::uint8_t>(rng.below(2))});
+    } else {
+      const ChunkKey key = key_of(rng.between(-5, 5), rng.between(-2, 2), rng.between(-5, 5));
+      interest.set_state(session, key, static_cast<ChunkInterest>(rng.below(4)));
+    }
+    if (step % 50 != 0) continue;
+    for (SessionId s = 1; s <= 4; ++s) {
+      std::size_t subscribed = 0;
+      for (const auto& [key, state] : interest.find(s)->chunks()) {
+        const auto users = interest.subscribers(key);
+        const auto waiting = interest.waiting(key);
+        REQUIRE((std::find(users.begin(), users.end(), s) != users.end()) ==
+                (state == ChunkInterest::subscribed));
+        REQUIRE((std::find(waiting.begin(), waiting.end(), s) != waiting.end()) ==
+                (state == ChunkInterest::waiting));
+        subscribed += state == ChunkInterest::subscribed ? 1 : 0;
+      }
+      REQUIRE(interest.find(s)->count(ChunkInterest::subscribed) == subscribed);
+      const auto nearest = interest.nearest_wanted(s);
+      REQUIRE(nearest.has_value() == (interest.find(s)->count(ChunkInterest::wanted) > 0));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace runstone
