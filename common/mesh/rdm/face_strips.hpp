@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 
+#include "common/core/assert.hpp"
 #include "common/mesh/rdm/divider.hpp"
 #include "common/mesh/rdm/quad_bins.hpp"
 #include "common/mesh/rdm/strip_table.hpp"
@@ -182,6 +183,7 @@ class CrossStrips {
 
   /// The face of voxel `f` of line `line`, the `middle`-th of slow layer `slice`. Requires ascending lines.
   void add(std::uint32_t f, std::uint32_t middle, std::uint32_t slice, Material material) {
+    RUNSTONE_DASSERT(f < line_length_);
     // Slow layers are one number apart here, so that a strip cannot go on from one into the next.
     const std::uint32_t line = slice * (lines_ + 1) + middle;
     Column& column = columns_[f];

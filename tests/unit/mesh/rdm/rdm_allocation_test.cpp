@@ -1,0 +1,44 @@
+// The promise of RdmScratch: once its buffers and the output's have grown, meshing allocates nothing. Counted
+// by the global operator new of this test program.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "tests/support/mesh_scene.hpp"
+
+namespace {
+std::size_t allocations = 0;  // test programs are single-threaded
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace runstone::test {
+namespace {
+
+TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh]") {
+  SplitMix64 rng(23);
+  std::vector<MeshScene> scenes;
+  for (int i = 0; i < 40; ++i) scenes.push_back(random_scene(rng, 20));
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  const VisibilityTable& visibility = mesh_visibility();
+  for (const bool grown : {false, true}) {
+    const std::size_t before = allocations;
+    for (const MeshScene& scene : scenes) mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
+    if (grown) {
+      CHECK(allocations == before);
+    } else {
+      CHECK(allocations > before);  // the counter counts
+    }
+  }
+}
+
+}  // namespace
+}  // namespace runstone::test
