@@ -190,6 +190,18 @@ StoreResult<std::string> Database::text(std::string_view sql) {
   return std::string(statement->text(0));
 }
 
+std::optional<std::array<std::uint8_t, 100>> Database::header() {
+  // Through SQLite's own descriptor: closing another one would drop this process's locks on the file (POSIX).
+  sqlite3_file* file = nullptr;
+  std::array<std::uint8_t, 100> bytes{};
+  if (sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK ||
+      file->pMethods == nullptr ||
+      file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK) {
+    return std::nullopt;
+  }
+  return bytes;
+}
+
 StoreResult<Transaction> Transaction::begin(Database& database) {
   if (const auto begun = database.run("BEGIN IMMEDIATE"); !begun)
     return Unexpected<StoreError>{begun.error()};

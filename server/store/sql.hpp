@@ -2,8 +2,10 @@
 // Every failure becomes a StoreError that names the file. One thread at a time owns a Database and all of its
 // statements (opened without SQLite's own mutex).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -75,6 +77,8 @@ class Database {
   StoreResult<std::int64_t> integer(std::string_view sql);
   StoreResult<std::string> text(std::string_view sql);
 
+  /// First 100 bytes of the main file as they are on disk; nothing if it is shorter.
+  std::optional<std::array<std::uint8_t, 100>> header();
   /// The main file, as opened.
   const std::string& file() const { return file_; }
 

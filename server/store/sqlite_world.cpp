@@ -47,30 +47,30 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
   return {};
 }
 
+/// EXTRA is FULL for WAL; during creation it also syncs the folder after the rollback journal is deleted, so
+/// that a journal can never come back and undo a world that is already in use.
+const char* sync_pragma(bool sync) {
+  return sync ? "PRAGMA synchronous = EXTRA" : "PRAGMA synchronous = OFF";
+}
+
 StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool sync) {
   if (access == StoreAccess::read_only)
     return database.run("PRAGMA query_only = ON; PRAGMA trusted_schema = OFF;");
+  if (auto set = database.run(sync_pragma(sync)); !set) return set;
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return Unexpected<StoreError>{mode.error()};
   if (*mode != "wal")
     return failure(StoreError::Kind::io, database.file(), "the file system has no shared memory for WAL");
   // Overwritten rows of the log's tree hold nothing secret, so freed pages need not be zeroed.
-  if (auto set = database.run(
-          "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
-      !set) {
-    return set;
-  }
-  return database.run(sync ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = OFF");
+  return database.run(
+      "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
 }
 
 StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta, bool sync) {
   // The schema is committed in rollback mode and WAL comes afterwards: marks and tables then stand in the
   // main file itself, where check_marks() looks, and a crash before the commit leaves a file without them.
-  if (auto set = database.run(sync ? "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;"
-                                   : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF;");
-      !set) {
-    return set;
-  }
+  if (auto set = database.run("PRAGMA journal_mode = DELETE"); !set) return set;
+  if (auto set = database.run(sync_pragma(sync)); !set) return set;
   auto transaction = sql::Transaction::begin(database);
   if (!transaction) return Unexpected<StoreError>{transaction.error()};
   if (auto made = create_schema(database); !made) return made;
@@ -99,6 +99,13 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   auto database = std::make_unique<sql::Database>(*std::move(opened));
   if (const auto set = set_pragmas(*database, access, options.sync); !set)
     return Unexpected<StoreError>{set.error()};
+  // The marks may be those of a creation that was cut and has only now been rolled back.
+  const auto id = database->integer("PRAGMA application_id");
+  if (!id) return Unexpected<StoreError>{id.error()};
+  if (*id != std::int64_t{kApplicationId}) {
+    return failure(StoreError::Kind::not_a_world, file,
+                   "its creation was interrupted; delete it and create the world again");
+  }
   auto meta_table = MetaTable::open(*database);
   if (!meta_table) return Unexpected<StoreError>{meta_table.error()};
   auto players = PlayerTable::open(*database);

@@ -32,9 +32,8 @@ inline constexpr std::uint32_t kStoreFormatVersion = 1;
 struct StoreError {
   enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked };
   Kind kind = Kind::io;
-  std::string file;  // the database
-  std::string
-      where;  // table and row, for example "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
+  std::string file;   // the database
+  std::string where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
   std::string what;
   std::string message() const;  // one line: "FILE: WHERE: WHAT"
 };

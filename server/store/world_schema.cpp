@@ -2,7 +2,9 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 namespace runstone {
 
@@ -69,19 +71,30 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
   };
-  auto header = sql::Database::open(file, sql::Database::Mode::header, vfs);
-  if (!header) return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + header.error().what);
-  const auto id = header->integer("PRAGMA application_id");
-  if (!id || *id != kApplicationId) return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
-  const auto version = header->integer("PRAGMA user_version");
-  if (!version) return Unexpected<StoreError>{version.error()};
-  if (*version > kStoreFormatVersion) {
+  auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
+  if (!database) return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
+  // The bytes themselves, not PRAGMAs: after a crash in the middle of a checkpoint the main file alone is no
+  // sound database (its WAL mends it), but these marks were on disk before the WAL existed and never change.
+  const auto header = database->header();
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  const auto big_endian = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | (*header)[i];
+    return value;
+  };
+  if (!header ||
+      !std::equal(kMagic.begin(), kMagic.end(), header->begin(),
+                  [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }) ||
+      big_endian(68) != kApplicationId) {
+    return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
+  }
+  const std::uint32_t version = big_endian(60);
+  if (version > kStoreFormatVersion) {
     return fail_as(StoreError::Kind::newer_version,
-                   "is of world format " + std::to_string(*version) + "; this program knows up to " +
+                   "is of world format " + std::to_string(version) + "; this program knows up to " +
                        std::to_string(kStoreFormatVersion) + ". Nothing was changed.");
   }
-  if (*version < 1)
-    return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(*version));
+  if (version < 1) return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
   return {};
 }
 

@@ -10,7 +10,7 @@
 namespace runstone {
 
 /// "RunS": PRAGMA application_id of every world. PRAGMA user_version holds kStoreFormatVersion.
-inline constexpr std::int32_t kApplicationId = 0x52756e53;
+inline constexpr std::uint32_t kApplicationId = 0x52756e53;
 
 /// Makes all tables and sets both marks, in the caller's transaction.
 StoreResult<void> create_schema(sql::Database& database);
