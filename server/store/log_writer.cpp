@@ -1,0 +1,145 @@
+#include "server/store/log_writer.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+
+LogWriter::LogWriter(Store& store, Callbacks callbacks, Limits limits)
+    : store_(store), callbacks_(std::move(callbacks)), limits_(limits), thread_([this] { run(); }) {}
+
+LogWriter::~LogWriter() { stop(); }
+
+bool LogWriter::has_room(std::size_t records) const {
+  const std::lock_guard guard(mutex_);
+  return !failed_ && !stopping_ && room_taken_ + records <= limits_.queued_records_max;
+}
+
+void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
+  {
+    const std::lock_guard guard(mutex_);
+    if (failed_ || stopping_) return;
+    RUNSTONE_ASSERT(room_taken_ + records.size() <= limits_.queued_records_max);
+    room_taken_ += records.size();
+    batches_.push_back({std::move(players), std::move(records)});
+  }
+  work_.notify_one();
+}
+
+bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint) {
+  {
+    const std::lock_guard guard(mutex_);
+    const std::size_t jobs = jobs_.size() + (job_in_hand_ ? 1 : 0);
+    if (failed_ || stopping_ || jobs >= limits_.snapshot_jobs_max) return false;
+    jobs_.push_back({std::move(chunks), checkpoint, 0});
+  }
+  work_.notify_one();
+  return true;
+}
+
+void LogWriter::stop() {
+  {
+    const std::lock_guard guard(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+LogWriter::Counters LogWriter::counters() const {
+  const std::lock_guard guard(mutex_);
+  Counters now = counters_;
+  now.queued_records = room_taken_;
+  return now;
+}
+
+LogWriter::Batch LogWriter::take_group() {
+  Batch group;
+  while (!batches_.empty()) {
+    Batch& next = batches_.front();
+    const bool first = group.players.empty() && group.records.empty();
+    if (!first && group.records.size() + next.records.size() > limits_.commit_records_max) break;
+    std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
+    std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
+    batches_.pop_front();
+  }
+  return group;
+}
+
+void LogWriter::run() {
+  std::optional<Job> job;
+  for (;;) {
+    Batch group;
+    {
+      std::unique_lock lock(mutex_);
+      work_.wait(lock, [&] { return job || !batches_.empty() || !jobs_.empty() || stopping_; });
+      group = take_group();
+      if (!job && !jobs_.empty()) {
+        job = std::move(jobs_.front());
+        jobs_.pop_front();
+        job_in_hand_ = true;
+      }
+      if (group.players.empty() && group.records.empty() && !job) {
+        if (stopping_ && batches_.empty()) return;
+        continue;  // a batch of nothing
+      }
+    }
+    if (!write(group)) return;
+    // After every slice the records that came meanwhile get their turn.
+    if (job && !write_slice(*job)) return;
+    if (job && job->written == job->chunks.size()) {
+      {
+        const std::lock_guard guard(mutex_);
+        job_in_hand_ = false;
+      }
+      if (callbacks_.on_snapshots_saved)
+        callbacks_.on_snapshots_saved(std::move(job->chunks), job->checkpoint);
+      job.reset();
+    }
+  }
+}
+
+bool LogWriter::write(const Batch& group) {
+  if (group.players.empty() && group.records.empty()) return true;
+  if (const auto appended = store_.append(group.players, group.records); !appended) {
+    fail(appended.error());
+    return false;
+  }
+  {
+    const std::lock_guard guard(mutex_);
+    room_taken_ -= group.records.size();
+    counters_.commits += 1;
+    counters_.records += group.records.size();
+  }
+  if (!group.records.empty() && callbacks_.on_durable)
+    callbacks_.on_durable(group.records.back().version.seq);
+  return true;
+}
+
+bool LogWriter::write_slice(Job& job) {
+  const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
+  const std::span<const std::pair<ChunkKey, ChunkPtr>> slice(job.chunks.data() + job.written, count);
+  const bool last = job.written + count == job.chunks.size();
+  if (const auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved) {
+    fail(saved.error());
+    return false;
+  }
+  job.written += count;
+  const std::lock_guard guard(mutex_);
+  counters_.snapshots += count;
+  return true;
+}
+
+void LogWriter::fail(const StoreError& error) {
+  {
+    const std::lock_guard guard(mutex_);
+    failed_ = true;
+    batches_.clear();
+    jobs_.clear();
+  }
+  if (callbacks_.on_failed) callbacks_.on_failed(error);
+}
+
+}  // namespace runstone

@@ -1,0 +1,274 @@
+#include "server/store/log_writer.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <semaphore>
+
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+/// A store that keeps what it is given and can be held in the middle of a write.
+class FakeStore final : public Store {
+ public:
+  struct Commit {
+    std::vector<PlayerRow> players;
+    std::vector<EditRecord> records;
+    std::size_t chunks = 0;
+    std::optional<Sequence> checkpoint;
+  };
+
+  StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override {
+    return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
+  }
+  StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                   std::optional<Sequence> checkpoint) override {
+    return commit({{}, {}, chunks.size(), checkpoint});
+  }
+  StoreResult<void> commit(Commit commit) {
+    entered.release();
+    gate.acquire();
+    if (fail_at == commits.size())
+      return Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}};
+    commits.push_back(std::move(commit));
+    return {};
+  }
+  /// Lets all writes pass from now on.
+  void open_gate() { gate.release(1 << 20); }
+  Sequence last() const {
+    Sequence seq = 0;
+    for (const Commit& c : commits) seq = c.records.empty() ? seq : c.records.back().version.seq;
+    return seq;
+  }
+
+  const WorldMeta& meta() const override { return meta_; }
+  const std::string& file() const override { return file_; }
+  StoreResult<Epoch> raise_epoch() override { return Epoch{1}; }
+  Epoch epoch() const override { return 1; }
+  StoreResult<Sequence> last_sequence() override { return last(); }
+  StoreResult<Sequence> checkpoint() override { return Sequence{0}; }
+  StoreResult<std::vector<PlayerRow>> players() override { return std::vector<PlayerRow>(); }
+  StoreResult<std::vector<HighWater>> high_waters() override { return std::vector<HighWater>(); }
+  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
+  StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }
+  StoreResult<void> read_log(Sequence, Sequence, const std::function<bool(const EditRecord&)>&) override {
+    return {};
+  }
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {
+    return std::vector<std::pair<ChunkKey, Version>>();
+  }
+  StoreResult<std::vector<ChunkKey>> base_keys() override { return std::vector<ChunkKey>(); }
+  StoreResult<void> check() override { return {}; }
+
+  std::counting_semaphore<> entered{0}, gate{0};
+  std::size_t fail_at = ~std::size_t{0};
+  std::vector<Commit> commits;  // read it after stop(), or while the writer waits at the gate
+
+ private:
+  WorldMeta meta_;
+  std::string file_ = "w";
+};
+
+LogWriter::SnapshotChunks chunks(std::size_t count) {
+  SplitMix64 rng(count);
+  LogWriter::SnapshotChunks out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.emplace_back(ChunkKey{0, {static_cast<std::int32_t>(i), 0, 0}}, sample_chunk(rng, {1, 1}));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("everything that queued during one commit goes into the next", "[store][log-writer]") {
+  FakeStore store;
+  SplitMix64 rng(1);
+  std::vector<Sequence> durable;
+  LogWriter writer(store, {[&](Sequence seq) { durable.push_back(seq); }, {}, {}});
+  writer.append({}, sample_records(rng, 1, 1, 1));
+  store.entered.acquire();  // the first commit is "on its way to the disk"
+  for (Sequence seq = 2; seq <= 10; ++seq)
+    writer.append({sample_player(static_cast<AuthorId>(seq))}, sample_records(rng, 1, seq, 1));
+  CHECK(writer.counters().queued_records == 10);
+  store.open_gate();
+  writer.stop();
+  REQUIRE(store.commits.size() == 2);
+  CHECK(store.commits[0].records.size() == 1);
+  CHECK(store.commits[1].records.size() == 9);
+  CHECK(store.commits[1].players.size() == 9);
+  CHECK(durable == std::vector<Sequence>{1, 10});
+  CHECK(writer.counters().commits == 2);
+  CHECK(writer.counters().records == 10);
+  CHECK(writer.counters().queued_records == 0);
+}
+
+TEST_CASE("a group ends before its limit, and a batch is never divided", "[store][log-writer]") {
+  FakeStore store;
+  SplitMix64 rng(2);
+  LogWriter::Limits limits;
+  limits.commit_records_max = 10;
+  LogWriter writer(store, {}, limits);
+  writer.append({}, sample_records(rng, 1, 1, 1));
+  store.entered.acquire();
+  writer.append({}, sample_records(rng, 1, 2, 6));
+  writer.append({}, sample_records(rng, 1, 8, 4));
+  writer.append({}, sample_records(rng, 1, 12, 25));
+  writer.append({}, sample_records(rng, 1, 37, 1));
+  store.open_gate();
+  writer.stop();
+  std::vector<std::size_t> sizes;
+  for (const auto& commit : store.commits) sizes.push_back(commit.records.size());
+  CHECK(sizes == std::vector<std::size_t>{1, 10, 25, 1});
+}
+
+TEST_CASE("a full queue says so until a commit has made room", "[store][log-writer]") {
+  FakeStore store;
+  SplitMix64 rng(3);
+  LogWriter::Limits limits;
+  limits.queued_records_max = 8;
+  std::counting_semaphore<> durable{0};
+  LogWriter writer(store, {[&](Sequence) { durable.release(); }, {}, {}}, limits);
+  CHECK(writer.has_room(8));
+  CHECK_FALSE(writer.has_room(9));
+  writer.append({}, sample_records(rng, 1, 1, 3));
+  store.entered.acquire();
+  CHECK(writer.has_room(5));  // what is being written still takes room
+  CHECK_FALSE(writer.has_room(6));
+  writer.append({}, sample_records(rng, 1, 4, 5));
+  CHECK(writer.has_room(0));
+  CHECK_FALSE(writer.has_room(1));
+  writer.append({sample_player(1)}, {});  // players always find room
+  store.gate.release();
+  durable.acquire();
+  CHECK(writer.has_room(3));
+  CHECK_FALSE(writer.has_room(4));
+  store.open_gate();
+  durable.acquire();
+  CHECK(writer.has_room(8));
+  writer.stop();
+  CHECK_FALSE(writer.has_room(1));
+  CHECK(store.last() == 8);
+}
+
+TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-writer]") {
+  FakeStore store;
+  SplitMix64 rng(4);
+  LogWriter::Limits limits;
+  limits.slice_chunks_max = 4;
+  std::size_t saved = 0;
+  std::optional<Sequence> checkpoint;
+  LogWriter writer(store,
+                   {{},
+                    [&](LogWriter::SnapshotChunks job, std::optional<Sequence> upto) {
+                      saved += job.size();
+                      checkpoint = upto;
+                    },
+                    {}},
+                   limits);
+  REQUIRE(writer.save_snapshots(chunks(10), 77));
+  store.entered.acquire();  // in the first slice
+  writer.append({}, sample_records(rng, 1, 1, 2));
+  store.open_gate();
+  writer.stop();
+  REQUIRE(store.commits.size() == 4);
+  CHECK(store.commits[0].chunks == 4);
+  CHECK(store.commits[1].records.size() == 2);
+  CHECK(store.commits[2].chunks == 4);
+  CHECK(store.commits[3].chunks == 2);
+  CHECK_FALSE(store.commits[0].checkpoint.has_value());  // only the whole job moves the checkpoint
+  CHECK_FALSE(store.commits[2].checkpoint.has_value());
+  CHECK(store.commits[3].checkpoint == Sequence{77});
+  CHECK(saved == 10);
+  CHECK(checkpoint == Sequence{77});
+  CHECK(writer.counters().snapshots == 10);
+}
+
+TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing", "[store][log-writer]") {
+  FakeStore store;
+  LogWriter::Limits limits;
+  limits.snapshot_jobs_max = 2;
+  std::vector<std::size_t> saved;
+  LogWriter writer(store, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
+                   limits);
+  REQUIRE(writer.save_snapshots(chunks(1), {}));
+  store.entered.acquire();
+  CHECK(writer.save_snapshots({}, 5));  // a job of no chunks moves the checkpoint alone
+  CHECK_FALSE(writer.save_snapshots(chunks(3), {}));
+  store.open_gate();
+  writer.stop();
+  CHECK(saved == std::vector<std::size_t>{1, 0});
+  REQUIRE(store.commits.size() == 2);
+  CHECK(store.commits[1].checkpoint == Sequence{5});
+}
+
+TEST_CASE("after a failure nothing more is written or acknowledged", "[store][log-writer]") {
+  FakeStore store;
+  store.fail_at = 1;
+  SplitMix64 rng(5);
+  std::vector<Sequence> durable;
+  std::vector<std::string> failures;
+  std::counting_semaphore<> failed{0};
+  LogWriter writer(store, {[&](Sequence seq) { durable.push_back(seq); },
+                           {},
+                           [&](StoreError error) {
+                             failures.push_back(error.message());
+                             failed.release();
+                           }});
+  writer.append({}, sample_records(rng, 1, 1, 2));
+  store.entered.acquire();
+  writer.append({}, sample_records(rng, 1, 3, 2));
+  REQUIRE(writer.save_snapshots(chunks(2), {}));
+  store.open_gate();
+  failed.acquire();
+  CHECK_FALSE(writer.has_room(0));
+  writer.append({}, sample_records(rng, 1, 5, 2));  // dropped: it will never be acknowledged
+  CHECK_FALSE(writer.save_snapshots(chunks(1), {}));
+  writer.stop();
+  CHECK(store.commits.size() == 1);
+  CHECK(durable == std::vector<Sequence>{2});
+  CHECK(failures == std::vector<std::string>{"w: disk full"});
+}
+
+TEST_CASE("batches from another thread arrive on disk in order", "[store][log-writer]") {
+  const TempFolder folder;
+  auto store = *create_world(folder.path(), sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  SplitMix64 rng(6);
+  const auto records = sample_records(rng, 1, 1, 3000);
+  std::atomic<Sequence> durable{0};
+  std::uint64_t backwards = 0, waits = 0;
+  {
+    LogWriter::Limits limits;
+    limits.queued_records_max = 64;
+    limits.commit_records_max = 32;
+    LogWriter writer(
+        *store, {[&](Sequence seq) { backwards += seq <= durable.exchange(seq) ? 1 : 0; }, {}, {}}, limits);
+    for (std::size_t at = 0; at < records.size();) {
+      const std::size_t count = std::min<std::size_t>(1 + rng.below(9), records.size() - at);
+      while (!writer.has_room(count)) {
+        ++waits;
+        std::this_thread::yield();
+      }
+      writer.append({}, {records.begin() + static_cast<std::ptrdiff_t>(at),
+                         records.begin() + static_cast<std::ptrdiff_t>(at + count)});
+      at += count;
+    }
+  }  // the destructor drains
+  CHECK(durable == 3000);
+  CHECK(backwards == 0);
+  CHECK(waits > 0);
+  std::vector<EditRecord> read;
+  REQUIRE(store
+              ->read_log(1, 3000,
+                         [&](const EditRecord& record) {
+                           read.push_back(record);
+                           return true;
+                         })
+              .has_value());
+  CHECK(read == records);
+}
