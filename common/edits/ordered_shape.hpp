@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -16,7 +17,8 @@ namespace runstone {
 /// Largest w with w * w <= v.
 constexpr std::uint32_t isqrt(std::uint32_t v) {
   std::uint32_t root = 0;
-  for (std::uint32_t bit = 1u << 15; bit != 0; bit >>= 1) {
+  if (v == 0) return 0;
+  for (std::uint32_t bit = 1u << ((std::bit_width(v) - 1) / 2); bit != 0; bit >>= 1) {
     const std::uint32_t trial = root | bit;
     if (static_cast<std::uint64_t>(trial) * trial <= v) root = trial;
   }

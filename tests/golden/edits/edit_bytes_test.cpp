@@ -1,0 +1,72 @@
+#include <catch2/catch.hpp>
+
+#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/edit_record.hpp"
+#include "tests/support/edit_oracle.hpp"
+
+// Bytes worked out by hand from docs/edit-log.md. They are stored in logs: a change here is a new kind or
+// version.
+namespace runstone::test {
+namespace {
+
+void check_bytes(const EditDescriptor& edit, const Bytes& golden) {
+  CAPTURE(edit);
+  CHECK(encode(edit) == golden);
+  const auto decoded = decode_descriptor(golden);
+  REQUIRE(decoded.has_value());
+  CHECK(*decoded == edit);
+}
+
+}  // namespace
+
+TEST_CASE("descriptor bytes of a set voxel are pinned", "[edits][golden]") {
+  check_bytes({SetVoxel{{1, -2, 3}}, {}, 300}, {0x01, 0x00, 0xac, 0x02, 0x02, 0x03, 0x06});
+  check_bytes({SetVoxel{{0, 0, 0}}, {MaskKind::only_empty, 0}, 0}, {0x01, 0x01, 0x00, 0x00, 0x00, 0x00});
+  check_bytes({SetVoxel{{-kWorldLimit, kWorldLimit - 1, 64}}, {}, 65535},
+              {0x01, 0x00, 0xff, 0xff, 0x03,              // material 65,535
+               0xff, 0xff, 0xff, 0xff, 0x03,              // zigzag(-2^29) = 2^30 - 1
+               0xfe, 0xff, 0xff, 0xff, 0x03, 0x80, 0x01}  // zigzag(2^29 - 1) = 2^30 - 2, then 128
+  );
+}
+
+TEST_CASE("descriptor bytes of a filled box are pinned", "[edits][golden]") {
+  check_bytes({FillBox{{{-1, 0, 100}, {0, 32, 4196}}}, {MaskKind::only_material, 65535}, 0},
+              {0x02, 0x03, 0xff, 0xff, 0x03,  // box, only_material 65,535
+               0x00,                          // removes
+               0x01, 0x00, 0xc8, 0x01,        // min: -1, 0, 100
+               0x00, 0x1f, 0xff, 0x1f});      // sides less one: 0, 31, 4095
+}
+
+TEST_CASE("descriptor bytes of a filled sphere are pinned", "[edits][golden]") {
+  check_bytes({FillSphere{{0, 64, -64}, 512}, {MaskKind::only_solid, 0}, 7},
+              {0x03, 0x02, 0x07, 0x00, 0x80, 0x01, 0x7f, 0x80, 0x04});
+  check_bytes({FillSphere{{5, 6, 7}, 0}, {}, 127}, {0x03, 0x00, 0x7f, 0x0a, 0x0c, 0x0e, 0x00});
+}
+
+TEST_CASE("record bytes and their checksum are pinned", "[edits][golden]") {
+  EditRecord record;
+  record.version = {2, 300};
+  record.op = {7, 0x0123456789abcdefULL, 5};
+  record.time_us = 1'700'000'000'000'000;
+  record.cause = Cause::rollback;
+  record.edit = {FillSphere{{0, 64, -64}, 3}, {MaskKind::only_solid, 0}, 7};
+  const Bytes golden = {
+      0x01,                                            // record version
+      0x02, 0xac, 0x02,                                // epoch 2, sequence 300
+      0x07,                                            // author
+      0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,  // instance, little-endian
+      0x05,                                            // client sequence
+      0x80, 0x80, 0xf2, 0x81, 0x83, 0x89, 0x85, 0x06,  // zigzag(1,700,000,000,000,000)
+      0x02,                                            // cause: rollback
+      0x05, 0x7a, 0x85, 0x01, 0x07, 0x07, 0x07,        // box: min -3, 61, -67, sides 7
+      0x08,                                            // descriptor length
+      0x03, 0x02, 0x07, 0x00, 0x80, 0x01, 0x7f, 0x03,  // descriptor
+  };
+  CHECK(encode_record(record) == golden);
+  const auto decoded = decode_record(golden);
+  REQUIRE(decoded.has_value());
+  CHECK(*decoded == record);
+  CHECK(record_checksum(record) == 0x9f9e4e01721d2aa3ULL);
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,89 @@
+#include <catch2/catch.hpp>
+
+#include <set>
+
+#include "common/edits/edit_geometry.hpp"
+#include "tests/support/edit_oracle.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+
+TEST_CASE("voxel counts and bounding boxes equal a count of single voxels", "[edits][property]") {
+  SplitMix64 rng{21 + Catch::rngSeed()};
+  for (int round = 0; round < 60; ++round) {
+    EditDescriptor edit = random_edit_near(rng, {-4, -4, -4}, Extent::cube(8));
+    if (auto* ball = std::get_if<FillSphere>(&edit.shape))
+      ball->radius = static_cast<std::uint16_t>(round % 24);
+    CAPTURE(Catch::rngSeed(), round, edit);
+    const auto voxels = oracle_voxels(edit, {}, 60);
+    REQUIRE(voxel_count(edit) == voxels.size());
+    VoxelBox tight{voxels.front(), voxels.front()};
+    for (const VoxelPos p : voxels) {
+      tight.min = {std::min(tight.min.x, p.x), std::min(tight.min.y, p.y), std::min(tight.min.z, p.z)};
+      tight.max = {std::max(tight.max.x, p.x + 1), std::max(tight.max.y, p.y + 1),
+                   std::max(tight.max.z, p.z + 1)};
+    }
+    REQUIRE(bounding_box(edit) == tight);
+  }
+}
+
+TEST_CASE("touched chunks are the chunks of the single voxels", "[edits][property]") {
+  SplitMix64 rng{22 + Catch::rngSeed()};
+  for (int round = 0; round < 60; ++round) {
+    EditDescriptor edit = random_edit_near(rng, {-4, -4, -4}, Extent::cube(8));
+    if (auto* ball = std::get_if<FillSphere>(&edit.shape))
+      ball->radius = static_cast<std::uint16_t>(rng.below(40));
+    CAPTURE(Catch::rngSeed(), round, edit);
+    for (const std::int32_t edge : {16, 32}) {
+      std::set<ChunkCoord> expected;  // ascends as the protocol does
+      for (const VoxelPos p : oracle_voxels(edit, {}, 60)) {
+        const auto chunk = [edge](std::int32_t c) { return (c + 64 * edge) / edge - 64; };
+        expected.insert({chunk(p.x), chunk(p.y), chunk(p.z)});
+      }
+      REQUIRE(touched_chunks(edit, edge) == std::vector<ChunkCoord>(expected.begin(), expected.end()));
+      REQUIRE(touched_chunks_bound(edit, edge) >= expected.size());
+    }
+  }
+}
+
+TEST_CASE("an edit touches a box when one of its voxels is inside", "[edits][property]") {
+  SplitMix64 rng{23 + Catch::rngSeed()};
+  for (int round = 0; round < 2000; ++round) {
+    const EditDescriptor edit = random_edit_near(rng, {}, Extent::cube(16));
+    const VoxelPos min{rng.between(-10, 26), rng.between(-10, 26), rng.between(-10, 26)};
+    const VoxelBox box{min,
+                       {min.x + rng.between(0, 5), min.y + rng.between(0, 5), min.z + rng.between(0, 5)}};
+    bool expected = false;
+    for (VoxelPos p = min; p.x < box.max.x; ++p.x) {
+      for (p.y = min.y; p.y < box.max.y; ++p.y) {
+        for (p.z = min.z; p.z < box.max.z; ++p.z) expected = expected || oracle_covers(edit, p);
+      }
+    }
+    CAPTURE(Catch::rngSeed(), round, edit);
+    REQUIRE(touches(edit, box) == expected);
+  }
+}
+
+TEST_CASE("spans are the maximal stretches of covered voxels in index order", "[edits][property]") {
+  SplitMix64 rng{24 + Catch::rngSeed()};
+  for (int round = 0; round < 3000; ++round) {
+    const Extent extent = random_extent(rng, 24);
+    const AxisOrder order = random_order(rng);
+    const VoxelPos origin{rng.between(-50, 50), rng.between(-50, 50), rng.between(-50, 50)};
+    const EditDescriptor edit = random_edit_near(rng, origin, extent);
+    CAPTURE(Catch::rngSeed(), round, edit, static_cast<int>(order));
+    std::vector<IndexSpan> expected;
+    const std::uint32_t volume = extent.volume();
+    for (std::uint32_t i = 0; i < volume; ++i) {
+      const VoxelPos p = dense_pos(extent, order, i);
+      if (!oracle_covers(edit, {origin.x + p.x, origin.y + p.y, origin.z + p.z})) continue;
+      if (expected.empty() || expected.back().last != i) expected.push_back({i, i});
+      ++expected.back().last;
+    }
+    std::vector<IndexSpan> spans;
+    append_spans(edit, origin, extent, order, spans);
+    REQUIRE(spans == expected);
+  }
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,191 @@
+#include <catch2/catch.hpp>
+
+#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/edit_record.hpp"
+#include "tests/support/edit_oracle.hpp"
+
+namespace runstone::test {
+namespace {
+
+const EditDescriptor kVoxel = {SetVoxel{{1, 2, 3}}, {}, 4};
+
+ErrorCode error_of(const EditDescriptor& edit) {
+  const auto result = validate(edit);
+  REQUIRE_FALSE(result.has_value());
+  return result.error().code;
+}
+
+ErrorCode decode_error(const Bytes& bytes) {
+  const auto result = decode_descriptor(bytes);
+  REQUIRE_FALSE(result.has_value());
+  return result.error().code;
+}
+
+EditRecord random_record(SplitMix64& rng) {
+  EditRecord record;
+  record.version = {static_cast<Epoch>(rng.next() >> rng.below(64)), (rng.next() >> rng.below(64)) | 1};
+  record.op = {static_cast<AuthorId>(rng.next() >> rng.below(64)), rng.next(), rng.next() >> rng.below(64)};
+  record.time_us = static_cast<TimeUs>(rng.next() >> rng.below(64));
+  record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
+  record.edit = random_edit_anywhere(rng);
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("descriptors at the limits are valid, one step beyond they are not", "[edits]") {
+  constexpr std::int32_t kLow = -kWorldLimit;
+  constexpr std::int32_t kEnd = kWorldLimit;
+  CHECK(validate({SetVoxel{{kLow, kEnd - 1, 0}}, {}, 1}).has_value());
+  CHECK(error_of({SetVoxel{{kLow - 1, 0, 0}}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({SetVoxel{{0, kEnd, 0}}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({SetVoxel{{0, 0, kEnd}}, {}, 1}) == ErrorCode::bad_value);
+
+  CHECK(validate({FillBox{{{kLow, 0, kEnd - 4096}, {kLow + 1, 4096, kEnd}}}, {}, 1}).has_value());
+  CHECK(error_of({FillBox{{{0, 0, 0}, {4097, 1, 1}}}, {}, 1}) == ErrorCode::limit_exceeded);
+  CHECK(error_of({FillBox{{{0, 0, 0}, {1, 0, 1}}}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({FillBox{{{0, 0, 1}, {1, 1, 0}}}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({FillBox{{{0, 0, kEnd - 1}, {1, 1, kEnd + 1}}}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({FillBox{{{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}}, {}, 1}) == ErrorCode::bad_value);
+
+  CHECK(validate({FillSphere{{kLow + 512, kEnd - 513, 0}, 512}, {}, 1}).has_value());
+  CHECK(error_of({FillSphere{{0, 0, 0}, 513}, {}, 1}) == ErrorCode::limit_exceeded);
+  CHECK(error_of({FillSphere{{kLow + 511, 0, 0}, 512}, {}, 1}) == ErrorCode::bad_value);
+  CHECK(error_of({FillSphere{{0, 0, kEnd - 512}, 512}, {}, 1}) == ErrorCode::bad_value);
+}
+
+TEST_CASE("a mask material belongs to the only_material mask alone", "[edits]") {
+  EditDescriptor edit = kVoxel;
+  edit.mask = {MaskKind::only_material, 9};
+  CHECK(validate(edit).has_value());
+  edit.mask.kind = MaskKind::only_solid;
+  CHECK(error_of(edit) == ErrorCode::bad_value);
+  edit.mask = {static_cast<MaskKind>(4), 0};
+  CHECK(error_of(edit) == ErrorCode::bad_value);
+}
+
+TEST_CASE("masks admit what their names say", "[edits]") {
+  const auto admits = [](MaskKind kind, Material material, Material present) {
+    return Mask{kind, material}.admits(present);
+  };
+  for (const Material present : std::initializer_list<Material>{0, 1, 7, 65535}) {
+    CHECK(admits(MaskKind::everything, 0, present));
+    CHECK(admits(MaskKind::only_empty, 0, present) == (present == 0));
+    CHECK(admits(MaskKind::only_solid, 0, present) == (present != 0));
+    CHECK(admits(MaskKind::only_material, 7, present) == (present == 7));
+  }
+}
+
+TEST_CASE("unknown kinds, long varints and out-of-range fields are rejected", "[edits]") {
+  CHECK(decode_error({}) == ErrorCode::truncated);
+  for (const std::uint8_t tag : Bytes{0, 4, 5, 6, 7, 255}) {
+    CHECK(decode_error({tag, 0, 4, 0, 0, 0}) == ErrorCode::unknown_kind);
+  }
+  CHECK(decode_error({1, 4, 4, 0, 0, 0}) == ErrorCode::unknown_kind);
+  CHECK(decode_error({1, 0, 0x84, 0x00, 0, 0, 0}) == ErrorCode::not_canonical);
+  CHECK(decode_error({1, 0, 0x80, 0x80, 0x04, 0, 0, 0}) == ErrorCode::bad_value);  // material 65,536
+  CHECK(decode_error({1, 0, 4, 0x80, 0x80, 0x80, 0x80, 0x04, 0, 0}) == ErrorCode::bad_value);  // x = 2^29
+  CHECK(decode_error({2, 0, 4, 0, 0, 0, 0x80, 0x20, 0, 0}) == ErrorCode::bad_value);           // side 4097
+  CHECK(decode_error({3, 0, 4, 0, 0, 0, 0x81, 0x04}) == ErrorCode::bad_value);                 // radius 513
+  // Every field in range, yet the box ends beyond the world.
+  CHECK(decode_error({2, 0, 4, 0xfe, 0xff, 0xff, 0xff, 0x03, 0, 0, 1, 0, 0}) == ErrorCode::bad_value);
+}
+
+TEST_CASE("descriptors round trip, and every truncation and extra byte is rejected", "[edits]") {
+  SplitMix64 rng{11};
+  std::size_t longest = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const EditDescriptor edit = random_edit_anywhere(rng);
+    CAPTURE(edit);
+    Bytes bytes = encode(edit);
+    longest = std::max(longest, bytes.size());
+    const auto back = decode_descriptor(bytes);
+    REQUIRE(back.has_value());
+    REQUIRE(*back == edit);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      REQUIRE_FALSE(decode_descriptor(ByteView(bytes).first(size)).has_value());
+    }
+    bytes.push_back(0);
+    REQUIRE(decode_error(bytes) == ErrorCode::trailing_bytes);
+  }
+  CHECK(longest <= kDescriptorBytesMax);
+}
+
+TEST_CASE("flipped descriptor bytes are rejected or mean exactly their own bytes", "[edits]") {
+  SplitMix64 rng{12};
+  std::size_t survivors = 0;
+  for (int round = 0; round < 400; ++round) {
+    const Bytes bytes = encode(random_edit_anywhere(rng));
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+      Bytes flipped = bytes;
+      flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1u << (bit % 8)));
+      const auto edit = decode_descriptor(flipped);
+      if (!edit) continue;
+      ++survivors;
+      REQUIRE(validate(*edit).has_value());
+      REQUIRE(encode(*edit) == flipped);
+    }
+  }
+  CHECK(survivors > 0);  // most fields have other values, so the check above has run
+}
+
+TEST_CASE("records round trip, and every truncation and extra byte is rejected", "[edits]") {
+  SplitMix64 rng{13};
+  for (int round = 0; round < 1000; ++round) {
+    const EditRecord record = random_record(rng);
+    Bytes bytes = encode_record(record);
+    const auto back = decode_record(bytes);
+    REQUIRE(back.has_value());
+    REQUIRE(*back == record);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      REQUIRE_FALSE(decode_record(ByteView(bytes).first(size)).has_value());
+    }
+    bytes.push_back(0);
+    REQUIRE_FALSE(decode_record(bytes).has_value());
+  }
+}
+
+TEST_CASE("flipped record bytes are rejected or mean exactly their own bytes, and change the checksum",
+          "[edits]") {
+  SplitMix64 rng{14};
+  std::size_t survivors = 0;
+  for (int round = 0; round < 200; ++round) {
+    const EditRecord record = random_record(rng);
+    const std::uint64_t checksum = record_checksum(record);
+    const Bytes bytes = encode_record(record);
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+      Bytes flipped = bytes;
+      flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1u << (bit % 8)));
+      const auto other = decode_record(flipped);
+      if (!other) continue;
+      ++survivors;
+      REQUIRE(encode_record(*other) == flipped);
+      REQUIRE(record_checksum(*other) != checksum);
+    }
+  }
+  CHECK(survivors > 0);
+}
+
+TEST_CASE("a record's version, sequence, cause and box are checked", "[edits]") {
+  const EditRecord record = {{1, 1}, {1, 2, 3}, 4, Cause::player, kVoxel};
+  const Bytes good = encode_record(record);
+  REQUIRE(decode_record(good).has_value());
+  // version 0, epoch 1, seq 2, author 3, instance 4 .. 11, client seq 12, time 13, cause 14, box 15 .. 20
+  const auto error_with = [&good](std::size_t at, std::uint8_t byte) {
+    Bytes bad = good;
+    bad[at] = byte;
+    const auto result = decode_record(bad);
+    REQUIRE_FALSE(result.has_value());
+    return result.error().code;
+  };
+  CHECK(error_with(0, 2) == ErrorCode::bad_version);
+  CHECK(error_with(0, 0) == ErrorCode::bad_version);
+  CHECK(error_with(2, 0) == ErrorCode::bad_value);
+  CHECK(error_with(14, 6) == ErrorCode::bad_value);
+  CHECK(error_with(15, 4) == ErrorCode::bad_value);  // box one voxel off
+  CHECK(error_with(18, 2) == ErrorCode::bad_value);  // box one voxel longer
+  CHECK(error_with(21, 5) == ErrorCode::trailing_bytes);
+  CHECK(error_with(22, 9) == ErrorCode::unknown_kind);
+}
+
+}  // namespace runstone::test
