@@ -13,8 +13,8 @@
 
 namespace runstone {
 
-/// The six chunks around one, by Direction, in any axis order, with equal sides. A null one is "missing": its
-/// voxels count as empty, so the faces at the edge of the view are drawn.
+/// The six chunks around one, by Direction, in any axis order, with equal sides where they touch. A null one
+/// is "missing": its voxels count as empty, so the faces at the edge of the view are drawn.
 using MeshNeighbours = std::array<const RunChunk*, kDirectionCount>;
 
 /// Buffers reused between calls; steady state allocates nothing. Belongs to one thread. Opaque to callers.
@@ -33,7 +33,11 @@ class RdmScratch {
 
 /// Replaces `out` by the mesh of `chunk`. A face belongs to the chunk of its solid voxel.
 /// Quads of a layer cover each exposed face exactly once, never another, never two materials.
-/// Requires valid chunks. Any thread, one scratch each.
+/// The same input gives the same quads in the same order; another axis order gives the same faces, but may
+/// cut them into other quads. Requires valid chunks, and neighbours with the chunk's sides across their
+/// direction. Cost: O(runs + faces of the chunk + runs of the neighbours), plus a layer for each neighbour
+/// whose border has to be transposed; a uniform chunk among uniform ones is O(1). Any thread, one scratch
+/// each.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
               RdmScratch& scratch, ChunkMesh& out);
 
