@@ -47,7 +47,6 @@ class Authority {
   Authority(const EditLimits& limits, const LogPosition& log);
 
   // ---- start: before the first offer
-  // -------------------------------------------------------------------------
   WorldChunks& chunks() { return chunks_; }
   const WorldChunks& chunks() const { return chunks_; }
   DecidedMarks& decided() { return decided_; }
@@ -56,7 +55,6 @@ class Authority {
   void restack(const EditRecord& record);
 
   // ---- edits
-  // -----------------------------------------------------------------------------------------------
   /// Nothing: queued, and its client sequence is decided. Else why not:
   ///   already_decided, busy (only if `log_has_room` is false), or what check_edit() says.
   /// Final refusals decide the client sequence too; `busy` does not, so the client may offer it again before

@@ -7,7 +7,8 @@
 // strand).
 #pragma once
 #include <cstdint>
-#include <map>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "server/world/authority.hpp"

@@ -33,14 +33,12 @@ class WorldChunks {
   explicit WorldChunks(std::int32_t edge) : edge_(edge) {}
 
   // ---- start
-  // -----------------------------------------------------------------------------------------------
   /// Says at which version a chunk's snapshot stands. Before any restack().
   void set_saved(const ChunkKey& key, Version version);
   /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot has it. In log order.
   void restack(const ChunkKey& key, Version version, const EditDescriptor& edit);
 
   // ---- order
-  // -----------------------------------------------------------------------------------------------
   /// Puts an ordered edit on top of the chunk's stack and moves its version. Returns the sequence it stood
   /// at.
   Sequence push(const ChunkKey& key, Version version, const EditDescriptor& edit);
@@ -48,7 +46,6 @@ class WorldChunks {
   void publish(const ChunkKey& key);
 
   // ---- memory
-  // ------------------------------------------------------------------------------------------------
   Residency residency(const ChunkKey& key) const;
   /// Null unless resident.
   ChunkPtr find(const ChunkKey& key) const;
@@ -70,7 +67,6 @@ class WorldChunks {
              const std::function<bool(const ChunkKey&)>& is_used);
 
   // ---- snapshots
-  // -----------------------------------------------------------------------------------------------
   /// Chunks edited since their snapshot, ascending.
   const std::set<ChunkKey>& dirty() const { return dirty_; }
   void mark_saved(const ChunkKey& key, Version version);

@@ -29,7 +29,6 @@ class WorldServer {
   void restack(const EditRecord& record);
 
   // ---- sessions
-  // ------------------------------------------------------------------------------------------------
   void connected(SessionId session, const Now& now);
   /// A verified message. One that the session's state does not allow closes it: not_authenticated before
   /// ready, unexpected_message otherwise. Messages of sessions that were closed are ignored.
@@ -39,14 +38,12 @@ class WorldServer {
   void drained(SessionId session, const Now& now);
 
   // ---- turns
-  // ---------------------------------------------------------------------------------------------------
   /// Orders and sends the edits queued by received(). Cheap when there are none.
   void commit(const Now& now);
   /// Timeouts, poses, roster, audits, snapshot rounds, eviction, retries.
   void tick(const Now& now);
 
   // ---- answers of the ports
-  // ---------------------------------------------------------------------------------------
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
   /// `what` names file, table and row. The chunk is quarantined.
   void chunk_failed(const ChunkKey& key, const std::string& what, const Now& now);
@@ -58,14 +55,12 @@ class WorldServer {
   void log_failed();
 
   // ---- stop
-  // ------------------------------------------------------------------------------------------------------
   /// Says goodbye to everybody, refuses edits, and writes all snapshots; goes on by the ports' answers.
   void begin_stop(const Now& now);
   /// Everything ordered is durable and contained in snapshots (but for quarantined chunks).
   bool is_settled() const;
 
   // ---- looking in
-  // ------------------------------------------------------------------------------------------------
   Epoch epoch() const;
   Sequence head() const;
   Sequence durable() const;

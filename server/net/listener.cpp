@@ -1,0 +1,143 @@
+#include "server/net/listener.hpp"
+
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
+#include <charconv>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+namespace runstone {
+namespace {
+
+constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
+
+struct HostPort {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+Result<HostPort, std::string> parse_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  HostPort parsed;
+  if (colon != std::string::npos) {
+    parsed.host = text.substr(0, colon);
+    if (parsed.host.size() > 1 && parsed.host.front() == '[' && parsed.host.back() == ']') {
+      parsed.host = parsed.host.substr(1, parsed.host.size() - 2);
+    }
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, parsed.port);
+    if (error == std::errc{} && rest == end && rest != text.data() + colon + 1) return parsed;
+  }
+  return Unexpected<std::string>{"cannot listen on \"" + text + "\": the form is HOST:PORT"};
+}
+
+}  // namespace
+
+Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events)
+    : io_(io),
+      limits_(limits),
+      chunk_edge_(chunk_edge),
+      events_(events),
+      strand_(asio::make_strand(asio::any_io_executor(io.get_executor()))),
+      acceptor_(strand_),
+      pause_(strand_) {}
+
+Result<void, std::string> Listener::listen(const std::string& address) {
+  const auto parsed = parse_address(address);
+  if (!parsed) return Unexpected<std::string>{parsed.error()};
+  const auto cannot = [&](const asio::error_code& error) {
+    return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
+  };
+  asio::error_code error;
+  asio::ip::tcp::resolver resolver(io_);
+  const auto ends =
+      resolver.resolve(parsed->host, std::to_string(parsed->port),
+                       asio::ip::resolver_base::passive | asio::ip::resolver_base::numeric_service, error);
+  if (error) return cannot(error);
+  const asio::ip::tcp::endpoint end = ends.begin()->endpoint();
+  acceptor_.open(end.protocol(), error);
+  if (error) return cannot(error);
+  acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+  if (error) return cannot(error);
+  acceptor_.bind(end, error);
+  if (error) return cannot(error);
+  acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  if (error) return cannot(error);
+  port_ = acceptor_.local_endpoint(error).port();
+  if (error) return cannot(error);
+  return {};
+}
+
+void Listener::start() { asio::co_spawn(strand_, accept_loop(shared_from_this()), asio::detached); }
+
+void Listener::stop() {
+  const auto end = [self = shared_from_this()] {
+    asio::error_code ignored;
+    self->acceptor_.close(ignored);
+    self->pause_.cancel();
+  };
+  asio::post(strand_, end);
+}
+
+asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
+  while (self->acceptor_.is_open()) {
+    asio::ip::tcp::socket socket(self->io_);
+    const auto [error] = co_await self->acceptor_.async_accept(socket, kTuple);
+    if (!error) {
+      self->admit(std::move(socket));
+    } else if (self->acceptor_.is_open()) {
+      // Out of file descriptors, most likely: they come back when sessions end.
+      self->pause_.expires_after(std::chrono::milliseconds(100));
+      const auto [woken] = co_await self->pause_.async_wait(kTuple);
+      (void)woken;
+    }
+  }
+}
+
+void Listener::admit(asio::ip::tcp::socket socket) {
+  if (session_count() >= limits_.connections_max) {
+    counters_.refused.fetch_add(1);
+    return;  // closing the socket says it: there was no handshake to answer
+  }
+  counters_.connections.fetch_add(1);
+  const SessionId id = next_id_++;
+  auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
+  auto session = std::make_shared<NetSession>(id, asio::any_io_executor(io_.get_executor()),
+                                              std::move(stream), limits_, chunk_edge_, events_, counters_);
+  {
+    const std::lock_guard lock(mutex_);
+    sessions_.emplace(id, session);
+  }
+  session->start();
+}
+
+std::shared_ptr<NetSession> Listener::find(SessionId session) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = sessions_.find(session);
+  return found == sessions_.end() ? nullptr : found->second;
+}
+
+void Listener::forget(SessionId session) {
+  const std::lock_guard lock(mutex_);
+  sessions_.erase(session);
+}
+
+std::size_t Listener::session_count() const {
+  const std::lock_guard lock(mutex_);
+  return sessions_.size();
+}
+
+void Listener::close_all(GoodbyeReason reason, const std::string& text) {
+  std::vector<std::shared_ptr<NetSession>> sessions;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, session] : sessions_) sessions.push_back(session);
+  }
+  for (const auto& session : sessions) session->close(reason, text);
+}
+
+}  // namespace runstone

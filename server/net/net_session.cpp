@@ -1,0 +1,226 @@
+#include "server/net/net_session.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
+#include <chrono>
+#include <utility>
+
+#include "server/net/net_log.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReadBytes = 16 * 1024;
+
+TimeUs steady_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+NetSession::NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
+                       const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events,
+                       NetCounters& counters)
+    : id_(id),
+      limits_(limits),
+      chunk_edge_(chunk_edge),
+      events_(events),
+      counters_(counters),
+      strand_(asio::make_strand(executor)),
+      stream_(std::move(stream)),
+      peer_(stream_->peer()),
+      queue_(limits.send),
+      write_wake_(strand_),
+      read_wake_(strand_),
+      linger_(strand_),
+      reader_(Sender::client),
+      messages_(limits.messages_per_second, limits.message_burst) {
+  // A timer that never comes by itself: cancelling it wakes the loop that waits on it.
+  write_wake_.expires_at(asio::steady_timer::time_point::max());
+  read_wake_.expires_at(asio::steady_timer::time_point::max());
+}
+
+void NetSession::start() {
+  loops_ = 2;
+  const auto begin = [self = shared_from_this()] {
+    self->events_.on_connected(self->id_);
+    asio::co_spawn(self->strand_, read_loop(self), asio::detached);
+    asio::co_spawn(self->strand_, write_loop(self), asio::detached);
+  };
+  asio::post(strand_, begin);
+}
+
+bool NetSession::send(const EncodedMessage& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (closing_) return true;
+    if (!queue_.push(message)) return false;
+  }
+  wake_writer();
+  return true;
+}
+
+std::optional<ChunkPlace> NetSession::reserve_chunk() {
+  const std::lock_guard lock(mutex_);
+  if (closing_) return ChunkPlace{0};  // names no place: filling it does nothing
+  return queue_.reserve_chunk();
+}
+
+void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (closing_) return;
+    queue_.fill(place, message);
+  }
+  wake_writer();
+}
+
+void NetSession::close(GoodbyeReason reason, const std::string& text) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (closing_) return;
+    closing_ = true;
+    queue_.drop_chunks();
+    // If even the goodbye does not fit, the peer has not read for long: it learns from the end of the stream.
+    (void)queue_.push(encode_message(Goodbye{reason, text}));
+  }
+  const auto begin = [self = shared_from_this()] {
+    if (std::exchange(self->linger_started_, true)) return;
+    asio::co_spawn(self->strand_, end_after_linger(self), asio::detached);
+  };
+  asio::post(strand_, begin);
+  wake_writer();
+}
+
+void NetSession::handled(std::size_t messages) {
+  unhandled_.fetch_sub(messages);
+  if (!reader_paused_.load() || must_pause()) return;
+  const auto wake = [self = shared_from_this()] { self->read_wake_.cancel(); };
+  asio::post(strand_, wake);
+}
+
+void NetSession::wake_writer() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!writer_idle_) return;
+    writer_idle_ = false;
+  }
+  const auto wake = [self = shared_from_this()] { self->write_wake_.cancel(); };
+  asio::post(strand_, wake);
+}
+
+asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> self) {
+  self->linger_.expires_after(std::chrono::milliseconds(self->limits_.linger_ms));
+  self->read_wake_.cancel();  // a paused reader goes on, to see the end of the stream
+  const auto [error] = co_await self->linger_.async_wait(kTuple);
+  (void)error;  // cancelled when both loops have ended: closing twice is harmless
+  self->stream_->close();
+}
+
+Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
+  counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
+  if (!messages_.take(1, steady_us())) {
+    broken_rule_ = GoodbyeReason::flooding;
+    return fail(ErrorCode::limit_exceeded, "more messages than the rate allows");
+  }
+  auto message = decode_message(Sender::client, frame_class, body, chunk_edge_);
+  if (!message) {
+    broken_rule_ = GoodbyeReason::malformed_message;
+    return Unexpected<Error>{message.error()};
+  }
+  unhandled_.fetch_add(1);
+  events_.on_message(id_, *std::move(message));
+  return {};
+}
+
+void NetSession::refuse(const Error& error) {
+  counters_.malformed.fetch_add(1, std::memory_order_relaxed);
+  log_broken_rule(id_, peer_, broken_rule_, error);
+  close(broken_rule_, std::string(error.what) + " (at byte " + std::to_string(error.offset) + ")");
+}
+
+asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
+  Bytes buffer(kReadBytes);
+  const FrameReader::OnMessage on_message = [raw = self.get()](FrameClass c, ByteView body) {
+    return raw->on_message(c, body);
+  };
+  bool refused = false;
+  for (;;) {
+    const asio::mutable_buffer into = asio::buffer(buffer);
+    const IoResult got = co_await self->stream_->read_some(into);
+    if (got.error) break;
+    self->counters_.bytes_in.fetch_add(got.bytes, std::memory_order_relaxed);
+    if (refused)
+      continue;  // closing: what comes still is read, so that the kernel does not reset our goodbye
+    self->broken_rule_ = GoodbyeReason::malformed_frame;
+    const Result<void> fed = self->reader_.feed(ByteView(buffer.data(), got.bytes), on_message);
+    if (!fed) {
+      self->refuse(fed.error());
+      refused = true;
+    }
+    while (self->must_pause() && !self->linger_started_) {
+      self->reader_paused_.store(true);
+      if (!self->must_pause()) break;  // handled() may have come before it could see the flag
+      const auto [error] = co_await self->read_wake_.async_wait(kTuple);
+      (void)error;  // always cancelled: that is the wake
+    }
+    self->reader_paused_.store(false);
+  }
+  // The peer closed or broke off: nothing that waits to be sent has a reader.
+  self->close(GoodbyeReason::closing, "end of stream");
+  self->loop_ended();
+}
+
+asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
+  SendQueue::Batch batch;
+  std::vector<asio::const_buffer> buffers;
+  for (;;) {
+    bool has_batch = false;
+    bool is_drained = false;
+    bool is_last = false;
+    {
+      const std::lock_guard lock(self->mutex_);
+      has_batch = self->queue_.take(batch);
+      is_drained = self->queue_.take_drained();
+      is_last = !has_batch && self->closing_;
+      if (!has_batch && !is_last) self->writer_idle_ = true;
+    }
+    if (is_drained) self->events_.on_drained(self->id_);
+    if (is_last) break;
+    if (!has_batch) {
+      // Woken by cancel; a wake that came before this wait starts finds no waiter, but it was posted to this
+      // strand, so it cannot run between here and the wait.
+      const auto [error] = co_await self->write_wake_.async_wait(kTuple);
+      (void)error;
+      continue;
+    }
+    buffers.clear();
+    for (const auto& piece : batch.pieces) {
+      buffers.push_back(asio::buffer(piece.header));
+      buffers.push_back(asio::buffer(piece.body.data(), piece.body.size()));
+    }
+    const IoResult wrote = co_await self->stream_->write(buffers);
+    if (wrote.error) break;
+    self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
+  }
+  self->stream_->shutdown_send();
+  self->close(GoodbyeReason::closing, "write failed");  // the linger timer ends a reader that waits for ever
+  self->loop_ended();
+}
+
+void NetSession::loop_ended() {
+  if (--loops_ > 0) return;
+  linger_.cancel();
+  stream_->close();
+  events_.on_disconnected(id_);
+}
+
+}  // namespace runstone

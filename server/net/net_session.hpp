@@ -1,0 +1,101 @@
+// NetSession: one connection: reads frames, verifies messages and hands them on; sends what is queued by
+// priority; ends with a numbered goodbye. A peer that breaks a rule ends its own session and nobody else's.
+// Threads: the two loops run on the session's strand; send(), reserve_chunk(), fill_chunk(), close(),
+// handled() and set_encoding() may be called from any thread and return at once.
+#pragma once
+#include <asio/any_io_executor.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/strand.hpp>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "protocol/codec/frame.hpp"
+#include "protocol/codec/messages.hpp"
+#include "server/net/byte_stream.hpp"
+#include "server/net/net_events.hpp"
+#include "server/net/send_queue.hpp"
+#include "server/world/token_bucket.hpp"
+
+namespace runstone {
+
+struct NetLimits {
+  SendLimits send;
+  std::size_t notsent_bytes = 16 * 1024;       // TCP_NOTSENT_LOWAT
+  std::size_t connections_max = 512;           // sockets, before any handshake
+  std::size_t unhandled_messages_max = 512;    // per session; then its reading pauses
+  std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
+  std::uint64_t message_burst = 20'000;
+  std::int64_t linger_ms = 1'000;  // for the goodbye to leave and the peer to close
+};
+
+struct NetCounters {
+  std::atomic<std::uint64_t> connections{0}, refused{0}, bytes_in{0}, bytes_out{0}, messages_in{0},
+      malformed{0};
+};
+
+class NetSession : public std::enable_shared_from_this<NetSession> {
+ public:
+  /// `events` and `counters` must outlive the session. `chunk_edge`: of the world.
+  NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
+             const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events, NetCounters& counters);
+
+  SessionId id() const { return id_; }
+  const std::string& peer() const { return peer_; }
+
+  /// Tells connected and starts both loops. Once.
+  void start();
+
+  /// False: the class is full, nothing was queued. After close() messages vanish and true is returned.
+  bool send(const EncodedMessage& message);
+  /// Takes a place for a chunk; nothing if the class is full.
+  std::optional<ChunkPlace> reserve_chunk();
+  void fill_chunk(ChunkPlace place, const EncodedMessage& message);
+  void set_encoding(ChunkEncoding encoding) { encoding_.store(encoding); }
+  ChunkEncoding encoding() const { return encoding_.load(); }
+
+  /// Sends goodbye after the edits and control messages queued, drops chunks, closes; at the latest after the
+  /// linger time. Only the first call counts.
+  void close(GoodbyeReason reason, const std::string& text);
+  void handled(std::size_t messages);
+
+ private:
+  using Strand = asio::strand<asio::any_io_executor>;
+  static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
+  static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
+  static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
+  Result<void> on_message(FrameClass frame_class, ByteView body);
+  void refuse(const Error& error);
+  bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
+  void wake_writer();
+  void loop_ended();
+
+  const SessionId id_;
+  const NetLimits& limits_;
+  const std::uint16_t chunk_edge_;
+  NetEvents& events_;
+  NetCounters& counters_;
+  Strand strand_;
+  std::unique_ptr<ByteStream> stream_;
+  std::string peer_;
+  std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
+  std::atomic<std::size_t> unhandled_{0};
+  std::atomic<bool> reader_paused_{false};
+
+  std::mutex mutex_;  // a leaf: guards the next three
+  SendQueue queue_;
+  bool closing_ = false;
+  bool writer_idle_ = false;
+
+  // On the strand from here on.
+  asio::steady_timer write_wake_, read_wake_, linger_;
+  FrameReader reader_;
+  TokenBucket messages_;
+  GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // by the error that feed() returns
+  int loops_ = 0;
+  bool linger_started_ = false;
+};
+
+}  // namespace runstone
