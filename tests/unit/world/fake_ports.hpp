@@ -1,0 +1,102 @@
+// FakePorts: the outside of a world strand as plain lists, for tests: what was sent, loaded, logged and
+// saved. Nothing answers by itself; the test answers.
+#pragma once
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/world/world_ports.hpp"
+
+namespace runstone::test {
+
+class FakePorts : public WorldPorts {
+ public:
+  struct Sent {
+    SessionId session = 0;
+    EncodedMessage message;
+  };
+  struct SentSnapshot {
+    SessionId session = 0;
+    ChunkKey key;
+    ChunkPtr chunk;
+  };
+  struct Closed {
+    SessionId session = 0;
+    GoodbyeReason reason{};
+    std::string text;
+  };
+  struct Save {
+    std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
+    Sequence checkpoint = 0;
+  };
+
+  std::vector<Sent> sent;
+  std::vector<SentSnapshot> snapshots;
+  std::vector<Closed> closed;
+  std::vector<NewPlayer> players;
+  std::vector<EditRecord> records;
+  std::deque<ChunkKey> loads;
+  std::vector<Save> saves;
+  std::vector<std::string> lines;
+  std::map<SessionId, ChunkEncoding> encodings;
+  std::set<SessionId> full;                        // every send to them is refused
+  std::set<SessionId> refuse_edits;                // sends of the edits class are
+  std::map<SessionId, std::size_t> snapshot_room;  // snapshots left; absent: no bound
+  bool log_room = true;
+
+  bool send(SessionId session, const EncodedMessage& message) override {
+    if (full.contains(session)) return false;
+    if (message.frame_class == FrameClass::edits && refuse_edits.contains(session)) return false;
+    sent.push_back({session, message});
+    return true;
+  }
+  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override {
+    if (full.contains(session)) return false;
+    const auto room = snapshot_room.find(session);
+    if (room != snapshot_room.end()) {
+      if (room->second == 0) return false;
+      --room->second;
+    }
+    snapshots.push_back({session, key, chunk});
+    return true;
+  }
+  void set_encoding(SessionId session, ChunkEncoding encoding) override { encodings[session] = encoding; }
+  void close(SessionId session, GoodbyeReason reason, const std::string& text) override {
+    closed.push_back({session, reason, text});
+  }
+  bool log_has_room(std::size_t /*records*/) const override { return log_room; }
+  void log_append(std::vector<NewPlayer> new_players, std::vector<EditRecord> new_records) override {
+    players.insert(players.end(), new_players.begin(), new_players.end());
+    records.insert(records.end(), new_records.begin(), new_records.end());
+  }
+  void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override {
+    saves.push_back({std::move(chunks), checkpoint});
+  }
+  void log(WorldLogLevel /*level*/, const std::string& line) override { lines.push_back(line); }
+
+  /// Messages of one kind sent to a session, oldest first.
+  template <class Kind>
+  std::vector<Kind> messages(SessionId session, std::uint16_t chunk_edge) const {
+    std::vector<Kind> found;
+    for (const Sent& s : sent) {
+      if (s.session != session) continue;
+      auto message = decode_message(Sender::server, s.message.frame_class, *s.message.bytes, chunk_edge);
+      RUNSTONE_ASSERT(message.has_value());
+      if (auto* kind = std::get_if<Kind>(&*message)) found.push_back(std::move(*kind));
+    }
+    return found;
+  }
+};
+
+/// Empty base chunk of a world of this edge.
+inline Chunk empty_chunk(unsigned edge) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);
+  return chunk;
+}
+
+}  // namespace runstone::test
