@@ -1,0 +1,122 @@
+#include "client/net/key_file.hpp"
+
+#include <fcntl.h>
+#include <sodium.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace runstone {
+namespace {
+
+constexpr const char* kPinsSuffix = ".servers";
+
+std::string hex_of(ByteView bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+template <std::size_t N>
+bool parse_hex(const std::string& text, std::array<std::uint8_t, N>& out) {
+  if (text.size() != 2 * N) return false;
+  std::size_t read = 0;
+  return sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &read, nullptr) == 0 && read == N;
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+  throw std::runtime_error(file + ": " + why);
+}
+
+void need_sodium() {
+  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
+}
+
+KeySeed create_seed(const std::string& file) {
+  KeySeed seed;
+  randombytes_buf(seed.data(), seed.size());
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) refuse(file, std::strerror(errno));
+  const std::string text = hex_of(seed) + "\n";
+  const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const bool closed = ::close(fd) == 0;
+  if (!written || !closed) refuse(file, "cannot be written");
+  return seed;
+}
+
+}  // namespace
+
+KeyPair load_or_create_key(const std::string& file) {
+  need_sodium();
+  struct stat info{};
+  if (::stat(file.c_str(), &info) != 0) {
+    if (errno != ENOENT) refuse(file, std::strerror(errno));
+    return key_pair_of(create_seed(file));
+  }
+  if ((info.st_mode & 077) != 0) refuse(file, "others may read this key: chmod 600 it");
+  std::ifstream in(file);
+  std::string line;
+  KeySeed seed;
+  if (!std::getline(in, line) || !parse_hex(line, seed)) refuse(file, "is not a key file (64 hex digits)");
+  return key_pair_of(seed);
+}
+
+KeyPair random_key() {
+  need_sodium();
+  KeySeed seed;
+  randombytes_buf(seed.data(), seed.size());
+  return key_pair_of(seed);
+}
+
+Nonce random_nonce() {
+  need_sodium();
+  Nonce nonce;
+  randombytes_buf(nonce.data(), nonce.size());
+  return nonce;
+}
+
+ClientInstance random_instance() {
+  need_sodium();
+  ClientInstance instance = 0;
+  while (instance == 0) randombytes_buf(&instance, sizeof instance);
+  return instance;
+}
+
+std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
+  std::map<WorldId, PublicKey> pinned;
+  const std::string file = key_file + kPinsSuffix;
+  std::ifstream in(file);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream fields(line);
+    std::string world, key;
+    WorldId world_id;
+    PublicKey server_key;
+    if (!(fields >> world >> key) || !parse_hex(world, world_id) || !parse_hex(key, server_key)) {
+      refuse(file + ":" + std::to_string(number), "expected a world id and a server key in hex");
+    }
+    pinned[world_id] = server_key;
+  }
+  return pinned;
+}
+
+void save_pinned_servers(const std::string& key_file, const std::map<WorldId, PublicKey>& pinned) {
+  const std::string file = key_file + kPinsSuffix;
+  // Renamed into place, so that a crash leaves the old list or the new one.
+  const std::string fresh = file + ".new";
+  std::ofstream out(fresh, std::ios::trunc);
+  for (const auto& [world, key] : pinned) out << hex_of(world) << ' ' << hex_of(key) << '\n';
+  out.close();
+  if (!out || ::rename(fresh.c_str(), file.c_str()) != 0) refuse(file, "cannot be written");
+}
+
+}  // namespace runstone

@@ -1,0 +1,89 @@
+#include "client/schedule/mesh_pool.hpp"
+
+#include <utility>
+
+namespace runstone {
+
+MeshPool::MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake)
+    : visibility_(std::move(visibility)),
+      clock_(std::move(clock)),
+      wake_(std::move(wake)),
+      // Enough that no worker idles until the main thread looks again, few enough that new work is not queued
+      // behind old.
+      capacity_(workers == 0 ? 1 : workers * 8) {
+  for (unsigned i = 0; i < workers; ++i) {
+    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+  }
+}
+
+MeshPool::~MeshPool() {
+  for (std::jthread& thread : threads_) thread.request_stop();
+  threads_.clear();
+}
+
+bool MeshPool::push(MeshJob job) {
+  if (threads_.empty()) {
+    MeshResult result = mesh(job, own_scratch_);
+    const std::lock_guard lock(mutex_);
+    ++in_flight_;
+    results_.push_back(std::move(result));
+    return true;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (in_flight_ >= capacity_) return false;
+    ++in_flight_;
+    jobs_.push_back(std::move(job));
+  }
+  work_there_.notify_one();
+  return true;
+}
+
+std::vector<MeshResult> MeshPool::take_results() {
+  const std::lock_guard lock(mutex_);
+  in_flight_ -= results_.size();
+  return std::exchange(results_, {});
+}
+
+std::size_t MeshPool::in_flight() const {
+  const std::lock_guard lock(mutex_);
+  return in_flight_;
+}
+
+void MeshPool::work(const std::stop_token& stop) {
+  RdmScratch scratch;
+  for (;;) {
+    MeshJob job;
+    {
+      std::unique_lock lock(mutex_);
+      if (!work_there_.wait(lock, stop, [this] { return !jobs_.empty(); }) || stop.stop_requested()) return;
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    MeshResult result = mesh(job, scratch);
+    {
+      const std::lock_guard lock(mutex_);
+      results_.push_back(std::move(result));
+    }
+    if (wake_) wake_();
+  }
+}
+
+MeshResult MeshPool::mesh(const MeshJob& job, RdmScratch& scratch) const {
+  MeshResult result;
+  result.key = job.key;
+  result.number = job.number;
+  result.serial = job.serial;
+  result.edge = job.chunk->extent.x;
+  result.run_count = static_cast<std::uint32_t>(job.chunk->runs.size());
+  MeshNeighbours neighbours{};
+  for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
+  const std::int64_t start = clock_();
+  mesh_rdm(*job.chunk, neighbours, visibility_, scratch, result.mesh);
+  const std::int64_t end = clock_();
+  result.mesh_ns = end - start;
+  result.meshed_us = end / 1000;
+  return result;
+}
+
+}  // namespace runstone
