@@ -4,13 +4,11 @@
 #include "common/core/m61.hpp"
 
 namespace runstone {
-namespace {
-
-using PrefixSums = std::array<std::uint64_t, kSideMax + 1>;
 
 // The digest's axis sums from 0 up to each coordinate. Asked for once: the tally needs two per changed
 // stretch.
 struct AxisSums {
+  using PrefixSums = std::array<std::uint64_t, kSideMax + 1>;
   std::array<std::array<PrefixSums, 3>, kDigestLanes> sums;
   AxisSums() {
     for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
@@ -26,6 +24,8 @@ struct AxisSums {
     return m61::sub(prefix[last], prefix[first]);
   }
 };
+
+namespace {
 
 const AxisSums& axis_sums() {
   static const AxisSums table;
@@ -54,6 +54,7 @@ LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t co
 
 ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors)
     : shape_(shape),
+      sums_(axis_sums()),
       extent_(ordered(shape.extent, shape.order)),
       axes_(axes_of(shape.order)),
       changes_(changes),
@@ -70,13 +71,12 @@ void ChangeTally::open_line(VoxelIndex first) {
 // All stretches of a line share two of the three factors, which are multiplied in once, here.
 void ChangeTally::close_line() {
   if (line_terms_ == 0) return;
-  const AxisSums& sums = axis_sums();
   const std::uint32_t line = line_begin_ / extent_.f;
   const std::uint32_t s = line / extent_.m;
   const std::uint32_t m = line - s * extent_.m;
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     const std::uint64_t across =
-        m61::mul(sums.between(lane, axes_[1], m, m + 1), sums.between(lane, axes_[2], s, s + 1));
+        m61::mul(sums_.between(lane, axes_[1], m, m + 1), sums_.between(lane, axes_[2], s, s + 1));
     digest_.lane[lane] = m61::add(digest_.lane[lane], m61::mul(reduce_wide(line_sum_[lane]), across));
     line_sum_[lane] = 0;
   }
@@ -86,12 +86,11 @@ void ChangeTally::close_line() {
 }
 
 void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material before, Material after) {
-  const AxisSums& sums = axis_sums();
   const MaterialFactors::Lanes was = factors_.of(before);  // by value: both may share a slot
   const MaterialFactors::Lanes& is = factors_.of(after);
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     line_sum_[lane] +=
-        static_cast<Wide>(sums.between(lane, axes_[0], first, last)) * m61::sub(is[lane], was[lane]);
+        static_cast<Wide>(sums_.between(lane, axes_[0], first, last)) * m61::sub(is[lane], was[lane]);
   }
   if (++line_terms_ % kTermsPerReduction == 0) {
     for (Wide& sum : line_sum_) sum = reduce_wide(sum);

@@ -14,6 +14,8 @@
 
 namespace runstone {
 
+struct AxisSums;
+
 class ChangeTally {
  public:
   /// `shape` gives extent and order only. Appends to `changes`, which must be empty.
@@ -49,6 +51,7 @@ class ChangeTally {
 
   __extension__ using Wide = unsigned __int128;
   const RunChunk& shape_;
+  const AxisSums& sums_;
   const OrderedExtent extent_;
   const std::array<Axis, 3> axes_;
   std::vector<Change>& changes_;
