@@ -1,0 +1,159 @@
+#include <catch2/catch.hpp>
+
+#include "common/core/hash.hpp"
+#include "common/materials/material_table.hpp"
+
+using namespace runstone;
+
+namespace {
+
+constexpr const char* kAir = "[[material]]\nname = \"air\"\nvisibility = \"empty\"\n";
+
+TextError error_of(const std::string& toml) {
+  const auto table = parse_material_table(toml, "m.toml");
+  REQUIRE_FALSE(table.has_value());
+  return table.error();
+}
+
+/// The error of a table whose second row, on lines 4 and following, is `row`.
+TextError row_error(const std::string& row) { return error_of(kAir + ("[[material]]\n" + row)); }
+
+MaterialTable random_table(SplitMix64& random) {
+  MaterialTable table;
+  const auto surface = [&] {
+    return SurfaceRule{random.between(-1000, 1000), random.between(-10000, 10000) / 7.0,
+                       random.between(-10000, 10000) / 3.0, random.between(1, 1000) / 1000.0};
+  };
+  const std::uint32_t rows = random.below(40);
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    MaterialInfo info;
+    info.name = "m\"\\ \xc3\xa4" + std::to_string(i);
+    info.visibility = static_cast<Visibility>(random.below(3));
+    for (auto& channel : info.colour) channel = static_cast<std::uint8_t>(random.below(256));
+    if (info.visibility == Visibility::opaque) info.colour[3] = 255;
+    if (random.below(2) == 0) info.generation = GenerationRule{surface(), std::nullopt};
+    if (info.generation && random.below(2) == 0) info.generation->reversed = surface();
+    REQUIRE(table.add(info).has_value());
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("a table reads with every key", "[materials]") {
+  const auto table = parse_material_table(R"(
+[[material]]
+name = "air"
+colour = "#00000000"
+visibility = "empty"
+[[material]]
+name = "rock"   # visibility is opaque unless given
+colour = "#0a0BfF"
+[material.generate]
+surface = { seed = -3, elevation = 12, distance = 1.5, frequency = 0.25 }
+reversed = { elevation = 4.0 }
+[[material]]
+name = "mist"
+colour = "#01020304"
+visibility = "transparent"
+)",
+                                          "m.toml");
+  REQUIRE(table.has_value());
+  REQUIRE(table->size() == 3);
+  const MaterialInfo& rock = (*table)[1];
+  CHECK(rock.name == "rock");
+  CHECK(rock.colour == std::array<std::uint8_t, 4>{10, 11, 255, 255});
+  CHECK(rock.visibility == Visibility::opaque);
+  REQUIRE(rock.generation.has_value());
+  CHECK(rock.generation->surface == SurfaceRule{-3, 12, 1.5, 0.25});
+  CHECK(rock.generation->reversed == SurfaceRule{1, 4, 0, 0.007});
+  CHECK((*table)[2].colour == std::array<std::uint8_t, 4>{1, 2, 3, 4});
+}
+
+TEST_CASE("a table survives the way through text", "[materials]") {
+  const auto back = parse_material_table(to_toml(default_material_table()), "default");
+  REQUIRE(back.has_value());
+  CHECK(*back == default_material_table());
+
+  SplitMix64 random(Catch::rngSeed());
+  for (int i = 0; i < 100; ++i) {
+    const MaterialTable table = random_table(random);
+    const std::string text = to_toml(table);
+    CAPTURE(text);
+    const auto again = parse_material_table(text, "random");
+    REQUIRE(again.has_value());
+    REQUIRE(*again == table);
+    REQUIRE(to_toml(*again) == text);
+  }
+}
+
+TEST_CASE("an error says file, line and key", "[materials]") {
+  const TextError error = row_error("name = \"rock\"\ncolour = \"red\"\n");
+  CHECK(error.file == "m.toml");
+  CHECK(error.line == 6);
+  CHECK(error.key == "material[1].colour");
+  CHECK(error.message() == "m.toml:6: material[1].colour: must be \"#rrggbb\" or \"#rrggbbaa\"");
+  CHECK(TextError{"f", 0, "", "gone"}.message() == "f: gone");
+}
+
+TEST_CASE("every mistake in a row is found at its key", "[materials]") {
+  struct Case {
+    const char* row;
+    std::uint32_t line;
+    const char* key;
+  };
+  const std::string head = "name = \"r\"\ncolour = \"#102030\"\n";
+  const Case cases[] = {
+      {"colour = \"#102030\"\n", 4, "material[1].name"},
+      {"name = \"r\"\n", 4, "material[1].colour"},
+      {"name = 7\ncolour = \"#102030\"\n", 5, "material[1].name"},
+      {"name = \"r\"\ncolour = \"#10203\"\n", 6, "material[1].colour"},
+      {"name = \"r\"\ncolour = \"#10203g\"\n", 6, "material[1].colour"},
+      {"name = \"r\"\ncolour = \"#+1+2+3\"\n", 6, "material[1].colour"},
+      {"name = \"r\"\ncolour = 1\n", 6, "material[1].colour"},
+      {"name = \"r\"\ncolour = \"#102030\"\nvisibility = \"glassy\"\n", 7, "material[1].visibility"},
+      {"name = \"r\"\ncolour = \"#102030\"\ncolor = \"#102030\"\n", 7, "material[1].color"},
+      {"name = \"r\"\ncolour = \"#10203040\"\n", 4, "material[1]"},
+      {"name = \"air\"\ncolour = \"#102030\"\n", 4, "material[1]"},
+      {"name = \"r\"\ncolour = \"#102030\"\ngenerate = 3\n", 7, "material[1].generate"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\n", 7, "material[1].generate.surface"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = 1\n", 8,
+       "material[1].generate.surface"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { depth = 1 }\n", 8,
+       "material[1].generate.surface.depth"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 0.5 }\n", 8,
+       "material[1].generate.surface.seed"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 4294967296 }\n", 8,
+       "material[1].generate.surface.seed"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nreversed = { elevation = "
+       "\"1\" }\n",
+       9, "material[1].generate.reversed.elevation"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nupper = {}\n", 9,
+       "material[1].generate.upper"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { frequency = nan }\n", 4,
+       "material[1]"},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.row);
+    const TextError error = row_error(c.row);
+    CHECK(error.line == c.line);
+    CHECK(error.key == c.key);
+    CHECK_FALSE(error.what.empty());
+  }
+}
+
+TEST_CASE("a file that is no table of materials is refused", "[materials]") {
+  CHECK(error_of("").key == "material");
+  CHECK(error_of("material = []").key == "material");
+  CHECK(error_of("material = 3").line == 1);
+  CHECK(error_of("\n\nmaterial = [").line == 3);
+  CHECK(error_of(std::string(kAir) + "[server]\nport = 1\n").key == "server");
+}
+
+TEST_CASE("the first material is air", "[materials]") {
+  CHECK(parse_material_table(kAir, "m").has_value());
+  CHECK(error_of("[[material]]\nname = \"stone\"\ncolour = \"#101010\"\n").key == "material[0]");
+  CHECK(error_of("[[material]]\nname = \"air\"\ncolour = \"#101010\"\n").key == "material[0]");
+  CHECK(error_of("[[material]]\nname = \"air\"\nvisibility = \"empty\"\n[material.generate]\nsurface = {}\n")
+            .key == "material[0]");
+}
