@@ -1,0 +1,188 @@
+#include "server/admin/server_config.hpp"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <variant>
+
+namespace runstone {
+namespace {
+
+constexpr std::uint64_t kNoMax = 1'000'000'000'000'000ULL;
+
+struct NumberField {
+  std::uint64_t ServerConfig::* member;
+  std::uint64_t min, max;
+};
+struct TextField {
+  std::string ServerConfig::* member;
+  std::vector<std::string> choices;  // empty: any text that is not empty
+};
+struct Field {
+  std::string name, help;
+  std::variant<NumberField, TextField> kind;
+};
+
+const std::vector<Field>& fields() {
+  using C = ServerConfig;
+  const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min, std::uint64_t max,
+                         const std::string& what) {
+    std::string range = what + ", " + std::to_string(min);
+    range += max == kNoMax ? " or more" : ".." + std::to_string(max);
+    return Field{name, range, NumberField{member, min, max}};
+  };
+  static const std::vector<Field> all = {
+      {"world", "folder of the world", TextField{&C::world, {}}},
+      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen, {}}},
+      {"log_level", "debug, info, warn or error",
+       TextField{&C::log_level, {"debug", "info", "warn", "error"}}},
+      number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
+      number("worker_threads", &C::worker_threads, 1, 64, "threads that generate, load and encode chunks"),
+      number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
+      number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
+      {"encoding", "packed or raw, where the client reads both", TextField{&C::encoding, {"packed", "raw"}}},
+      number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
+      number("messages_per_second", &C::messages_per_second, 0, kNoMax, "messages per session, 0: no limit"),
+      number("control_queue_kib", &C::control_queue_kib, 64, 1'048'576, "KiB per session"),
+      number("edit_queue_kib", &C::edit_queue_kib, 64, 1'048'576, "KiB per session"),
+      number("chunk_queue_kib", &C::chunk_queue_kib, 64, 1'048'576, "KiB per session"),
+      number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
+      number("reach_max", &C::reach_max, 0, 1ULL << 30, "voxels from player to edit, 0: no limit"),
+      number("edits_per_second", &C::edits_per_second, 0, kNoMax, "edits per session, 0: no limit"),
+      number("edit_burst", &C::edit_burst, 1, 1'000'000, "edits per session at once"),
+      number("memory_mib", &C::memory_mib, 16, 1'048'576, "MiB of chunks before unused ones leave memory"),
+      number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000, "edits between two rounds of snapshots"),
+      number("snapshot_s", &C::snapshot_s, 1, 86'400, "seconds between two rounds of snapshots"),
+      number("log_queue_records", &C::log_queue_records, 1, 10'000'000,
+             "records until edits are rejected busy"),
+      number("audit_ms", &C::audit_ms, 10, 3'600'000, "milliseconds between two audits of a session"),
+      number("audit_chunks", &C::audit_chunks, 0, 1'024, "digests per audit, 0: none"),
+      number("counters_s", &C::counters_s, 0, 86'400, "seconds between two lines of counters, 0: never"),
+  };
+  return all;
+}
+
+const Field* find(std::string_view name) {
+  const auto found =
+      std::find_if(fields().begin(), fields().end(), [&](const Field& f) { return f.name == name; });
+  return found == fields().end() ? nullptr : &*found;
+}
+
+/// What is wrong with the value, or nothing once it is set.
+std::optional<std::string> assign(ServerConfig& config, const Field& field, std::uint64_t value) {
+  const auto* number = std::get_if<NumberField>(&field.kind);
+  if (number == nullptr) return "must be a text";
+  if (value < number->min || value > number->max) return "is out of range: " + field.help;
+  config.*number->member = value;
+  return std::nullopt;
+}
+
+std::optional<std::string> assign(ServerConfig& config, const Field& field, const std::string& value) {
+  const auto* text = std::get_if<TextField>(&field.kind);
+  if (text == nullptr) return "must be a whole number: " + field.help;
+  if (value.empty()) return "must not be empty";
+  const auto& choices = text->choices;
+  if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
+    return "must be " + field.help;
+  }
+  config.*text->member = value;
+  return std::nullopt;
+}
+
+std::string with(std::string text, char from, char to, bool upper) {
+  for (char& c : text) {
+    if (c == from) c = to;
+    if (upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<ConfigField> config_fields() {
+  std::vector<ConfigField> all;
+  for (const Field& field : fields()) all.push_back({field.name, field.help});
+  return all;
+}
+
+std::string environment_name(const std::string& field) { return "RUNSTONE_" + with(field, '_', '_', true); }
+std::string flag_name(const std::string& field) { return "--" + with(field, '_', '-', false); }
+
+Result<void, std::string> set_config(ServerConfig& config, const std::string& name, const std::string& text) {
+  const Field* field = find(name);
+  if (field == nullptr) return Unexpected<std::string>{name + ": no such setting"};
+  std::optional<std::string> wrong;
+  if (std::holds_alternative<TextField>(field->kind)) {
+    wrong = assign(config, *field, text);
+  } else {
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    const bool is_number = error == std::errc{} && rest == end;
+    wrong = is_number ? assign(config, *field, value) : "must be a whole number: " + field->help;
+  }
+  if (wrong) return Unexpected<std::string>{name + " = \"" + text + "\": " + *wrong};
+  return {};
+}
+
+Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml, std::string_view file) {
+  const auto wrong = [&](std::uint32_t line, std::string_view key, std::string_view what) {
+    return Unexpected<TextError>{{std::string(file), line, std::string(key), std::string(what)}};
+  };
+  toml::table table;
+  try {
+    table = toml::parse(toml, file);
+  } catch (const toml::parse_error& error) {
+    return wrong(error.source().begin.line, "", error.description());
+  }
+  ServerConfig read = config;  // all or nothing
+  for (const auto& [key, node] : table) {
+    const std::uint32_t line = key.source().begin.line;
+    const Field* field = find(key.str());
+    if (field == nullptr) return wrong(line, key.str(), "no such setting");
+    std::optional<std::string> what;
+    if (const auto text = node.value_exact<std::string>()) {
+      what = assign(read, *field, *text);
+    } else if (const auto number = node.value_exact<std::int64_t>(); number && *number >= 0) {
+      what = assign(read, *field, static_cast<std::uint64_t>(*number));
+    } else {
+      what = "must be a whole number or a text: " + field->help;
+    }
+    if (what) return wrong(line, key.str(), *what);
+  }
+  config = std::move(read);
+  return {};
+}
+
+Result<void, std::string> read_config_environment(
+    ServerConfig& config, const std::function<std::optional<std::string>(const std::string&)>& look_up) {
+  for (const Field& field : fields()) {
+    const auto text = look_up(environment_name(field.name));
+    if (!text) continue;
+    const auto set = set_config(config, field.name, *text);
+    if (!set) return Unexpected<std::string>{environment_name(field.name) + ": " + set.error()};
+  }
+  return {};
+}
+
+std::string to_toml(const ServerConfig& config) {
+  std::string out;
+  for (const Field& field : fields()) {
+    out += field.name + " = ";
+    if (const auto* number = std::get_if<NumberField>(&field.kind)) {
+      out += std::to_string(config.*number->member);
+    } else {
+      out += '"';
+      for (const char c : config.*std::get_if<TextField>(&field.kind)->member) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += c;
+      }
+      out += '"';
+    }
+    out += "  # " + field.help + "\n";
+  }
+  return out;
+}
+
+}  // namespace runstone

@@ -1,0 +1,90 @@
+#include "server/admin/server_config.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+namespace runstone {
+namespace {
+
+TEST_CASE("the printed configuration reads back to an equal one", "[admin]") {
+  ServerConfig config;
+  config.world = "a \"quoted\\ folder";
+  config.sessions_max = 7;
+  config.encoding = "raw";
+  ServerConfig read;
+  REQUIRE(read_config_toml(read, to_toml(config), "printed").has_value());
+  CHECK(read == config);
+  CHECK(to_toml(read) == to_toml(config));
+}
+
+TEST_CASE("every setting can be set by its own printed value and has a help text", "[admin]") {
+  std::size_t lines = 0;
+  for (const char c : to_toml(ServerConfig{})) lines += c == '\n' ? 1 : 0;
+  CHECK(lines == config_fields().size());
+  for (const ConfigField& field : config_fields()) CHECK_FALSE(field.help.empty());
+}
+
+TEST_CASE("names in file, environment and flags follow one rule", "[admin]") {
+  CHECK(environment_name("sessions_max") == "RUNSTONE_SESSIONS_MAX");
+  CHECK(flag_name("sessions_max") == "--sessions-max");
+}
+
+TEST_CASE("a file sets what it names and nothing else", "[admin]") {
+  ServerConfig config;
+  REQUIRE(read_config_toml(config, "sessions_max = 3\nlisten = \"[::1]:0\"\n", "server.toml").has_value());
+  ServerConfig expected;
+  expected.sessions_max = 3;
+  expected.listen = "[::1]:0";
+  CHECK(config == expected);
+}
+
+TEST_CASE("errors in a file name file, line and key, and change nothing", "[admin]") {
+  const auto error = [](const char* toml) {
+    ServerConfig config;
+    const auto read = read_config_toml(config, toml, "server.toml");
+    REQUIRE_FALSE(read.has_value());
+    CHECK(config == ServerConfig{});
+    return read.error();
+  };
+  const TextError broken = error("sessions_max = 3\nworld = \"unfinished\n");
+  CHECK(broken.file == "server.toml");
+  CHECK(broken.line == 2);
+  const TextError unknown = error("sessions_max = 3\n\nsession_max = 4\n");
+  CHECK(unknown.line == 3);
+  CHECK(unknown.key == "session_max");
+  CHECK(error("sessions_max = 0").what.find("1..65536") != std::string::npos);
+  CHECK(error("sessions_max = -1").key == "sessions_max");
+  CHECK(error("sessions_max = \"3\"").key == "sessions_max");
+  CHECK(error("sessions_max = 1.5").key == "sessions_max");
+  CHECK(error("world = 3").key == "world");
+  CHECK(error("world = \"\"").key == "world");
+  CHECK(error("encoding = \"zip\"").what.find("packed or raw") != std::string::npos);
+}
+
+TEST_CASE("the environment sets fields and its errors name the variable", "[admin]") {
+  std::map<std::string, std::string> environment{{"RUNSTONE_IO_THREADS", "8"}, {"RUNSTONE_OTHER", "x"}};
+  const auto look_up = [&](const std::string& name) -> std::optional<std::string> {
+    const auto found = environment.find(name);
+    if (found == environment.end()) return std::nullopt;
+    return found->second;
+  };
+  ServerConfig config;
+  REQUIRE(read_config_environment(config, look_up).has_value());
+  CHECK(config.io_threads == 8);
+  for (const char* bad : {"", "0", "65", "8x", "-8", "99999999999999999999999"}) {
+    environment["RUNSTONE_IO_THREADS"] = bad;
+    const auto read = read_config_environment(config, look_up);
+    REQUIRE_FALSE(read.has_value());
+    CHECK(read.error().find("RUNSTONE_IO_THREADS") != std::string::npos);
+    CHECK(config.io_threads == 8);
+  }
+}
+
+TEST_CASE("an unknown setting is an error, not a silent nothing", "[admin]") {
+  ServerConfig config;
+  CHECK_FALSE(set_config(config, "sesions_max", "3").has_value());
+  CHECK(set_config(config, "sessions_max", "3").has_value());
+}
+
+}  // namespace
+}  // namespace runstone
