@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -12,17 +13,17 @@
 namespace runstone {
 
 enum class ErrorCode : std::uint16_t {
-  truncated,        // the input ended early
-  trailing_bytes,   // bytes left over after a complete value
-  not_canonical,    // decodes, but another spelling is the only accepted one
-  bad_value,        // a field is outside its documented range
-  bad_version,      // made by an unknown format version
-  limit_exceeded,   // larger than a documented limit
-  bad_checksum,     // bytes were damaged
-  broken_invariant, // a structural rule of runs, layers or frames does not hold
-  unknown_kind,     // a tag, message type or encoding that this build does not know
-  not_found,        // a named thing does not exist
-  io_failed,        // the disk or the network failed
+  truncated,         // the input ended early
+  trailing_bytes,    // bytes left over after a complete value
+  not_canonical,     // decodes, but another spelling is the only accepted one
+  bad_value,         // a field is outside its documented range
+  bad_version,       // made by an unknown format version
+  limit_exceeded,    // larger than a documented limit
+  bad_checksum,      // bytes were damaged
+  broken_invariant,  // a structural rule of runs, layers or frames does not hold
+  unknown_kind,      // a tag, message type or encoding that this build does not know
+  not_found,         // a named thing does not exist
+  io_failed,         // the disk or the network failed
 };
 
 struct Error {
@@ -45,8 +46,12 @@ inline Unexpected<Error> fail(ErrorCode code, const char* what, std::uint64_t of
 template <class T, class E = Error>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}                    // NOLINT(google-explicit-constructor)
-  Result(Unexpected<E> error) : state_(std::in_place_index<1>, std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+  template <class U = T>
+    requires std::is_convertible_v<U, T> && (!std::is_same_v<std::remove_cvref_t<U>, Result>)
+  Result(U&& value)
+      : state_(std::in_place_index<0>, std::forward<U>(value)) {}  // NOLINT(google-explicit-constructor)
+  Result(Unexpected<E> error)
+      : state_(std::in_place_index<1>, std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
 
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }

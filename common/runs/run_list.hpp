@@ -33,7 +33,8 @@ static_assert(sizeof(PackedRun) == 4);
 
 inline constexpr std::uint32_t kNarrowVolumeMax = 65535;
 
-/// Read-only views with one shape, so that hot code is a template over the form and branches outside its loop.
+/// Read-only views with one shape, so that hot code is a template over the form and branches outside its
+/// loop.
 class NarrowRuns {
  public:
   explicit NarrowRuns(std::span<const PackedRun> runs) : runs_(runs) {}
@@ -65,6 +66,10 @@ class RunList {
  public:
   /// Empty list in the form that `volume` asks for.
   explicit RunList(std::uint32_t volume = 0);
+  /// Takes vectors that a decoder filled. As everywhere here, nothing is checked: validate() the chunk.
+  static RunList of_narrow(std::vector<PackedRun> runs);
+  /// Requires as many ends as materials.
+  static RunList of_wide(std::vector<std::uint32_t> ends, std::vector<Material> materials);
 
   bool is_narrow() const { return std::holds_alternative<Narrow>(form_); }
   std::size_t size() const;
@@ -78,6 +83,9 @@ class RunList {
   void reserve(std::size_t runs);
   /// Requires run.end to fit the form. Does not merge.
   void push_back(Run run);
+  /// Takes `count` runs from bytes laid out as this form lies in memory (little-endian: packed runs, or all ends
+  /// and then all materials). Requires bytes.size() == 4 * count or 6 * count by form. One copy.
+  void assign_memory(std::span<const std::uint8_t> bytes, std::size_t count);
   /// Replaces runs [first, first + count) by `with`. O(runs behind them).
   void splice(std::size_t first, std::size_t count, std::span<const Run> with);
 

@@ -3,10 +3,13 @@
 //           memory: narrow {u16 end, u16 material} each, or wide all u32 ends, then all u16 materials
 //   packed: u8 2 | u8 version 1 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint run count
 //           | varint palette size | palette (varint ids, ascending, first as is, then differences - 1)
-//           | varint body bytes unpacked | body: a plane of palette indices (u8 each, u16 if the palette exceeds
-//           256), then a plane of run lengths as varints without the last one
+//           | varint body bytes unpacked | body: a plane of palette indices (u8 each, u16 if the palette
+//           exceeds 256), then a plane of run lengths as varints without the last one
 // `packed` becomes the run array in one linear pass over runs, never per voxel.
+// A chunk has one raw spelling and one packed spelling up to compression: every other one is refused.
+// Threads: any; scratch and zstd contexts are kept per thread and reused.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "common/core/bytes.hpp"
@@ -18,13 +21,16 @@ namespace runstone {
 /// Values are on wire and disk.
 enum class ChunkEncoding : std::uint8_t { raw = 1, packed = 2 };
 
-/// Appends the chunk's bytes. Requires a valid chunk. O(runs). `packed` keeps a compression context per thread.
+/// Appends the chunk's bytes. Requires a valid chunk. O(runs).
 void encode_chunk(const RunChunk& chunk, ChunkEncoding encoding, Bytes& out);
 Bytes encode_chunk(const RunChunk& chunk, ChunkEncoding encoding);
 
-/// Either encoding, told by the first byte; the result is validated. Never allocates more than the bytes justify
-/// (run count is checked against both the volume and the bytes that are there).
+/// Either encoding, told by the first byte; the result is validated. Memory is bounded before it is taken:
+/// raw and uncompressed bodies by the bytes that are there, zstd bodies by run count, and that by the volume
+/// (at most 11 bytes a voxel). Offsets of errors are byte offsets, run indices where a run is named. O(runs).
 Result<RunChunk> decode_chunk(ByteView in);
+/// The same for a known extent: another one is refused before anything is allocated.
+Result<RunChunk> decode_chunk(ByteView in, Extent expected);
 
 /// Size of the raw bytes without making them.
 std::size_t raw_bytes(const RunChunk& chunk);

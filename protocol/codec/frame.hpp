@@ -56,6 +56,8 @@ class FrameReader {
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
 
  private:
+  Result<void> open_frame();
+
   Sender sender_;
   std::uint64_t offset_ = 0;
   std::uint32_t counter_ = 0;

@@ -1,0 +1,232 @@
+#include <flatbuffers/flatbuffers.h>
+
+#include <algorithm>
+
+#include "protocol/codec/messages.hpp"
+#include "protocol/schema/runstone_generated.h"
+
+namespace runstone {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+template <std::size_t N>
+auto bytes_of(FlatBufferBuilder& b, const std::array<std::uint8_t, N>& v) {
+  return b.CreateVector(v.data(), v.size());
+}
+auto bytes_of(FlatBufferBuilder& b, const Bytes& v) { return b.CreateVector(v.data(), v.size()); }
+
+wire::Key key_of(const ChunkKey& key) { return {key.lod, key.at.x, key.at.y, key.at.z}; }
+wire::Version version_of(const Version& v) { return {v.epoch, v.seq}; }
+wire::Digest digest_bytes(const Digest& d) { return {d.lane[0], d.lane[1]}; }
+wire::Position position_of(const WorldPos& p) { return {p.x, p.y, p.z}; }
+wire::Pose pose_of(const Pose& p) { return {position_of(p.at), p.yaw, p.pitch}; }
+
+/// Builds the body table of each message; the result's type names the union member.
+struct BodyBuilder {
+  FlatBufferBuilder& b;
+
+  Offset<wire::Hello> operator()(const Hello& m) {
+    const auto key = bytes_of(b, m.key);
+    const auto nonce = bytes_of(b, m.nonce);
+    const auto name = b.CreateString(m.name);
+    return wire::CreateHello(b, m.protocol, key, m.instance, nonce, name, m.encodings);
+  }
+  Offset<wire::Welcome> operator()(const Welcome& m) {
+    std::vector<Offset<wire::MaterialRow>> rows;
+    rows.reserve(m.materials.size());
+    for (const MaterialInfo& row : m.materials.rows()) {
+      const auto& c = row.colour;
+      const std::uint32_t rgba = c[0] | c[1] << 8 | c[2] << 16 | static_cast<std::uint32_t>(c[3]) << 24;
+      const auto name = b.CreateString(row.name);
+      rows.push_back(wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
+    }
+    const auto materials = b.CreateVector(rows);
+    const auto world_id = bytes_of(b, m.world_id);
+    const auto server_key = bytes_of(b, m.server_key);
+    const auto challenge = bytes_of(b, m.challenge);
+    const auto signature = bytes_of(b, m.signature);
+    const wire::Position spawn = position_of(m.spawn);
+    return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge, m.y_min,
+                               m.y_max, &spawn, materials, server_key, challenge, signature,
+                               static_cast<std::uint8_t>(m.encoding), m.edit_volume_max, m.view_radius_max);
+  }
+  Offset<wire::Proof> operator()(const Proof& m) { return wire::CreateProof(b, bytes_of(b, m.signature)); }
+  Offset<wire::Ready> operator()(const Ready& m) { return wire::CreateReady(b, m.author, m.decided); }
+  Offset<wire::View> operator()(const View& m) {
+    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v);
+  }
+  Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
+    std::vector<wire::Key> keys(m.keys.size());
+    std::transform(m.keys.begin(), m.keys.end(), keys.begin(), key_of);
+    return wire::CreateChunkRequest(b, b.CreateVectorOfStructs(keys));
+  }
+  Offset<wire::Chunk> operator()(const ChunkSnapshot& m) {
+    return snapshot(m.key, m.chunk, ChunkEncoding::raw);
+  }
+  Offset<wire::EditRequest> operator()(const EditRequest& m) {
+    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
+  }
+  Offset<wire::Commit> operator()(const Commit& m) {
+    std::vector<Offset<wire::OrderedEdit>> edits;
+    edits.reserve(m.edits.size());
+    Bytes previous;
+    for (std::size_t i = 0; i < m.edits.size(); ++i) {
+      const OrderedEdit& e = m.edits[i];
+      previous.clear();
+      ByteWriter w(previous);
+      for (const Sequence seq : e.previous) {
+        RUNSTONE_ASSERT(seq < m.first + i);
+        w.varint(m.first + i - seq);
+      }
+      const auto edit = bytes_of(b, encode(e.edit));
+      edits.push_back(wire::CreateOrderedEdit(b, e.op.author, e.op.instance, e.op.seq,
+                                              static_cast<std::uint8_t>(e.cause), e.submitted_us,
+                                              e.ordered_us, edit, bytes_of(b, previous)));
+    }
+    return wire::CreateCommit(b, m.epoch, m.first, b.CreateVector(edits));
+  }
+  Offset<wire::Reject> operator()(const Reject& m) {
+    return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail));
+  }
+  Offset<wire::Durable> operator()(const Durable& m) { return wire::CreateDurable(b, m.epoch, m.seq); }
+  Offset<wire::Audit> operator()(const Audit& m) {
+    std::vector<Offset<wire::AuditEntry>> entries;
+    entries.reserve(m.entries.size());
+    for (const AuditEntry& e : m.entries) {
+      const wire::Key key = key_of(e.key);
+      const wire::Version version = version_of(e.version);
+      const wire::Digest digest = digest_bytes(e.digest);
+      entries.push_back(wire::CreateAuditEntry(b, &key, &version, &digest));
+    }
+    return wire::CreateAudit(b, b.CreateVector(entries));
+  }
+  Offset<wire::Move> operator()(const Move& m) {
+    const wire::Pose pose = pose_of(m.pose);
+    return wire::CreateMove(b, &pose);
+  }
+  Offset<wire::PlayerPoses> operator()(const PlayerPoses& m) {
+    std::vector<Offset<wire::PlayerPose>> players;
+    players.reserve(m.players.size());
+    for (const PlayerPose& p : m.players) {
+      const wire::Pose pose = pose_of(p.pose);
+      players.push_back(wire::CreatePlayerPose(b, p.author, &pose));
+    }
+    return wire::CreatePlayerPoses(b, b.CreateVector(players));
+  }
+  Offset<wire::Roster> operator()(const Roster& m) {
+    std::vector<Offset<wire::PlayerName>> players;
+    players.reserve(m.players.size());
+    for (const PlayerName& p : m.players)
+      players.push_back(wire::CreatePlayerName(b, p.author, b.CreateString(p.name)));
+    return wire::CreateRoster(b, b.CreateVector(players));
+  }
+  Offset<wire::Ping> operator()(const Ping& m) { return wire::CreatePing(b, m.sent_us); }
+  Offset<wire::Pong> operator()(const Pong& m) { return wire::CreatePong(b, m.sent_us, m.server_us); }
+  Offset<wire::Goodbye> operator()(const Goodbye& m) {
+    return wire::CreateGoodbye(b, static_cast<std::uint16_t>(m.reason), text(m.text));
+  }
+
+  Offset<wire::Chunk> snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
+    const Bytes data = encode_chunk(chunk.voxels, encoding);
+    b.ForceVectorAlignment(data.size(), 1, 4);  // raw runs are read in place
+    const auto bytes = bytes_of(b, data);
+    const wire::Key k = key_of(key);
+    const wire::Version v = version_of(chunk.version);
+    const wire::Digest d = digest_bytes(chunk.digest);
+    return wire::CreateChunk(b, &k, &v, &d, bytes);
+  }
+  /// Texts are for people: a longer one is cut, never refused.
+  Offset<flatbuffers::String> text(const std::string& t) {
+    return b.CreateString(t.data(), std::min(t.size(), kTextBytesMax));
+  }
+};
+
+template <class Table>
+EncodedMessage finish(FlatBufferBuilder& b, FrameClass frame_class, Offset<Table> body) {
+  b.Finish(wire::CreateMessage(b, wire::BodyTraits<Table>::enum_value, body.Union()),
+           wire::MessageIdentifier());
+  const std::uint8_t* first = b.GetBufferPointer();
+  return {frame_class, std::make_shared<const Bytes>(first, first + b.GetSize())};
+}
+
+/// One builder per thread: its buffer is reused from message to message.
+FlatBufferBuilder& cleared_builder() {
+  static thread_local FlatBufferBuilder builder(1024);
+  builder.Clear();
+  return builder;
+}
+
+}  // namespace
+
+FrameClass frame_class_of(const Message& message) {
+  const bool edits = std::holds_alternative<EditRequest>(message) ||
+                     std::holds_alternative<Commit>(message) || std::holds_alternative<Reject>(message) ||
+                     std::holds_alternative<Durable>(message);
+  if (edits) return FrameClass::edits;  // durable stays behind the commits it speaks of
+  return std::holds_alternative<ChunkSnapshot>(message) ? FrameClass::chunks : FrameClass::control;
+}
+
+EncodedMessage encode_message(const Message& message) {
+  FlatBufferBuilder& b = cleared_builder();
+  const FrameClass frame_class = frame_class_of(message);
+  return std::visit([&](const auto& m) { return finish(b, frame_class, BodyBuilder{b}(m)); }, message);
+}
+
+EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
+  FlatBufferBuilder& b = cleared_builder();
+  return finish(b, FrameClass::chunks, BodyBuilder{b}.snapshot(key, chunk, encoding));
+}
+
+const char* to_string(RejectReason reason) {
+  switch (reason) {
+    case RejectReason::busy:
+      return "busy";
+    case RejectReason::already_decided:
+      return "already decided";
+    case RejectReason::unknown_material:
+      return "unknown material";
+    case RejectReason::too_large:
+      return "too large";
+    case RejectReason::out_of_reach:
+      return "out of reach";
+    case RejectReason::not_permitted:
+      return "not permitted";
+    case RejectReason::rate_limited:
+      return "rate limited";
+    case RejectReason::bad_edit:
+      return "bad edit";
+  }
+  return "unknown";
+}
+
+const char* to_string(GoodbyeReason reason) {
+  switch (reason) {
+    case GoodbyeReason::closing:
+      return "closing";
+    case GoodbyeReason::wrong_protocol:
+      return "wrong protocol version";
+    case GoodbyeReason::malformed_frame:
+      return "malformed frame";
+    case GoodbyeReason::malformed_message:
+      return "malformed message";
+    case GoodbyeReason::unexpected_message:
+      return "unexpected message";
+    case GoodbyeReason::not_authenticated:
+      return "not authenticated";
+    case GoodbyeReason::already_connected:
+      return "connected elsewhere";
+    case GoodbyeReason::server_full:
+      return "server full";
+    case GoodbyeReason::timed_out:
+      return "timed out";
+    case GoodbyeReason::flooding:
+      return "flooding";
+    case GoodbyeReason::internal:
+      return "internal error";
+  }
+  return "unknown";
+}
+
+}  // namespace runstone

@@ -1,0 +1,217 @@
+#include "protocol/codec/packed_body.hpp"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr int kZstdLevel = 3;
+constexpr std::size_t kZstdBodyBytesMin = 24;       // a zstd frame has 12 bytes of its own
+constexpr std::size_t kScratchBytesKept = 1 << 20;  // one huge chunk must not hold memory for ever
+
+struct FreeContext {
+  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+};
+
+struct Scratch {
+  std::array<std::uint64_t, 1024> present{};  // one bit per material id; all zero between calls
+  std::vector<std::uint16_t> index_of;        // by material id; meaningful for the palette of the call
+  std::vector<Material> palette;
+  std::vector<std::uint8_t> used;  // by palette index
+  Bytes body, compressed;
+  std::unique_ptr<ZSTD_CCtx, FreeContext> compressor;
+  std::unique_ptr<ZSTD_DCtx, FreeContext> decompressor;
+};
+
+Scratch& scratch() {
+  thread_local Scratch mine;
+  return mine;
+}
+
+void keep_small(Bytes& bytes) {
+  if (bytes.capacity() > kScratchBytesKept) Bytes().swap(bytes);
+}
+
+template <class Runs>
+void find_palette(const Runs& runs, Scratch& s) {
+  Material highest = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Material id = runs.material(i);
+    s.present[id / 64u] |= 1ULL << (id % 64u);
+    highest = std::max(highest, id);
+  }
+  s.palette.clear();
+  s.index_of.resize(std::max<std::size_t>(s.index_of.size(), highest + 1u));
+  for (std::size_t word = 0; word <= highest / 64u; ++word) {
+    for (std::uint64_t bits = s.present[word]; bits != 0; bits &= bits - 1) {
+      const auto id = static_cast<Material>(word * 64 + static_cast<unsigned>(std::countr_zero(bits)));
+      s.index_of[id] = static_cast<std::uint16_t>(s.palette.size());
+      s.palette.push_back(id);
+    }
+    s.present[word] = 0;
+  }
+}
+
+template <class Runs>
+void write_planes(const Runs& runs, Scratch& s) {
+  const std::size_t count = runs.size();
+  const bool wide = s.palette.size() > 256;
+  s.body.resize(count * (wide ? 2 : 1));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t index = s.index_of[runs.material(i)];
+    if (wide) {
+      std::memcpy(s.body.data() + 2 * i, &index, 2);
+    } else {
+      s.body[i] = static_cast<std::uint8_t>(index);
+    }
+  }
+  ByteWriter w(s.body);
+  std::uint32_t begin = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    w.varint(runs.end(i) - begin);
+    begin = runs.end(i);
+  }
+}
+
+/// The body as one zstd frame, or nothing where that is no smaller.
+ByteView compress(Scratch& s) {
+  if (s.body.size() < kZstdBodyBytesMin) return {};
+  if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
+  RUNSTONE_ASSERT(s.compressor != nullptr);
+  s.compressed.resize(s.body.size() - 1);  // zstd stops when it runs out of room: no gain
+  const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.compressed.data(), s.compressed.size(),
+                                             s.body.data(), s.body.size(), kZstdLevel);
+  if (ZSTD_isError(size) != 0) return {};
+  return ByteView(s.compressed).first(size);
+}
+
+/// Exactly one frame that announces and holds `bytes` bytes.
+Result<ByteView> decompress(ByteView frame, std::size_t bytes, Scratch& s) {
+  if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != bytes) {
+    return fail(ErrorCode::bad_value, "zstd frame of another size than the body");
+  }
+  if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
+    return fail(ErrorCode::trailing_bytes, "zstd frame is cut or something follows it");
+  }
+  if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
+  RUNSTONE_ASSERT(s.decompressor != nullptr);
+  keep_small(s.body);
+  s.body.resize(bytes);
+  const std::size_t size =
+      ZSTD_decompressDCtx(s.decompressor.get(), s.body.data(), bytes, frame.data(), frame.size());
+  if (ZSTD_isError(size) != 0 || size != bytes) return fail(ErrorCode::bad_checksum, "zstd frame is damaged");
+  return ByteView(s.body);
+}
+
+/// The one pass over runs: calls put(run, end, material) for each.
+template <class Index, class Put>
+Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
+                         std::uint32_t volume, std::uint8_t* used, Put&& put) {
+  const std::uint8_t* index_at = body.data();
+  const std::uint8_t* at = index_at + count * sizeof(Index);
+  const std::uint8_t* const stop = body.data() + body.size();
+  std::uint32_t end = 0;
+  for (std::size_t i = 0; i < count; ++i, index_at += sizeof(Index)) {
+    Index index;
+    std::memcpy(&index, index_at, sizeof(Index));
+    if (index >= palette.size())
+      return fail(ErrorCode::broken_invariant, "palette index behind the palette", i);
+    used[index] = 1;
+    if (i + 1 == count) {
+      end = volume;
+    } else {
+      if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
+      std::uint32_t length = *at++;
+      for (unsigned shift = 7; length >> shift != 0; shift += 7) {  // the last byte read said "more"
+        if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
+        const std::uint32_t byte = *at++;
+        if (byte == 0) return fail(ErrorCode::broken_invariant, "run length is longer than needed", i);
+        length = (length & ((1u << shift) - 1)) | byte << shift;
+        if (shift == 14 && byte >= 0x80)
+          return fail(ErrorCode::broken_invariant, "run length exceeds 21 bits", i);
+      }
+      if (length > volume - end) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
+      end += length;
+    }
+    put(i, end, palette[index]);
+  }
+  if (at != stop) {
+    return fail(ErrorCode::trailing_bytes, "bytes follow the run lengths",
+                static_cast<std::uint64_t>(at - body.data()));
+  }
+  return {};
+}
+
+template <class Put>
+Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
+                         std::uint32_t volume, std::uint8_t* used, Put&& put) {
+  if (palette.size() > 256) return read_planes<std::uint16_t>(body, count, palette, volume, used, put);
+  return read_planes<std::uint8_t>(body, count, palette, volume, used, put);
+}
+
+}  // namespace
+
+PackedBody pack(const RunList& runs) {
+  RUNSTONE_ASSERT(runs.size() > 0);
+  Scratch& s = scratch();
+  keep_small(s.body);
+  keep_small(s.compressed);
+  runs.visit([&s](const auto& list) {
+    find_palette(list, s);
+    write_planes(list, s);
+  });
+  const ByteView compressed = compress(s);
+  return {s.palette, s.body, compressed};
+}
+
+Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette,
+                       std::uint32_t volume) {
+  RUNSTONE_ASSERT(shape.plausible(palette.size()) && shape.runs <= volume);
+  Scratch& s = scratch();
+  if (zstd) {
+    const auto unpacked = decompress(body, shape.body_bytes, s);
+    if (!unpacked) return Unexpected<Error>{unpacked.error()};
+    body = *unpacked;
+  } else if (body.size() != shape.body_bytes) {
+    return fail(body.size() < shape.body_bytes ? ErrorCode::truncated : ErrorCode::trailing_bytes,
+                "body of another size than announced");
+  }
+  s.used.assign(palette.size(), 0);
+  Result<void> read;
+  RunList runs;
+  if (volume <= kNarrowVolumeMax) {
+    std::vector<PackedRun> narrow(shape.runs);
+    read = read_planes(body, shape.runs, palette, volume, s.used.data(),
+                       [out = narrow.data()](std::size_t i, std::uint32_t end, Material material) {
+                         out[i] = {static_cast<std::uint16_t>(end), material};
+                       });
+    runs = RunList::of_narrow(std::move(narrow));
+  } else {
+    std::vector<std::uint32_t> ends(shape.runs);
+    std::vector<Material> materials(shape.runs);
+    read = read_planes(
+        body, shape.runs, palette, volume, s.used.data(),
+        [e = ends.data(), m = materials.data()](std::size_t i, std::uint32_t end, Material material) {
+          e[i] = end;
+          m[i] = material;
+        });
+    runs = RunList::of_wide(std::move(ends), std::move(materials));
+  }
+  if (!read) return Unexpected<Error>{read.error()};
+  if (std::find(s.used.begin(), s.used.end(), 0) != s.used.end()) {
+    return fail(ErrorCode::not_canonical, "palette names a material that no run has");
+  }
+  return runs;
+}
+
+}  // namespace runstone
