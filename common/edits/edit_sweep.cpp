@@ -1,8 +1,10 @@
 #include "common/edits/edit_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <vector>
 
 #include "common/core/assert.hpp"
 #include "common/edits/line_bits.hpp"
