@@ -4,43 +4,10 @@
 #include <functional>
 #include <utility>
 
+#include "common/core/text.hpp"
+
 namespace runstone {
 namespace {
-
-/// Well-formed UTF-8 (Unicode 15, table 3-7) without C0 controls and DEL, so that a name is safe in a log
-/// line and in a TOML basic string.
-bool is_printable_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    if (lead < 0x20 || lead == 0x7f) return false;
-    std::size_t length = 1;
-    unsigned low = 0x80, high = 0xbf;  // bounds of the second byte: shut out overlong forms and surrogates
-    if (lead >= 0x80) {
-      if (lead >= 0xc2 && lead <= 0xdf) {
-        length = 2;
-      } else if (lead >= 0xe0 && lead <= 0xef) {
-        length = 3;
-        if (lead == 0xe0) low = 0xa0;
-        if (lead == 0xed) high = 0x9f;
-      } else if (lead >= 0xf0 && lead <= 0xf4) {
-        length = 4;
-        if (lead == 0xf0) low = 0x90;
-        if (lead == 0xf4) high = 0x8f;
-      } else {
-        return false;
-      }
-    }
-    if (text.size() - i < length) return false;
-    for (std::size_t k = 1; k < length; ++k) {
-      const auto byte = static_cast<unsigned char>(text[i + k]);
-      if (byte < low || byte > high) return false;
-      low = 0x80;
-      high = 0xbf;
-    }
-    i += length;
-  }
-  return true;
-}
 
 const char* broken_rule(const SurfaceRule& rule) {
   constexpr double kReach = 10000;

@@ -1,7 +1,7 @@
 #include "common/runs/run_list.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <utility>
 
 namespace runstone {
 
@@ -44,24 +44,6 @@ void RunList::reserve(std::size_t runs) {
   auto& wide = *std::get_if<Wide>(&form_);
   wide.ends.reserve(runs);
   wide.materials.reserve(runs);
-}
-
-void RunList::assign_memory(std::span<const std::uint8_t> bytes, std::size_t count) {
-  const auto copy = [](void* to, const std::uint8_t* from, std::size_t size) {
-    if (size != 0) std::memcpy(to, from, size);  // memcpy may not be given null, which an empty vector hands out
-  };
-  if (auto* narrow = std::get_if<Narrow>(&form_)) {
-    RUNSTONE_ASSERT(bytes.size() == count * sizeof(PackedRun));
-    narrow->resize(count);
-    return copy(narrow->data(), bytes.data(), bytes.size());
-  }
-  auto& wide = *std::get_if<Wide>(&form_);
-  const std::size_t end_bytes = count * sizeof(std::uint32_t);
-  RUNSTONE_ASSERT(bytes.size() == end_bytes + count * sizeof(Material));
-  wide.ends.resize(count);
-  wide.materials.resize(count);
-  copy(wide.ends.data(), bytes.data(), end_bytes);
-  copy(wide.materials.data(), bytes.data() + end_bytes, count * sizeof(Material));
 }
 
 void RunList::push_back(Run run) {

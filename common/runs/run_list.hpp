@@ -83,9 +83,6 @@ class RunList {
   void reserve(std::size_t runs);
   /// Requires run.end to fit the form. Does not merge.
   void push_back(Run run);
-  /// Takes `count` runs from bytes laid out as this form lies in memory (little-endian: packed runs, or all ends
-  /// and then all materials). Requires bytes.size() == 4 * count or 6 * count by form. One copy.
-  void assign_memory(std::span<const std::uint8_t> bytes, std::size_t count);
   /// Replaces runs [first, first + count) by `with`. O(runs behind them).
   void splice(std::size_t first, std::size_t count, std::span<const Run> with);
 
