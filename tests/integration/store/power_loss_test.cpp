@@ -138,11 +138,11 @@ Outcome run(bool sync, std::uint64_t seeds, int lives) {
 
 TEST_CASE("every edit that append returned for survives power loss, and no batch by half",
           "[store][power-loss]") {
-  const Outcome outcome = run(true, 60, 6);
+  const Outcome outcome = run(true, 30, 6);
   INFO(outcome.first);
   CHECK(outcome.worlds_broken == 0);
-  CHECK(outcome.cuts > 100);  // the power really failed in the middle of work
-  CHECK(outcome.durable > 60 * 100);
+  CHECK(outcome.cuts > 50);  // the power really failed in the middle of work
+  CHECK(outcome.durable > 30 * 100);
 }
 
 TEST_CASE("the power-loss test notices a store that does not sync", "[store][power-loss]") {

@@ -1,0 +1,193 @@
+#include "server/app/replay.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/edits/edit_geometry.hpp"
+#include "common/runs/reorder.hpp"
+
+namespace runstone {
+
+namespace {
+
+constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
+constexpr Sequence kProgressEdits = 1024;
+
+std::string text_of(const Version& version) {
+  return std::to_string(version.epoch) + ":" + std::to_string(version.seq);
+}
+
+std::string text_of(const ChunkKey& key) {
+  std::string text =
+      std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," + std::to_string(key.at.z);
+  if (key.lod != 0) text += " lod=" + std::to_string(key.lod);
+  return text;
+}
+
+}  // namespace
+
+std::string ReplayDifference::message() const {
+  std::string line = source + ": chunk=" + text_of(key) + " version=" + text_of(expected_version);
+  if (expected_version != rebuilt_version) {
+    return line + " is not in the log, which has the chunk at version=" + text_of(rebuilt_version);
+  }
+  return line + " digest=" + to_hex(expected) + ", replay gives digest=" + to_hex(rebuilt);
+}
+
+Replayer::Replayer(Store& store, const Generator& generator)
+    : store_(store), generator_(generator), edge_(store.meta().chunk_edge) {}
+
+void Replayer::expect(const std::string& source, const DigestList& list) {
+  for (const AuditEntry& entry : list.chunks) {
+    listed_[entry.key].emplace(entry.version, Expected{source, entry.version, entry.digest});
+  }
+}
+
+StoreResult<Chunk> Replayer::base_of(const ChunkKey& key) {
+  auto base = store_.load_base(key);
+  if (!base) return Unexpected<StoreError>{base.error()};
+  if (base->has_value()) return **std::move(base);
+  Chunk chunk;
+  chunk.voxels = in_cheapest_order(
+      generator_.generate(origin_of(key.at, edge_), Extent::cube(static_cast<unsigned>(edge_))));
+  chunk.digest = digest_of(chunk.voxels);
+  return chunk;
+}
+
+void Replayer::differs(ReplayDifference difference) {
+  ++report_.differences;
+  if (!report_.first) report_.first = std::move(difference);
+}
+
+void Replayer::check(const ChunkKey& key, const Expected& expected, const Chunk& rebuilt) {
+  if (expected.version == rebuilt.version && expected.digest == rebuilt.digest) return;
+  differs({expected.source, key, expected.version, rebuilt.version, expected.digest, rebuilt.digest});
+}
+
+void Replayer::apply(const ChunkKey& key, Rebuilt& rebuilt) {
+  if (rebuilt.stack.empty()) return;
+  const VoxelPos origin = origin_of(key.at, edge_);
+  report_.voxels_changed +=
+      apply_stack(rebuilt.chunk.voxels, rebuilt.chunk.digest, origin, rebuilt.stack, scratch_).voxels_changed;
+  rebuilt.stack.clear();
+}
+
+StoreResult<void> Replayer::compare(const ChunkKey& key, Rebuilt& rebuilt) {
+  const Version version = rebuilt.chunk.version;
+  if (const auto snapshot = snapshots_.find(key);
+      snapshot != snapshots_.end() && snapshot->second == version) {
+    apply(key, rebuilt);
+    const auto stored = store_.load_snapshot(key);
+    if (!stored) return Unexpected<StoreError>{stored.error()};
+    // A server that runs meanwhile may have replaced it; then there is nothing to compare at this version.
+    if (stored->has_value() && (*stored)->version == version) {
+      check(key, {"snapshot", version, (*stored)->digest}, rebuilt.chunk);
+      ++report_.snapshots_compared;
+    } else {
+      ++report_.not_compared;
+    }
+    snapshots_.erase(snapshot);
+  }
+  const auto listed = listed_.find(key);
+  if (listed == listed_.end()) return {};
+  const auto [first, last] = listed->second.equal_range(version);
+  if (first != last) apply(key, rebuilt);
+  for (auto row = first; row != last; ++row) {
+    check(key, row->second, rebuilt.chunk);
+    ++report_.listed_compared;
+  }
+  listed->second.erase(first, last);
+  return {};
+}
+
+StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
+  for (const ChunkCoord at : touched_chunks(record.edit, edge_)) {
+    const ChunkKey key{0, at};
+    auto found = chunks_.find(key);
+    if (found == chunks_.end()) {
+      auto base = base_of(key);
+      if (!base) return Unexpected<StoreError>{base.error()};
+      found = chunks_.emplace(key, Rebuilt{*std::move(base), {}}).first;
+      if (auto compared = compare(key, found->second); !compared) return compared;
+    }
+    Rebuilt& rebuilt = found->second;
+    rebuilt.stack.push_back(record.edit);
+    rebuilt.chunk.version = record.version;
+    if (rebuilt.stack.size() == kStackMax) apply(key, rebuilt);
+    if (auto compared = compare(key, rebuilt); !compared) return compared;
+  }
+  ++report_.edits;
+  return {};
+}
+
+StoreResult<void> Replayer::expect_snapshots() {
+  const auto keys = store_.snapshot_keys();
+  if (!keys) return Unexpected<StoreError>{keys.error()};
+  for (const auto& [key, version] : *keys) snapshots_.emplace(key, version);
+  return {};
+}
+
+StoreResult<void> Replayer::compare_rest() {
+  for (const auto& [key, version] : snapshots_) {
+    if (key.lod != 0 || version.seq > report_.seq) {
+      ++report_.not_compared;
+      continue;
+    }
+    const auto stored = store_.load_snapshot(key);
+    if (!stored) return Unexpected<StoreError>{stored.error()};
+    const Digest digest = stored->has_value() ? (*stored)->digest : Digest{};
+    if (auto compared = compare_left_over(key, {"snapshot", version, digest}); !compared) return compared;
+    ++report_.snapshots_compared;
+  }
+  for (const auto& [key, rows] : listed_) {
+    for (const auto& [version, expected] : rows) {
+      if (key.lod != 0 || version.seq > report_.seq) {
+        ++report_.not_compared;
+        continue;
+      }
+      if (auto compared = compare_left_over(key, expected); !compared) return compared;
+      ++report_.listed_compared;
+    }
+  }
+  return {};
+}
+
+StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expected& expected) {
+  // Either no edit touched the chunk, or the log passed the version without meeting it: check() sees which.
+  if (const auto found = chunks_.find(key); found != chunks_.end()) {
+    check(key, expected, found->second.chunk);
+    return {};
+  }
+  const auto base = base_of(key);
+  if (!base) return Unexpected<StoreError>{base.error()};
+  check(key, expected, *base);
+  return {};
+}
+
+StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
+  const auto last = store_.last_sequence();
+  if (!last) return Unexpected<StoreError>{last.error()};
+  report_.seq = std::min(at, *last);
+  if (const auto expected = expect_snapshots(); !expected) return Unexpected<StoreError>{expected.error()};
+
+  StoreResult<void> replayed;
+  const auto read = store_.read_log(1, report_.seq, [&](const EditRecord& record) {
+    replayed = replay_edit(record);
+    if (progress && record.version.seq % kProgressEdits == 0) progress(record.version.seq, report_.seq);
+    return replayed.has_value();
+  });
+  if (!read) return Unexpected<StoreError>{read.error()};
+  if (!replayed) return Unexpected<StoreError>{replayed.error()};
+
+  for (auto& [key, rebuilt] : chunks_) {
+    apply(key, rebuilt);
+    // The digest followed every edit; recomputed from the runs it must be the same.
+    check(key, {"followed digest", rebuilt.chunk.version, digest_of(rebuilt.chunk.voxels)}, rebuilt.chunk);
+    report_.digests.push_back({key, rebuilt.chunk.version, rebuilt.chunk.digest});
+    report_.world_digest = report_.world_digest + world_digest_term(key, rebuilt.chunk.digest);
+  }
+  if (const auto compared = compare_rest(); !compared) return Unexpected<StoreError>{compared.error()};
+  return std::move(report_);
+}
+
+}  // namespace runstone

@@ -1,0 +1,91 @@
+// Replayer: rebuilds a world from base and log alone and compares the result, digest by digest, with what was
+// stored as snapshots and with what a server or clients wrote down. Snapshots are never read for their
+// voxels. This is the proof that the log is the world: same apply function, another time, another process.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/edits/edit_stack.hpp"
+#include "common/generate/generator.hpp"
+#include "server/app/digest_list.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+/// Two digests that should be equal and are not, or a version that the log does not have.
+struct ReplayDifference {
+  std::string source;  // "snapshot", "followed digest" or the name of a list
+  ChunkKey key;
+  Version expected_version, rebuilt_version;  // equal, unless the log never brought the chunk to the first
+  Digest expected, rebuilt;
+  std::string message() const;  // one line
+};
+
+struct ReplayReport {
+  Sequence seq = 0;  // where the replay ended
+  std::uint64_t edits = 0;
+  std::uint64_t voxels_changed = 0;
+  std::uint64_t snapshots_compared = 0;
+  std::uint64_t listed_compared = 0;
+  std::uint64_t not_compared =
+      0;  // snapshots and listed chunks newer than `seq`, or of another level of detail
+  std::uint64_t differences = 0;
+  std::optional<ReplayDifference> first;  // the first one met
+  Digest world_digest;                    // over `digests`
+  std::vector<AuditEntry> digests;        // of all edited chunks, ascending
+};
+
+class Replayer {
+ public:
+  /// Both must outlive the replayer. The store may be open for reading only, with a server writing meanwhile.
+  Replayer(Store& store, const Generator& generator);
+
+  /// Compares each listed chunk when (and if) the replay brings it to the listed version. Versions newer than
+  /// the end of the replay are left out; versions that the log passed without meeting them are differences.
+  void expect(const std::string& source, const DigestList& list);
+
+  /// Called now and then with the sequence reached and the last one.
+  using Progress = std::function<void(Sequence, Sequence)>;
+  /// Replays edits 1 .. min(at, last). Call once. Memory: all edited chunks as runs. Fails with what the
+  /// store says about rows that cannot be read.
+  StoreResult<ReplayReport> run(Sequence at, const Progress& progress = {});
+
+ private:
+  struct Rebuilt {
+    Chunk chunk;
+    std::vector<EditDescriptor> stack;  // not applied yet; chunk.version counts them already
+  };
+  struct Expected {
+    std::string source;
+    Version version;
+    Digest digest;
+  };
+
+  StoreResult<Chunk> base_of(const ChunkKey& key);
+  StoreResult<void> replay_edit(const EditRecord& record);
+  void apply(const ChunkKey& key, Rebuilt& rebuilt);
+  StoreResult<void> expect_snapshots();
+  /// Compares with all that is expected of this chunk at its present version and forgets that.
+  StoreResult<void> compare(const ChunkKey& key, Rebuilt& rebuilt);
+  /// What was not met on the way: chunks that no edit touched, versions beyond the end, versions that never
+  /// were.
+  StoreResult<void> compare_rest();
+  StoreResult<void> compare_left_over(const ChunkKey& key, const Expected& expected);
+  void check(const ChunkKey& key, const Expected& expected, const Chunk& rebuilt);
+  void differs(ReplayDifference difference);
+
+  Store& store_;
+  const Generator& generator_;
+  const std::int32_t edge_;
+  std::map<ChunkKey, Rebuilt> chunks_;
+  std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
+  std::map<ChunkKey, Version> snapshots_;
+  ApplyScratch scratch_;
+  ReplayReport report_;
+};
+
+}  // namespace runstone

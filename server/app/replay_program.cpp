@@ -1,0 +1,170 @@
+#include "server/app/replay_program.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <iomanip>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "server/app/digest_list.hpp"
+#include "server/app/replay.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+namespace {
+
+struct Options {
+  std::string world;
+  bool verify = false;
+  Sequence at = std::numeric_limits<Sequence>::max();
+  std::string json;
+  std::vector<std::string> against;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A line that rewrites itself twice a second while somebody watches.
+class ProgressLine {
+ public:
+  ProgressLine() : watched_(::isatty(STDERR_FILENO) == 1) {}
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  void show(Sequence done, Sequence last) {
+    if (!watched_ || seconds_since(shown_at_) < 0.5) return;
+    shown_at_ = std::chrono::steady_clock::now();
+    shown_ = true;
+    std::fprintf(stderr, "\rreplayed %llu of %llu edits", static_cast<unsigned long long>(done),
+                 static_cast<unsigned long long>(last));
+    std::fflush(stderr);
+  }
+
+ private:
+  bool watched_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point shown_at_ = std::chrono::steady_clock::now();
+};
+
+double rate_of(const ReplayReport& report, double seconds) {
+  return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;
+}
+
+void print_table(std::ostream& out, const Store& store, const ReplayReport& report, double seconds,
+                 bool verified) {
+  const WorldMeta& meta = store.meta();
+  const auto row = [&](const char* name) -> std::ostream& {
+    return out << std::left << std::setw(12) << name << std::right;
+  };
+  out << std::fixed;
+  row("world") << to_hex(meta.world_id) << "  " << store.file() << '\n';
+  row("base") << meta.generator << " version " << meta.generator_version << ", seed " << meta.seed << '\n';
+  row("edits") << report.edits << ", up to sequence " << report.seq << '\n';
+  row("chunks") << report.digests.size() << " edited\n";
+  row("voxels") << report.voxels_changed << " changed\n";
+  row("snapshots") << report.snapshots_compared << " compared\n";
+  row("lists") << report.listed_compared << " chunks compared\n";
+  row("left out") << report.not_compared << " newer than the end, or of another level of detail\n";
+  if (verified) row("rows") << "all read and sound\n";
+  row("time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0) << rate_of(report, seconds)
+              << " edits/s\n";
+  row("digest") << to_hex(report.world_digest) << '\n';
+  row("result") << (report.differences == 0 ? "equal" : std::to_string(report.differences) + " differences")
+                << '\n';
+  if (report.first) row("first") << report.first->message() << '\n';
+}
+
+/// A digest list that also says what the replay found.
+std::string report_json(const Store& store, const ReplayReport& report, double seconds) {
+  const DigestList list{store.meta().world_id, report.seq, report.digests};
+  nlohmann::ordered_json more = {{"edits", report.edits},
+                                 {"chunks", report.digests.size()},
+                                 {"voxels_changed", report.voxels_changed},
+                                 {"snapshots_compared", report.snapshots_compared},
+                                 {"listed_compared", report.listed_compared},
+                                 {"not_compared", report.not_compared},
+                                 {"differences", report.differences},
+                                 {"first_difference", report.first ? report.first->message() : ""},
+                                 {"world_digest", to_hex(report.world_digest)},
+                                 {"seconds", seconds},
+                                 {"edits_per_second", rate_of(report, seconds)}};
+  std::string json = to_json(list);
+  json.resize(json.rfind('}'));  // opened again for one more member
+  return json + ",\n\"report\":" + more.dump() + "}\n";
+}
+
+int cannot_read(std::ostream& err, const std::string& message) {
+  err << "runstone-replay: " << message << '\n';
+  return static_cast<int>(ReplayExit::cannot_read);
+}
+
+int run(const Options& options, std::ostream& out, std::ostream& err) {
+  auto opened = open_world(options.world, StoreAccess::read_only);
+  if (!opened) return cannot_read(err, opened.error().message());
+  Store& store = **opened;
+  const WorldMeta& meta = store.meta();
+  const auto generator = make_generator(
+      {meta.generator, meta.generator_version, meta.seed, meta.generator_parameters}, meta.materials);
+  if (!generator) {
+    return cannot_read(err, store.file() + ": this program cannot make the base of generator " +
+                                meta.generator + " version " + std::to_string(meta.generator_version) + ": " +
+                                generator.error().what);
+  }
+  Replayer replayer(store, **generator);
+  for (const std::string& file : options.against) {
+    const auto list = read_digests_json(file);
+    if (!list) return cannot_read(err, list.error().message());
+    if (list->world_id != meta.world_id) return cannot_read(err, file + ": is about another world");
+    replayer.expect(file, *list);
+  }
+  if (options.verify) {
+    if (const auto checked = store.check(); !checked) return cannot_read(err, checked.error().message());
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  StoreResult<ReplayReport> report = [&] {
+    ProgressLine line;
+    return replayer.run(options.at, [&](Sequence done, Sequence last) { line.show(done, last); });
+  }();
+  const double seconds = seconds_since(start);
+  if (!report) return cannot_read(err, report.error().message());
+  print_table(out, store, *report, seconds, options.verify);
+  if (!options.json.empty()) {
+    const auto written = write_text_file(options.json, report_json(store, *report, seconds));
+    if (!written) return cannot_read(err, written.error().message());
+  }
+  return static_cast<int>(report->differences == 0 ? ReplayExit::equal : ReplayExit::different);
+}
+
+}  // namespace
+
+int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  Options options;
+  CLI::App app(
+      "Rebuilds a world from base and edit log and compares digests. Exit code 0: equal, 1: different, "
+      "2: cannot read.",
+      "runstone-replay");
+  app.add_option("--world", options.world, "folder of the world; a server may be running")->required();
+  app.add_option("--at", options.at, "stop after this sequence number");
+  app.add_flag("--verify", options.verify, "also read and verify every row of every table");
+  app.add_option("--json", options.json, "write digests and report to this file");
+  app.add_option("--against", options.against, "compare with digests that a server or client wrote");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, out, err) == 0 ? 0 : static_cast<int>(ReplayExit::cannot_read);
+  }
+  return run(options, out, err);
+}
+
+}  // namespace runstone
