@@ -236,7 +236,7 @@ std::size_t ClientSession::view_chunks() const {
 }
 
 bool ClientSession::loaded() const {
-  return replica_.confirmed_count() == view_chunks() && replica_.awaiting_count() == 0;
+  return is_open() && replica_.current_count() == view_chunks() && replica_.awaiting_count() == 0;
 }
 
 void ClientSession::on_roster(const Roster& roster) {

@@ -88,9 +88,9 @@ class ClientSession {
   OperationId operation(ClientSequence seq) const { return {author_, config_.instance, seq}; }
   /// The view in force: the wished one within the server's limits.
   View view() const;
-  /// Chunks in view, and how many of them are confirmed.
+  /// Number of chunks in view.
   std::size_t view_chunks() const;
-  /// Every chunk in view is confirmed and none waits to be repaired.
+  /// The snapshot of every chunk in view came on this connection, and none waits to be repaired.
   bool loaded() const;
   /// Counts pongs; a ping sent after a moment has come back once it rises by two from then.
   std::uint64_t pongs() const { return pongs_; }

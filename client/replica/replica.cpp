@@ -33,7 +33,9 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   durable_ = opening.durable;
   newest_ = opening.head;
   requests_.clear();
+  current_count_ = 0;
   for (auto& [key, entry] : entries_) {
+    entry.current = false;
     entry.inbox.clear();
     entry.latest = 0;
     entry.awaiting = false;
@@ -79,7 +81,7 @@ void Replica::reset() {
     if (entry.shown) chunk_news(key).removed = true;
   }
   entries_.clear();
-  confirmed_count_ = 0;
+  confirmed_count_ = current_count_ = 0;
   own_.clear();
   requests_.clear();
   opening_.reset();
@@ -99,6 +101,7 @@ void Replica::set_view(const View& view) {
       news.removed = true;
     }
     if (it->second.confirmed) --confirmed_count_;
+    if (it->second.current) --current_count_;
     it = entries_.erase(it);
   }
 }
@@ -183,6 +186,8 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
     return;
   }
   Entry& entry = entry_for(snapshot.key);
+  if (!entry.current) ++current_count_;
+  entry.current = true;
   if (entry.confirmed) {
     const Version held = entry.confirmed->version;
     const bool repairs = entry.awaiting && snapshot.chunk.version == held;

@@ -91,6 +91,8 @@ class Replica {
   /// Keys of all confirmed chunks, ascending.
   std::vector<ChunkKey> confirmed_keys() const;
   std::size_t confirmed_count() const { return confirmed_count_; }
+  /// Chunks whose snapshot came on this connection: after a resumption the others may have missed edits.
+  std::size_t current_count() const { return current_count_; }
   /// Chunks that wait for a snapshot they asked for.
   std::size_t awaiting_count() const;
   const OwnEdits& own_edits() const { return own_; }
@@ -120,6 +122,7 @@ class Replica {
     std::vector<Pending> pending;  // ascending by seq
     std::vector<Inbound> inbox;    // ascending by sequence
     Sequence latest = 0;           // newest edit of this chunk seen on this connection
+    bool current = false;          // a snapshot of it came on this connection
     bool awaiting = false;         // asked for a snapshot: nothing else is taken
     std::optional<TimeUs> requested_us;
   };
@@ -138,6 +141,7 @@ class Replica {
   std::optional<View> view_;
   std::map<ChunkKey, Entry> entries_;
   std::size_t confirmed_count_ = 0;
+  std::size_t current_count_ = 0;
   OwnEdits own_;
   Sequence durable_ = 0;
   Sequence newest_ = 0;

@@ -44,7 +44,9 @@ class MeshPlanner {
   /// A true answer is remembered as drawn.
   bool accept(const ChunkKey& key, std::uint64_t number);
 
+  /// Chunks to mesh, and those of them that need not wait.
   std::size_t dirty_count() const { return dirty_; }
+  std::size_t ready_count() const { return ready_.size(); }
   std::uint64_t jobs() const { return jobs_; }
   /// Chunks that got at least one job. jobs() / this is the number of meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }

@@ -1,0 +1,444 @@
+#include "client/app/client.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <type_traits>
+#include <utility>
+
+#include "client/net/key_file.hpp"
+#include "client/net/steady_clock.hpp"
+#include "common/mesh/visibility.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr TimeUs kFrameUs = 16'000;               // between two frames that only show movement
+constexpr TimeUs kLoadingFrameUs = 100'000;       // off screen, between frames that only show new terrain
+constexpr TimeUs kRestUs = 10'000;                // longest pause of the loop: session ticks
+constexpr TimeUs kScreenshotWaitUs = 10'000'000;  // a picture waits this long for meshes under way
+constexpr TimeUs kEventsUs = 8'000;         // messages taken per turn before meshes and frames get theirs
+constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
+
+SessionConfig session_config(const ClientOptions& options) {
+  SessionConfig config;
+  config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
+  if (!options.key_file.empty()) config.pinned = load_pinned_servers(options.key_file);
+  config.name = options.name;
+  config.instance = random_instance();
+  config.encodings = options.encodings;
+  config.view = {{}, options.view_radius, options.view_radius_v};
+  return config;
+}
+
+}  // namespace
+
+Client::Client(ClientOptions options, const Script* script)
+    : options_(std::move(options)),
+      session_(session_config(options_)),
+      pins_known_(session_.pinned().size()),
+      recorder_(options_.render ? LatencyStage::presented : LatencyStage::meshed),
+      planner_(session_.replica()) {
+  if (options_.render) {
+    screen_ = options_.headless ? Screen::headless(options_.width, options_.height)
+                                : Screen::window(options_.width, options_.height, "Runstone");
+    spdlog::info("renderer={}", screen_->name());
+  }
+  if (script != nullptr) runner_.emplace(*script, static_cast<ScriptHost&>(*this));
+  started_us_ = steady_now_us();
+  lost_us_ = started_us_;
+  input_us_ = started_us_;
+  NetConfig net;
+  net.host = options_.host;
+  net.port = options_.port;
+  net_ = std::make_unique<NetClient>(std::move(net), [this] { wake_.notify(); });
+}
+
+Client::~Client() = default;
+
+int Client::run(const volatile std::sig_atomic_t& stop) {
+  std::optional<int> code;
+  while (!code) {
+    take_events();
+    const TimeUs now_us = steady_now_us();
+    take_input(now_us);
+    if (runner_) runner_->step(now_us);
+    follow_player();
+    session_.tick(now_us);
+    flush();
+    take_news();
+    take_meshes();
+    push_jobs();
+    draw(now_us);
+    if (stop != 0) wish_to_end_ = kExitOk;
+    code = exit_code(steady_now_us());
+    if (!code) rest(steady_now_us());
+  }
+  finish(*code);
+  return *code;
+}
+
+// ---- network
+// ---------------------------------------------------------------------------------------------------
+
+void Client::take_events() {
+  const TimeUs start_us = steady_now_us();
+  // Taken in one piece, handled in one piece: what arrives meanwhile is for the next turn.
+  for (NetEvent& event : net_->take_events()) {
+    if (const auto* connected = std::get_if<NetConnected>(&event)) on_connected(*connected);
+    if (const auto* gone = std::get_if<NetDisconnected>(&event)) on_disconnected(*gone);
+    if (auto* received = std::get_if<NetReceived>(&event)) on_received(*received);
+    if (steady_now_us() - start_us > kEventsUs) {
+      take_news();
+      take_meshes();
+      push_jobs();
+    }
+  }
+}
+
+void Client::on_connected(const NetConnected& event) {
+  connection_ = event.connection;
+  session_.connected(random_nonce(), steady_now_us());
+  flush();
+}
+
+void Client::on_received(NetReceived& event) {
+  if (event.connection != connection_) return;
+  if (const auto* snapshot = std::get_if<ChunkSnapshot>(&event.message)) {
+    ++chunk_stats_.snapshots;
+    chunk_stats_.wire_bytes += event.bytes;
+    chunk_stats_.raw_bytes += raw_bytes(snapshot->chunk.voxels);
+    chunk_stats_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
+    chunk_stats_.unpack_ns.add(event.unpack_ns);
+  }
+  session_.receive(std::move(event.message), {event.received_us, event.unpacked_us, steady_now_us()});
+  if (session_.openings() != openings_seen_) world_opened();
+}
+
+void Client::on_disconnected(const NetDisconnected& event) {
+  if (event.connection != 0 && event.connection != connection_) return;
+  connection_ = 0;
+  session_.disconnected();
+  last_failure_ = event.why;
+  if (session_.end() && !session_.end()->text.empty()) last_failure_ += " (" + session_.end()->text + ")";
+  if (!lost_us_) {
+    lost_us_ = steady_now_us();
+    spdlog::warn("connection lost: {}", last_failure_);
+  } else {
+    spdlog::debug("no connection: {}", last_failure_);
+  }
+}
+
+void Client::world_opened() {
+  openings_seen_ = session_.openings();
+  lost_us_.reset();
+  const Welcome& welcome = *session_.welcome();
+  spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(), welcome.epoch,
+               welcome.head, welcome.durable, welcome.chunk_edge);
+  if (openings_seen_ == 1) player_.move_to(welcome.spawn);
+  if (!pool_ || materials_ != welcome.materials) {
+    materials_ = welcome.materials;
+    if (screen_) screen_->renderer().set_materials(materials_);
+    pool_.reset();
+    pool_ = std::make_unique<MeshPool>(VisibilityTable(materials_), options_.workers, steady_now_ns,
+                                       [this] { wake_.notify(); });
+  }
+  if (!options_.key_file.empty() && session_.pinned().size() != pins_known_) {
+    save_pinned_servers(options_.key_file, session_.pinned());
+    pins_known_ = session_.pinned().size();
+  }
+}
+
+void Client::flush() {
+  for (const Message& message : session_.take_outgoing()) net_->send(connection_, encode_message(message));
+  if (session_.wants_close() && connection_ != 0) net_->close(connection_);
+}
+
+// ---- player
+// ----------------------------------------------------------------------------------------------------
+
+void Client::take_input(TimeUs now_us) {
+  if (!screen_ || screen_->window() == nullptr) return;
+  const WindowInput input = screen_->window()->poll();
+  const double seconds = static_cast<double>(now_us - input_us_) / 1e6;
+  input_us_ = now_us;
+  if (input.close || input.escape) wish_to_end_ = kExitOk;
+  if (runner_) return;  // the script steers
+  player_.steer(input, std::min(seconds, 0.1), materials_.size());
+  for (int i = 0; i < input.remove_clicks; ++i) click(false, now_us);
+  for (int i = 0; i < input.place_clicks; ++i) click(true, now_us);
+  if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
+  picture_changed_ = true;
+}
+
+void Client::click(bool place, TimeUs now_us) {
+  const auto hit = pick();
+  if (!hit) return;
+  const auto at = place ? place_against(*hit) : hit->voxel;
+  if (at) static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
+}
+
+void Client::follow_player() {
+  session_.set_pose(player_.pose());
+  if (!session_.replica().opened()) return;
+  const ChunkCoord centre = player_.chunk(session_.replica().chunk_edge());
+  const View wished{centre, options_.view_radius, options_.view_radius_v};
+  if (session_.view().centre != centre) {
+    session_.set_view(wished);
+    planner_.view_changed();
+  }
+  planner_.set_eye(centre);
+}
+
+// ---- meshes
+// ----------------------------------------------------------------------------------------------------
+
+void Client::take_news() {
+  const ReplicaNews news = session_.replica().take_news();
+  recorder_.take(news, session_.clock(), steady_now_us());
+  planner_.take(news.chunks);
+  for (const ChunkNews& chunk : news.chunks) {
+    if (!chunk.removed || !screen_) continue;
+    screen_->renderer().remove(chunk.key);
+    picture_changed_ = true;
+  }
+  for (const RejectNews& reject : news.rejects) {
+    spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
+  }
+}
+
+void Client::take_meshes() {
+  if (!pool_) return;
+  for (const MeshResult& result : pool_->take_results()) {
+    chunk_stats_.mesh_ns.add(result.mesh_ns);
+    if (!planner_.accept(result.key, result.number)) continue;
+    recorder_.meshed(result.key, result.serial, result.meshed_us);
+    if (!screen_) continue;
+    screen_->renderer().upload(result.key, result.edge, result.mesh);
+    recorder_.uploaded(result.key, result.serial, steady_now_us());
+    picture_changed_ = true;
+    edits_uploaded_ = edits_uploaded_ || recorder_.open_edits() != 0;
+  }
+}
+
+void Client::push_jobs() {
+  if (!pool_) return;
+  while (pool_->in_flight() < pool_->capacity()) {
+    auto job = planner_.next();
+    if (!job) return;
+    pool_->push(std::move(*job));
+  }
+}
+
+bool Client::meshing_idle() const {
+  return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0);
+}
+
+// ---- frames
+// ----------------------------------------------------------------------------------------------------
+
+std::vector<Marker> Client::markers() const {
+  std::vector<Marker> out;
+  for (const auto& [author, other] : session_.others()) {
+    if (!other.pose) continue;
+    const WorldPos& at = other.pose->at;
+    Marker body{at.x - 0.3, at.y - 1.6, at.z - 0.3, 0.6, 1.8, 0.6, 230, 90, 40, true};
+    // A colour of their own, so that two builders are told apart.
+    body.r = static_cast<std::uint8_t>(96 + mix64(author) % 160);
+    body.g = static_cast<std::uint8_t>(96 + mix64(author + 1) % 160);
+    body.b = static_cast<std::uint8_t>(96 + mix64(author + 2) % 160);
+    out.push_back(body);
+  }
+  if (!screen_ || screen_->window() == nullptr) return out;
+  if (const auto hit = pick()) {
+    const auto at = [](std::int32_t v) { return v - 0.002; };
+    out.push_back(
+        {at(hit->voxel.x), at(hit->voxel.y), at(hit->voxel.z), 1.004, 1.004, 1.004, 20, 20, 20, false});
+  }
+  const WorldPos eye = player_.eye();
+  const LookDirection look = player_.direction();
+  constexpr double kAhead = 0.5, kSize = 0.004;
+  const auto dot = [&](double from, double slope) { return from + slope * kAhead - kSize / 2; };
+  out.push_back(
+      {dot(eye.x, look.x), dot(eye.y, look.y), dot(eye.z, look.z), kSize, kSize, kSize, 255, 255, 255, true});
+  return out;
+}
+
+void Client::draw(TimeUs now_us) {
+  if (!screen_) return;
+  const bool on_screen = screen_->window() != nullptr;
+  const bool screenshot_due =
+      !screenshots_.empty() && (meshing_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
+  const TimeUs pause = on_screen ? kFrameUs : kLoadingFrameUs;
+  const bool due = picture_changed_ && now_us - drawn_us_ >= pause;
+  if (!due && !screenshot_due && !edits_uploaded_) return;
+  const double edge = std::max(16, session_.replica().chunk_edge());
+  screen_->draw(player_.camera((options_.view_radius + 1.5) * edge), markers());
+  const TimeUs done_us = steady_now_us();
+  recorder_.presented(done_us);
+  drawn_us_ = done_us;
+  picture_changed_ = false;
+  edits_uploaded_ = false;
+  ++frames_;
+  if (screenshot_due) {
+    const Image image = screen_->renderer().read_image();
+    for (const std::string& file : std::exchange(screenshots_, {})) {
+      if (!write_png(screenshot_path(file), image)) spdlog::error("cannot write {}", screenshot_path(file));
+    }
+  }
+  if (on_screen && done_us - title_us_ > 500'000) {
+    const WorldPos at = player_.eye();
+    const Material held = player_.held();
+    screen_->window()->set_title(fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
+                                             frames_ * 1e6 / static_cast<double>(done_us - title_us_),
+                                             materials_.knows(held) ? materials_[held].name : "", at.x, at.y,
+                                             at.z, lost_us_ ? "  (connecting)" : ""));
+    title_us_ = done_us;
+    frames_ = 0;
+  }
+}
+
+std::string Client::screenshot_path(const std::string& file) const {
+  return (std::filesystem::path(options_.screenshot_dir) / file).string();
+}
+
+// ---- end
+// -------------------------------------------------------------------------------------------------------
+
+std::optional<int> Client::exit_code(TimeUs now_us) {
+  const auto& end = session_.end();
+  if (end && end->final) {
+    std::fprintf(stderr, "runstone-client: %s\n", end->text.c_str());
+    return kExitNoStart;
+  }
+  if (runner_ && runner_->finished() && screenshots_.empty()) {
+    return runner_->failures().empty() && !drift_found() ? kExitOk : kExitFailed;
+  }
+  if (wish_to_end_) return drift_found() ? kExitFailed : *wish_to_end_;
+  if (end && end->by_server && options_.exit_on_goodbye) return drift_found() ? kExitFailed : kExitOk;
+  if (lost_us_ && static_cast<double>(now_us - *lost_us_) > options_.reconnect_seconds * 1e6) {
+    std::fprintf(stderr, "runstone-client: no server at %s:%u: %s\n", options_.host.c_str(),
+                 unsigned{options_.port}, last_failure_.c_str());
+    return kExitNoStart;
+  }
+  return std::nullopt;
+}
+
+void Client::rest(TimeUs now_us) {
+  TimeUs pause = kRestUs;
+  if (screen_ && screen_->window() != nullptr) pause = 1'000;  // the swap paces the loop
+  if (runner_ && runner_->due_us()) pause = std::min(pause, *runner_->due_us() - now_us);
+  if (pause > 0) wake_.wait(std::chrono::microseconds(pause));
+}
+
+ClientReport Client::report() const {
+  ClientReport out;
+  out.renderer = screen_ ? screen_->name() : "none";
+  out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
+  out.latency = recorder_.report();
+  out.chunks = chunk_stats_;
+  out.chunks.mesh_jobs = planner_.jobs();
+  out.chunks.chunks_meshed = planner_.chunks_meshed();
+  const NetStats& net = net_->stats();
+  out.net.bytes_received = net.bytes_received;
+  out.net.bytes_sent = net.bytes_sent;
+  out.net.control_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::control)];
+  out.net.edit_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::edits)];
+  out.net.chunk_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::chunks)];
+  out.net.messages_received = net.messages_received;
+  out.net.connections = net.connections;
+  return out;
+}
+
+void Client::finish(int code) {
+  session_.close(GoodbyeReason::closing, "");
+  flush();
+  net_->stop(kGoodbyeMs);
+  if (runner_) {
+    for (const std::string& failure : runner_->failures()) std::fprintf(stderr, "%s\n", failure.c_str());
+  }
+  const ClientReport measured = report();
+  if (!options_.report.empty() && !write_text(options_.report, to_json(measured, session_))) {
+    std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.report.c_str());
+  }
+  if (!options_.digests.empty() && !write_digests(options_.digests, session_)) {
+    std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.digests.c_str());
+  }
+  std::fputs(to_table(measured, session_).c_str(), stdout);
+  spdlog::info("exit code={}", code);
+}
+
+// ---- what a script may do
+// --------------------------------------------------------------------------------------
+
+void Client::move_to(const WorldPos& eye) {
+  player_.move_to(eye);
+  picture_changed_ = true;
+}
+
+void Client::look(double yaw, double pitch) {
+  player_.look(yaw, pitch);
+  picture_changed_ = true;
+}
+
+std::optional<Material> Client::material(std::string_view name) const {
+  unsigned id = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
+  if (error == std::errc{} && end == name.data() + name.size()) {
+    if (id >= materials_.size()) return std::nullopt;
+    return static_cast<Material>(id);
+  }
+  return materials_.find(name);
+}
+
+std::optional<RayHit> Client::pick() const {
+  return runstone::pick(session_.replica(), player_.eye(), player_.direction(), kReach);
+}
+
+std::optional<std::int32_t> Client::surface(std::int32_t x, std::int32_t z) const {
+  const Replica& replica = session_.replica();
+  const auto& view = replica.view();
+  if (!replica.opened() || !view) return std::nullopt;
+  const std::int32_t edge = replica.chunk_edge();
+  const std::int32_t top = (view->centre.y + view->radius_v + 1) * edge - 1;
+  const std::int32_t bottom = (view->centre.y - view->radius_v) * edge;
+  for (std::int32_t y = top; y >= bottom; --y) {
+    const auto material = replica.shown_at({x, y, z});
+    if (material && *material != kEmpty) return y;
+  }
+  return std::nullopt;
+}
+
+bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+  const auto seq = session_.submit(edit, due_us, now_us);
+  if (!seq) {
+    recorder_.not_submitted();
+    spdlog::warn("edit not taken: {}", seq.error().what);
+    return false;
+  }
+  recorder_.submitted(*seq, due_us);
+  return true;
+}
+
+bool Client::loaded() const {
+  return session_.loaded() && planner_.dirty_count() == 0 && meshing_idle() && !edits_uploaded_;
+}
+
+bool Client::synced(std::uint64_t mark) const {
+  // Two pongs: the first may answer a ping sent before the mark.
+  return session_.loaded() && session_.pongs() >= mark + 2 && session_.replica().own_edits().undecided() == 0;
+}
+
+bool Client::screenshot(const std::string& file) {
+  if (!screen_) return false;
+  screenshots_.push_back(file);
+  screenshot_since_us_ = steady_now_us();
+  return true;
+}
+
+}  // namespace runstone

@@ -1,0 +1,116 @@
+// Client: the main thread of runstone-client. It owns the session, the planner, the screen and the script,
+// and passes between them what the network thread and the mesh workers hand over. Nothing here waits for a
+// peer: a turn takes what is there, and the next one comes when there is more (WakeUp), a frame is due, or
+// the script wants to go on.
+#pragma once
+#include <csignal>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/app/options.hpp"
+#include "client/app/player.hpp"
+#include "client/app/report.hpp"
+#include "client/app/screen.hpp"
+#include "client/bots/script_host.hpp"
+#include "client/bots/script_runner.hpp"
+#include "client/net/net_client.hpp"
+#include "client/net/wake_up.hpp"
+#include "client/replica/client_session.hpp"
+#include "client/schedule/latency_recorder.hpp"
+#include "client/schedule/mesh_planner.hpp"
+#include "client/schedule/mesh_pool.hpp"
+
+namespace runstone {
+
+/// Exit codes of the program.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;   // an expectation of the script failed, or drift was found
+inline constexpr int kExitNoStart = 2;  // bad arguments, no OpenGL, no server
+
+class Client final : private ScriptHost {
+ public:
+  /// `script` may be null and must outlive the client. Throws std::runtime_error if the environment is broken
+  /// (no OpenGL, key file unreadable).
+  Client(ClientOptions options, const Script* script);
+  ~Client() override;
+
+  /// Returns the exit code once the script, the user, the server or `stop` (set by a signal) ends it.
+  int run(const volatile std::sig_atomic_t& stop);
+
+ private:
+  // The turn, in its order.
+  void take_events();
+  void on_connected(const NetConnected& event);
+  void on_received(NetReceived& event);
+  void on_disconnected(const NetDisconnected& event);
+  void world_opened();
+  void take_input(TimeUs now_us);
+  void follow_player();
+  void flush();
+  void take_news();
+  void take_meshes();
+  void push_jobs();
+  void draw(TimeUs now_us);
+  std::optional<int> exit_code(TimeUs now_us);
+  void rest(TimeUs now_us);
+  void finish(int code);
+
+  bool meshing_idle() const;
+  bool drift_found() const { return session_.replica().counters().drifted != 0; }
+  std::vector<Marker> markers() const;
+  ClientReport report() const;
+  std::string screenshot_path(const std::string& file) const;
+  void click(bool place, TimeUs now_us);
+
+  // ScriptHost.
+  bool ready() const override { return session_.openings() != 0; }
+  WorldPos eye() const override { return player_.eye(); }
+  void move_to(const WorldPos& eye) override;
+  void look(double yaw, double pitch) override;
+  std::optional<Material> material(std::string_view name) const override;
+  std::optional<Material> shown_at(VoxelPos at) const override { return session_.replica().shown_at(at); }
+  std::optional<RayHit> pick() const override;
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
+  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
+  bool loaded() const override;
+  bool durable() const override { return session_.replica().own_edits().all().empty(); }
+  std::uint64_t sync_mark() const override { return session_.pongs(); }
+  bool synced(std::uint64_t mark) const override;
+  bool screenshot(const std::string& file) override;
+  bool screenshot_done() const override { return screenshots_.empty(); }
+  bool digests(const std::string& file) override { return write_digests(file, session_); }
+
+  const ClientOptions options_;
+  WakeUp wake_;
+  ClientSession session_;
+  std::size_t pins_known_ = 0;
+  LatencyRecorder recorder_;
+  MeshPlanner planner_;
+  std::unique_ptr<Screen> screen_;  // null: nothing is drawn
+  std::unique_ptr<MeshPool> pool_;  // once the materials are known
+  MaterialTable materials_;
+  std::optional<ScriptRunner> runner_;
+  Player player_;
+  ChunkStats chunk_stats_;
+
+  ConnectionNumber connection_ = 0;  // 0: none
+  std::uint64_t openings_seen_ = 0;
+  TimeUs started_us_ = 0;
+  std::optional<TimeUs> lost_us_;   // without a session since
+  std::string last_failure_;        // why the last attempt to connect failed
+  std::optional<int> wish_to_end_;  // the user or the server ends the program
+
+  bool picture_changed_ = true;  // since the last frame
+  bool edits_uploaded_ = false;  // a mesh with edits is on the GPU and not on the screen
+  TimeUs drawn_us_ = 0, input_us_ = 0, title_us_ = 0;
+  std::uint32_t frames_ = 0;
+  std::vector<std::string> screenshots_;  // to take
+  TimeUs screenshot_since_us_ = 0;
+
+  std::unique_ptr<NetClient> net_;  // last: its thread wakes what is above
+};
+
+}  // namespace runstone

@@ -1,0 +1,93 @@
+#include "client/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <thread>
+
+#include "protocol/limits.hpp"
+
+namespace runstone {
+namespace {
+
+/// "host:port" or "[v6 address]:port".
+std::string parse_address(const std::string& text, ClientOptions& out) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return "expected HOST:PORT";
+  std::string host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  unsigned port = 0;
+  if (!CLI::detail::lexical_cast(text.substr(colon + 1), port) || port == 0 || port > 65535) {
+    return "the port is not a number of 1 to 65535";
+  }
+  out.host = host;
+  out.port = static_cast<std::uint16_t>(port);
+  return {};
+}
+
+std::string parse_size(const std::string& text, ClientOptions& out) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, cross), out.width) ||
+      !CLI::detail::lexical_cast(text.substr(cross + 1), out.height) || out.width < 16 || out.height < 16 ||
+      out.width > 8192 || out.height > 8192) {
+    return "expected WIDTHxHEIGHT, 16 to 8192 each";
+  }
+  return {};
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, const char* const* argv) {
+  ClientOptions out;
+  CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
+  app.set_version_flag("--version",
+                       std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
+  std::string address, size, encoding = "auto";
+  unsigned view = out.view_radius, view_v = 0;
+  bool no_render = false;
+  app.add_option("--connect", address, "server, HOST:PORT")->required();
+  app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
+      ->check([](const std::string& name) {
+        return name.empty() || name.size() > kPlayerNameBytesMax ? "a name has 1 to 32 bytes" : "";
+      });
+  app.add_option("--key", out.key_file, "identity; made if missing. Default: a new one each time");
+  app.add_option("--view", view, "view radius in chunks, horizontal")
+      ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_option("--view-vertical", view_v, "and vertical; default: half of --view, rounded up")
+      ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_flag("--headless", out.headless, "draw off screen, without a display");
+  app.add_flag("--no-render", no_render, "mesh, but draw nothing (no OpenGL needed)");
+  app.add_option("--size", size, "picture or window, WIDTHxHEIGHT; default 1280x720");
+  app.add_option("--script", out.script, "run this script, then end (docs/client.md)")
+      ->check(CLI::ExistingFile);
+  app.add_option("--report", out.report, "write latencies and counts as JSON at the end");
+  app.add_option("--digests", out.digests, "write the digests of all chunks held as JSON at the end");
+  app.add_option("--encoding", encoding, "chunk encodings to offer")
+      ->check(CLI::IsMember({"raw", "packed", "auto"}));
+  app.add_option("--screenshot-dir", out.screenshot_dir, "where screenshots go")
+      ->check(CLI::ExistingDirectory);
+  app.add_flag("--exit-on-goodbye", out.exit_on_goodbye, "end when the server says goodbye");
+  app.add_option("--reconnect-seconds", out.reconnect_seconds, "give up after so long without the server")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
+      ->check(CLI::Range(0U, 64U));
+  app.add_flag("--verbose", out.verbose, "log every step");
+  try {
+    app.parse(argc, argv);
+    std::string wrong = parse_address(address, out);
+    if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
+    if (!size.empty()) wrong = parse_size(size, out);
+    if (!wrong.empty()) throw CLI::ValidationError("--size", wrong);
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return {std::nullopt, code == 0 ? 0 : 2};
+  }
+  out.view_radius = static_cast<std::uint8_t>(view);
+  out.view_radius_v = static_cast<std::uint8_t>(app.count("--view-vertical") != 0 ? view_v : (view + 1) / 2);
+  out.render = !no_render;
+  out.encodings = encoding == "raw" ? 1 : encoding == "packed" ? 2 : 3;
+  if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
+  return {out, 0};
+}
+
+}  // namespace runstone

@@ -1,0 +1,72 @@
+#include "client/app/player.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace runstone {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kPitchMax = kPi / 2 - 0.01;  // straight up has no "forward"
+constexpr double kRadiansPerPixel = 0.0025;
+constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
+
+}  // namespace
+
+void Player::look(double yaw, double pitch) {
+  yaw_ = std::remainder(yaw, 2 * kPi);
+  pitch_ = std::clamp(pitch, -kPitchMax, kPitchMax);
+}
+
+Pose Player::pose() const {
+  Pose pose;
+  pose.at = eye_;
+  const double turns = yaw_ / (2 * kPi);
+  pose.yaw = static_cast<std::uint16_t>(std::llround((turns - std::floor(turns)) * 65536) & 65535);
+  pose.pitch = static_cast<std::int16_t>(std::lround(pitch_ / kPi * 32768));
+  return pose;
+}
+
+double yaw_of(const Pose& pose) { return pose.yaw / 65536.0 * 2 * kPi; }
+
+Camera Player::camera(double view_voxels) const {
+  Camera camera;
+  camera.x = eye_.x;
+  camera.y = eye_.y;
+  camera.z = eye_.z;
+  camera.yaw = yaw_;
+  camera.pitch = pitch_;
+  camera.far = std::max(64.0, view_voxels);
+  return camera;
+}
+
+ChunkCoord Player::chunk(std::int32_t edge) const {
+  const auto down = [](double v) {
+    constexpr double kLimit = kWorldLimit - 1;
+    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kLimit, kLimit)));
+  };
+  return chunk_of({down(eye_.x), down(eye_.y), down(eye_.z)}, edge);
+}
+
+void Player::steer(const WindowInput& input, double seconds, std::size_t material_count) {
+  // Right-handed with y up: to the right of +z lies -x, so a mouse that moves right lowers the yaw.
+  look(yaw_ - input.look_dx * kRadiansPerPixel, pitch_ - input.look_dy * kRadiansPerPixel);
+  const double forward = (input.forward ? 1 : 0) - (input.back ? 1 : 0);
+  const double right = (input.right ? 1 : 0) - (input.left ? 1 : 0);
+  const double up = (input.up ? 1 : 0) - (input.down ? 1 : 0);
+  const double distance = (input.fast ? kSpeedFast : kSpeed) * seconds;
+  const double sine = std::sin(yaw_), cosine = std::cos(yaw_);
+  eye_.x += (forward * sine - right * cosine) * distance;
+  eye_.z += (forward * cosine + right * sine) * distance;
+  eye_.y += up * distance;
+
+  if (material_count < 2) return;
+  const int last = static_cast<int>(std::min<std::size_t>(material_count, 65536)) - 1;
+  int held = held_;
+  if (input.digit >= 0) held = input.digit == 0 ? 10 : input.digit;
+  held += input.scroll;
+  held_ = static_cast<Material>(std::clamp(held, 1, last));
+}
+
+}  // namespace runstone
