@@ -12,9 +12,9 @@ namespace runstone {
 
 std::string TextError::message() const {
   std::string out = file;
-  if (line != 0) out += ":" + std::to_string(line);
-  if (!key.empty()) out += ": " + key;
-  return out + ": " + what;
+  if (line != 0) out.append(":").append(std::to_string(line));
+  if (!key.empty()) out.append(": ").append(key);
+  return out.append(": ").append(what);
 }
 
 namespace {

@@ -1,0 +1,139 @@
+// The terrain against its definition, voxel by voxel: one condition per rule, evaluated at single places.
+#include "common/generate/terrain_generator.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/core/hash.hpp"
+
+using namespace runstone;
+
+namespace {
+
+constexpr std::uint64_t kSeed = 7;
+
+/// Height of a rule's surface; the noise itself is tested elsewhere.
+double height(const SurfaceRule& rule, std::int32_t x, std::int32_t z) {
+  const ValueNoise noise(mix64(mix64(kSeed) + static_cast<std::uint64_t>(std::int64_t{rule.seed})),
+                         rule.frequency);
+  return rule.distance + rule.elevation * noise.at(x, z);
+}
+
+/// The last material whose rule holds at a place: what the thesis' generator asks of every voxel.
+Material ruled(const MaterialTable& table, std::int32_t y_min, VoxelPos at) {
+  Material out = kEmpty;
+  if (at.y < y_min) return out;
+  for (std::size_t id = 0; id < table.size(); ++id) {
+    const auto& rule = table[static_cast<Material>(id)].generation;
+    if (!rule || !(at.y < height(rule->surface, at.x, at.z))) continue;
+    if (rule->reversed && !(height(*rule->reversed, at.x, at.z) < at.y)) continue;
+    out = static_cast<Material>(id);
+  }
+  return out;
+}
+
+struct Oracle {
+  const MaterialTable& table;
+  TerrainParameters p;
+
+  Material operator()(VoxelPos at) const {
+    const auto id = [&](const std::string& name) { return name.empty() ? kEmpty : *table.find(name); };
+    std::int32_t top = p.y_min;  // of the column before its cover
+    for (std::int32_t y = p.y_min; y < 200; ++y) {
+      if (ruled(table, p.y_min, {at.x, y, at.z}) != kEmpty) top = y + 1;
+    }
+    Material out = ruled(table, p.y_min, at);
+    const bool in_cover = at.y >= top - 3 && at.y < top && at.y >= p.y_min;
+    if (id(p.beach) != kEmpty && top <= p.sea_level + p.beach_height) {
+      if (in_cover) out = id(p.beach);
+    } else {
+      if (id(p.rock) != kEmpty && top > p.rock_level && in_cover) out = id(p.rock);
+      if (id(p.peak) != kEmpty && top > p.peak_level && at.y == top - 1) out = id(p.peak);
+    }
+    if (out == kEmpty && at.y >= p.y_min && at.y < p.sea_level) out = id(p.water);
+    return out;
+  }
+};
+
+/// Compares a few columns over the whole height; returns the number of voxels that differ.
+int differences(const Generator& generator, const Oracle& oracle, SplitMix64& random, int columns) {
+  int wrong = 0;
+  for (int i = 0; i < columns; ++i) {
+    const std::int32_t x = random.between(-600, 600), z = random.between(-600, 600);
+    std::int32_t top = generator.y_min();
+    for (std::int32_t cy = -3; cy < 4; ++cy) {
+      const ChunkCoord at = chunk_of({x, cy * 32, z}, 32);
+      const RunChunk chunk = generator.generate(origin_of(at, 32), Extent::cube(32));
+      for (std::int32_t y = cy * 32; y < cy * 32 + 32; ++y) {
+        const Material found = material_at(chunk, local_of({x, y, z}, 32));
+        wrong += static_cast<int>(found != oracle({x, y, z}));
+        if (found != kEmpty) top = y + 1;
+      }
+    }
+    wrong += static_cast<int>(generator.surface_y(x, z) != top);
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("terrain is what its rules say, voxel by voxel", "[generate]") {
+  SplitMix64 random(Catch::rngSeed());
+  const MaterialTable& table = default_material_table();
+  TerrainParameters parameters;
+  SECTION("with its defaults") {}
+  SECTION("dry and bare") { parameters = {38, -64, "", "", 0, "", 0, "", 0}; }
+  SECTION("with a high floor, a low sea and covers that overlap") {
+    parameters = {30, 20, "water", "clay", 10, "slate", 35, "gold", 37};
+  }
+  const auto made = TerrainGenerator::make(kSeed, parameters, table);
+  REQUIRE(made.has_value());
+  CHECK(differences(**made, {table, parameters}, random, 12) == 0);
+}
+
+TEST_CASE("terrain with steep and hollow rules is what they say", "[generate]") {
+  // Overhangs: a slab between two surfaces, with air and another material below.
+  MaterialTable table;
+  REQUIRE(table.add(
+      {"low", {1, 1, 1, 255}, Visibility::opaque, GenerationRule{{1, 30, -20, 0.05}, std::nullopt}}));
+  REQUIRE(table.add({"slab",
+                     {2, 2, 2, 255},
+                     Visibility::opaque,
+                     GenerationRule{{2, 20, 40, 0.03}, SurfaceRule{3, -60, 20, 0.2}}}));
+  const TerrainParameters parameters{0, -50, "", "", 0, "", 0, "", 0};
+  SplitMix64 random(Catch::rngSeed());
+  const auto made = TerrainGenerator::make(kSeed, parameters, table);
+  REQUIRE(made.has_value());
+  CHECK(differences(**made, {table, parameters}, random, 12) == 0);
+
+  // And with the rule order turned round, where the solid ground is the last to be painted.
+  MaterialTable turned;
+  REQUIRE(turned.add(table[2]));
+  REQUIRE(turned.add(table[1]));
+  const auto other = TerrainGenerator::make(kSeed, parameters, turned);
+  REQUIRE(other.has_value());
+  CHECK(differences(**other, {turned, parameters}, random, 12) == 0);
+}
+
+TEST_CASE("the voxel oracle tells terrain with another parameter", "[generate]") {
+  SplitMix64 random(1);
+  const MaterialTable& table = default_material_table();
+  const auto made = TerrainGenerator::make(kSeed, TerrainParameters{}, table);
+  REQUIRE(made.has_value());
+  TerrainParameters other;
+  other.beach_height = 4;
+  other.sea_level = 40;
+  CHECK(differences(**made, {table, other}, random, 12) > 0);
+}
+
+TEST_CASE("chunks out of the terrain's bounds and deep below it are single runs", "[generate]") {
+  const MaterialTable& table = default_material_table();
+  const auto made = make_generator({"terrain", 1, kSeed, "y_min = -200"}, table);
+  REQUIRE(made.has_value());
+  const Generator& terrain = **made;
+  CHECK(terrain.generate({0, terrain.y_max(), 0}, Extent::cube(32)) ==
+        uniform_chunk(Extent::cube(32), kEmpty));
+  CHECK(terrain.generate({0, -232, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
+  const RunChunk deep = terrain.generate({0, -128, 0}, Extent::cube(32));
+  CHECK(deep == uniform_chunk(Extent::cube(32), *table.find("stone")));
+}
