@@ -22,8 +22,8 @@ RunChunk RunBuilder::finish() {
   RUNSTONE_ASSERT(filled_ == chunk_.volume());
   flush();
   filled_ = 0;
-  RunChunk out{chunk_.extent, chunk_.order, RunList{chunk_.volume()}};
-  std::swap(out.runs, chunk_.runs);
+  RunChunk out = std::move(chunk_);
+  chunk_.runs.clear();  // moved from, but still of the form that the volume asks for
   return out;
 }
 
