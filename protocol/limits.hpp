@@ -17,10 +17,10 @@ inline constexpr std::size_t kFrameHeaderBytes = 12;
 inline constexpr std::size_t kFragmentBytesMax = 16 * 1024;
 
 // Whole messages, by what their class may carry: bounds the memory a peer can make us hold per session.
-inline constexpr std::size_t kClientControlBytesMax = 4 * 1024;   // hello, view, ping: all small
-inline constexpr std::size_t kClientEditBytesMax = 4 * 1024;      // one descriptor
+inline constexpr std::size_t kClientControlBytesMax = 4 * 1024;         // hello, view, ping: all small
+inline constexpr std::size_t kClientEditBytesMax = 4 * 1024;            // one descriptor
 inline constexpr std::size_t kServerControlBytesMax = 8 * 1024 * 1024;  // the material table in welcome
-inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;   // one commit
+inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;         // one commit
 inline constexpr std::size_t kServerChunkBytesMax = 16 * 1024 * 1024;
 
 // Chunk bytes. Raw noise at 128^3 is the worst case.
@@ -31,7 +31,8 @@ static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax, "the largest raw ch
 // FlatBuffers verifier: nesting and table count of the largest honest message.
 inline constexpr unsigned kVerifierDepthMax = 8;
 inline constexpr unsigned kVerifierTablesMax = 2 * kMaterialCountMax + 16;
-static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControlBytesMax, "a full table fits welcome");
+static_assert(kMaterialCountMax * (kMaterialNameBytesMax + 32) <= kServerControlBytesMax,
+              "a full table fits welcome");
 
 // Handshake.
 inline constexpr std::size_t kKeyBytes = 32;
@@ -42,13 +43,14 @@ inline constexpr std::size_t kPlayerNameBytesMax = 32;
 inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // a peer that stays silent frees its slot
 
 // World.
-inline constexpr std::size_t kViewRadiusMax = 64;            // chunks
-inline constexpr std::size_t kChunkRequestKeysMax = 64;      // per message
+inline constexpr std::uint8_t kLodMax = 0;               // levels above full detail are reserved
+inline constexpr std::size_t kViewRadiusMax = 64;        // chunks
+inline constexpr std::size_t kChunkRequestKeysMax = 64;  // per message
 inline constexpr std::size_t kCommitEditsMax = 4096;
-inline constexpr std::size_t kTouchedChunksMax = 4096;       // per edit: bounds the work of one request
+inline constexpr std::size_t kTouchedChunksMax = 4096;  // per edit: bounds the work of one request
 inline constexpr std::size_t kAuditEntriesMax = 1024;
 inline constexpr std::size_t kPlayersMax = 65536;
-inline constexpr std::size_t kTextBytesMax = 256;            // reject detail, goodbye text
+inline constexpr std::size_t kTextBytesMax = 256;  // reject detail, goodbye text
 static_assert(kDescriptorBytesMax + 256 <= kClientEditBytesMax, "every descriptor fits a request");
 
 }  // namespace runstone

@@ -6,6 +6,9 @@ namespace runstone {
 namespace {
 
 constexpr std::uint8_t kFlagMore = 1;
+constexpr std::size_t kMessageBytesKept = 4 * kFragmentBytesMax;
+// Bodies are read in place, and std::vector takes its storage from operator new.
+static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16);
 
 }  // namespace
 
@@ -54,6 +57,13 @@ void FrameWriter::append(const EncodedMessage& message, Bytes& out) {
 }
 
 Result<void> FrameReader::feed(ByteView bytes, const OnMessage& on_message) {
+  if (broken_) return Unexpected<Error>{*broken_};
+  auto result = advance(bytes, on_message);
+  if (!result) broken_ = result.error();
+  return result;
+}
+
+Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
   while (!bytes.empty()) {
     if (body_left_ == 0) {
       const std::size_t take = std::min(bytes.size(), kFrameHeaderBytes - header_have_);
@@ -74,14 +84,13 @@ Result<void> FrameReader::feed(ByteView bytes, const OnMessage& on_message) {
     if (body_left_ > 0) return {};
     header_have_ = 0;
     if ((header_[5] & kFlagMore) != 0) continue;
-    auto ok = on_message(static_cast<FrameClass>(header_[4]), partial);
+    if (auto ok = on_message(static_cast<FrameClass>(header_[4]), partial); !ok) return ok;
     // A large message must not pin its memory for the rest of the session.
-    if (partial.capacity() > 4 * kFragmentBytesMax) {
+    if (partial.capacity() > kMessageBytesKept) {
       Bytes().swap(partial);
     } else {
       partial.clear();
     }
-    if (!ok) return ok;
   }
   return {};
 }
@@ -91,17 +100,19 @@ Result<void> FrameReader::open_frame() {
   const std::uint32_t length = in.u32();
   const std::uint8_t frame_class = in.u8();
   const std::uint8_t flags = in.u8();
-  const std::uint16_t zero = in.u16();
-  const std::uint32_t count = in.u32();
+  const std::uint16_t reserved = in.u16();
+  const std::uint32_t counter = in.u32();
   const std::uint64_t at = offset_ - kFrameHeaderBytes;
-  if (length == 0 || length > kFragmentBytesMax)
+  if (length == 0 || length > kFragmentBytesMax) {
     return fail(ErrorCode::limit_exceeded, "frame length outside 1..16384", at);
+  }
   if (frame_class >= kFrameClassCount) return fail(ErrorCode::unknown_kind, "unknown frame class", at);
-  if (flags > kFlagMore || zero != 0) return fail(ErrorCode::bad_value, "unknown frame flags", at);
-  if (count != counter_) return fail(ErrorCode::broken_invariant, "frame counter is out of order", at);
-  const std::size_t most = message_bytes_max(sender_, static_cast<FrameClass>(frame_class));
-  if (most == 0) return fail(ErrorCode::unknown_kind, "frame class not allowed from this side", at);
-  if (partial_[frame_class].size() + length > most) {
+  if ((flags & ~kFlagMore) != 0) return fail(ErrorCode::bad_value, "unknown frame flags", at);
+  if (reserved != 0) return fail(ErrorCode::bad_value, "reserved bytes of a frame are not zero", at);
+  if (counter != counter_) return fail(ErrorCode::broken_invariant, "frame counter is out of order", at);
+  const std::size_t bytes_max = message_bytes_max(sender_, static_cast<FrameClass>(frame_class));
+  if (bytes_max == 0) return fail(ErrorCode::unknown_kind, "frame class not allowed from this side", at);
+  if (length > bytes_max - partial_[frame_class].size()) {
     return fail(ErrorCode::limit_exceeded, "message exceeds the limit of its class", at);
   }
   ++counter_;

@@ -1,14 +1,15 @@
-// Frames: how messages become a byte stream and come back. One stream carries three classes whose fragments may
-// interleave, so that an edit overtakes terrain; within a class, messages keep their order.
-// Header, 12 bytes, little-endian:
-//   u32 body bytes (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this message follow) | u16 zero
-//   | u32 counter (frames sent in this direction before this one, modulo 2^32)
+// Frames: how messages become a byte stream and come back. One stream carries three classes whose fragments
+// may interleave, so that an edit overtakes terrain; within a class, messages keep their order. Header, 12
+// bytes, little-endian:
+//   u32 body bytes (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this message follow) | u16
+//   zero | u32 counter (frames sent in this direction before this one, modulo 2^32)
 // The counter detects a peer that loses, repeats or invents frames before its bytes reach the decoder.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -45,20 +46,24 @@ class FrameWriter {
   std::uint32_t counter_ = 0;
 };
 
-/// Puts frames back together. Feed it the stream in pieces of any size; it hands out whole messages in order of
-/// completion. Holds at most one unfinished message per class, each below its limit. One thread.
-/// After an error the stream is unusable; the error's offset counts bytes since the stream began.
+/// Puts frames back together. Feed it the stream in pieces of any size; it hands out whole messages in order
+/// of completion. Holds at most one unfinished message per class, each below its limit. One thread. After an
+/// error, its own or one that on_message returned, every call returns that error. Offsets of its own errors
+/// count bytes since the stream began and name the frame's first byte.
 class FrameReader {
  public:
   explicit FrameReader(Sender sender) : sender_(sender) {}
-  /// Called with the class and the body; the body is 16-aligned and lives until the call returns.
+  /// Called with the class and the body; the body is 16-aligned and lives until the call returns. The handler
+  /// must not feed the same reader.
   using OnMessage = std::function<Result<void>(FrameClass, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
 
  private:
+  Result<void> advance(ByteView bytes, const OnMessage& on_message);
   Result<void> open_frame();
 
   Sender sender_;
+  std::optional<Error> broken_;
   std::uint64_t offset_ = 0;
   std::uint32_t counter_ = 0;
   std::array<std::uint8_t, kFrameHeaderBytes> header_{};

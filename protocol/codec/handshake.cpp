@@ -2,7 +2,10 @@
 
 #include <sodium.h>
 
+#include <bit>
 #include <string_view>
+
+#include "common/core/assert.hpp"
 
 namespace runstone {
 namespace {
@@ -12,35 +15,66 @@ static_assert(crypto_sign_SEEDBYTES == std::tuple_size_v<KeySeed>);
 static_assert(crypto_sign_SECRETKEYBYTES == std::tuple_size_v<decltype(KeyPair::secret_key)>);
 
 void need_sodium() {
-  static const bool ready = sodium_init() >= 0;  // safe from several threads
+  static const bool ready = sodium_init() >= 0;  // once; other threads wait for it
   RUNSTONE_ASSERT(ready);
 }
 
-void add_text(ByteWriter& out, std::string_view text) {
-  out.varint(text.size());
-  out.bytes(ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-}
+// Every field goes in behind its length (u32), so that no two different handshakes spell the same bytes.
+class Transcript {
+ public:
+  explicit Transcript(std::string_view label) : writer_(bytes_) { text(label); }
+  void field(ByteView bytes) {
+    writer_.u32(static_cast<std::uint32_t>(bytes.size()));
+    writer_.bytes(bytes);
+  }
+  void text(std::string_view text) {
+    field(ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  }
+  /// `bytes` little-endian bytes of v.
+  void number(std::uint64_t v, std::uint32_t bytes) {
+    writer_.u32(bytes);
+    for (std::uint32_t i = 0; i < bytes; ++i) writer_.u8(static_cast<std::uint8_t>(v >> (8 * i)));
+  }
+  void number(double v) { number(std::bit_cast<std::uint64_t>(v), 8); }
+  Bytes take() { return std::move(bytes_); }
 
-Bytes transcript(std::string_view role, const Hello& hello, const Welcome& welcome) {
-  Bytes bytes;
-  ByteWriter out(bytes);
-  add_text(out, role);
-  out.u32(hello.protocol);
-  out.bytes(hello.key);
-  out.u64(hello.instance);
-  out.bytes(hello.nonce);
-  add_text(out, hello.name);
-  out.u8(hello.encodings);
-  out.u32(welcome.protocol);
-  out.bytes(welcome.world_id);
-  out.u32(welcome.epoch);
-  out.u64(welcome.durable);
-  out.u64(welcome.head);
-  out.u16(welcome.chunk_edge);
-  out.u8(static_cast<std::uint8_t>(welcome.encoding));
-  out.bytes(welcome.server_key);
-  out.bytes(welcome.challenge);
-  return bytes;
+ private:
+  Bytes bytes_;
+  ByteWriter writer_;
+};
+
+// The order is that of the schema. docs/protocol.md lists it.
+Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& welcome) {
+  Transcript t(label);
+  t.number(hello.protocol, 4);
+  t.field(hello.key);
+  t.number(hello.instance, 8);
+  t.field(hello.nonce);
+  t.text(hello.name);
+  t.number(hello.encodings, 1);
+  t.number(welcome.protocol, 4);
+  t.field(welcome.world_id);
+  t.number(welcome.epoch, 4);
+  t.number(welcome.durable, 8);
+  t.number(welcome.head, 8);
+  t.number(welcome.chunk_edge, 2);
+  t.number(static_cast<std::uint32_t>(welcome.y_min), 4);
+  t.number(static_cast<std::uint32_t>(welcome.y_max), 4);
+  t.number(welcome.spawn.x);
+  t.number(welcome.spawn.y);
+  t.number(welcome.spawn.z);
+  t.number(welcome.materials.size(), 4);
+  for (const MaterialInfo& row : welcome.materials.rows()) {
+    t.text(row.name);
+    t.field(row.colour);
+    t.number(static_cast<std::uint8_t>(row.visibility), 1);
+  }
+  t.field(welcome.server_key);
+  t.field(welcome.challenge);
+  t.number(static_cast<std::uint8_t>(welcome.encoding), 1);
+  t.number(welcome.edit_volume_max, 8);
+  t.number(welcome.view_radius_max, 1);
+  return t.take();
 }
 
 }  // namespace
@@ -53,22 +87,23 @@ KeyPair key_pair_of(const KeySeed& seed) {
 }
 
 Bytes server_transcript(const Hello& hello, const Welcome& welcome) {
-  return transcript("runstone server v1", hello, welcome);
+  return transcript_of("runstone server v1", hello, welcome);
 }
 Bytes client_transcript(const Hello& hello, const Welcome& welcome) {
-  return transcript("runstone client v1", hello, welcome);
+  return transcript_of("runstone client v1", hello, welcome);
 }
 
-Signature sign(const KeyPair& keys, ByteView bytes) {
+Signature sign(const KeyPair& keys, ByteView transcript) {
   need_sodium();
   Signature signature{};
-  crypto_sign_detached(signature.data(), nullptr, bytes.data(), bytes.size(), keys.secret_key.data());
+  crypto_sign_detached(signature.data(), nullptr, transcript.data(), transcript.size(),
+                       keys.secret_key.data());
   return signature;
 }
 
-bool verify(const PublicKey& key, ByteView bytes, const Signature& signature) {
+bool verify(const PublicKey& key, ByteView transcript, const Signature& signature) {
   need_sodium();
-  return crypto_sign_verify_detached(signature.data(), bytes.data(), bytes.size(), key.data()) == 0;
+  return crypto_sign_verify_detached(signature.data(), transcript.data(), transcript.size(), key.data()) == 0;
 }
 
 }  // namespace runstone

@@ -1,9 +1,9 @@
-// Handshake: who is who. Ed25519 keys (libsodium) on both sides from the first version on; randomness comes in
-// as an argument, so that tests are repeatable.
-//   client -> hello(key, nonce)    server -> welcome(server key, challenge, signature over the server transcript)
-//   client -> proof(signature over the client transcript)    server -> ready(author)
-// Transcripts bind both keys, both random values, the world, epoch and protocol version, and name their role, so that no
-// signature can be replayed elsewhere or for the other side.
+// Handshake: who is who. Ed25519 keys (libsodium) on both sides from the first version on; randomness comes
+// in as an argument, so that tests are repeatable.
+//   client -> hello(key, nonce)    server -> welcome(server key, challenge, signature over the server
+//   transcript) client -> proof(signature over the client transcript)    server -> ready(author)
+// Transcripts bind both keys, both random values, the world, epoch and protocol version, and name their role,
+// so that no signature can be replayed elsewhere or for the other side.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,12 +1,17 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "common/core/text.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/schema/runstone_generated.h"
 
 namespace runstone {
 namespace {
+
+constexpr std::size_t kBuilderBytes = 1024;
+constexpr std::size_t kBuilderBytesKept = 256 * 1024;
 
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
@@ -28,6 +33,7 @@ struct BodyBuilder {
   FlatBufferBuilder& b;
 
   Offset<wire::Hello> operator()(const Hello& m) {
+    RUNSTONE_ASSERT(!m.name.empty() && m.name.size() <= kPlayerNameBytesMax && m.encodings != 0);
     const auto key = bytes_of(b, m.key);
     const auto nonce = bytes_of(b, m.nonce);
     const auto name = b.CreateString(m.name);
@@ -58,6 +64,7 @@ struct BodyBuilder {
     return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v);
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
+    RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
     std::vector<wire::Key> keys(m.keys.size());
     std::transform(m.keys.begin(), m.keys.end(), keys.begin(), key_of);
     return wire::CreateChunkRequest(b, b.CreateVectorOfStructs(keys));
@@ -69,6 +76,8 @@ struct BodyBuilder {
     return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
   }
   Offset<wire::Commit> operator()(const Commit& m) {
+    RUNSTONE_ASSERT(m.epoch != 0 && m.first != 0);
+    RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kCommitEditsMax);
     std::vector<Offset<wire::OrderedEdit>> edits;
     edits.reserve(m.edits.size());
     Bytes previous;
@@ -92,6 +101,7 @@ struct BodyBuilder {
   }
   Offset<wire::Durable> operator()(const Durable& m) { return wire::CreateDurable(b, m.epoch, m.seq); }
   Offset<wire::Audit> operator()(const Audit& m) {
+    RUNSTONE_ASSERT(m.entries.size() <= kAuditEntriesMax);
     std::vector<Offset<wire::AuditEntry>> entries;
     entries.reserve(m.entries.size());
     for (const AuditEntry& e : m.entries) {
@@ -139,34 +149,30 @@ struct BodyBuilder {
   }
   /// Texts are for people: a longer one is cut, never refused.
   Offset<flatbuffers::String> text(const std::string& t) {
-    return b.CreateString(t.data(), std::min(t.size(), kTextBytesMax));
+    const std::string_view cut = cut_utf8(t, kTextBytesMax);
+    return b.CreateString(cut.data(), cut.size());
   }
 };
+
+/// One builder per thread: its buffer is reused from message to message.
+FlatBufferBuilder& cleared_builder() {
+  thread_local FlatBufferBuilder builder(kBuilderBytes);
+  builder.Clear();
+  return builder;
+}
 
 template <class Table>
 EncodedMessage finish(FlatBufferBuilder& b, FrameClass frame_class, Offset<Table> body) {
   b.Finish(wire::CreateMessage(b, wire::BodyTraits<Table>::enum_value, body.Union()),
            wire::MessageIdentifier());
+  RUNSTONE_ASSERT(b.GetSize() <= message_bytes_max(Sender::server, frame_class));  // the wider of both limits
   const std::uint8_t* first = b.GetBufferPointer();
-  return {frame_class, std::make_shared<const Bytes>(first, first + b.GetSize())};
-}
-
-/// One builder per thread: its buffer is reused from message to message.
-FlatBufferBuilder& cleared_builder() {
-  static thread_local FlatBufferBuilder builder(1024);
-  builder.Clear();
-  return builder;
+  auto bytes = std::make_shared<const Bytes>(first, first + b.GetSize());
+  if (bytes->size() > kBuilderBytesKept) b.Reset();  // one huge message must not hold memory for ever
+  return {frame_class, std::move(bytes)};
 }
 
 }  // namespace
-
-FrameClass frame_class_of(const Message& message) {
-  const bool edits = std::holds_alternative<EditRequest>(message) ||
-                     std::holds_alternative<Commit>(message) || std::holds_alternative<Reject>(message) ||
-                     std::holds_alternative<Durable>(message);
-  if (edits) return FrameClass::edits;  // durable stays behind the commits it speaks of
-  return std::holds_alternative<ChunkSnapshot>(message) ? FrameClass::chunks : FrameClass::control;
-}
 
 EncodedMessage encode_message(const Message& message) {
   FlatBufferBuilder& b = cleared_builder();
@@ -177,56 +183,6 @@ EncodedMessage encode_message(const Message& message) {
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
   FlatBufferBuilder& b = cleared_builder();
   return finish(b, FrameClass::chunks, BodyBuilder{b}.snapshot(key, chunk, encoding));
-}
-
-const char* to_string(RejectReason reason) {
-  switch (reason) {
-    case RejectReason::busy:
-      return "busy";
-    case RejectReason::already_decided:
-      return "already decided";
-    case RejectReason::unknown_material:
-      return "unknown material";
-    case RejectReason::too_large:
-      return "too large";
-    case RejectReason::out_of_reach:
-      return "out of reach";
-    case RejectReason::not_permitted:
-      return "not permitted";
-    case RejectReason::rate_limited:
-      return "rate limited";
-    case RejectReason::bad_edit:
-      return "bad edit";
-  }
-  return "unknown";
-}
-
-const char* to_string(GoodbyeReason reason) {
-  switch (reason) {
-    case GoodbyeReason::closing:
-      return "closing";
-    case GoodbyeReason::wrong_protocol:
-      return "wrong protocol version";
-    case GoodbyeReason::malformed_frame:
-      return "malformed frame";
-    case GoodbyeReason::malformed_message:
-      return "malformed message";
-    case GoodbyeReason::unexpected_message:
-      return "unexpected message";
-    case GoodbyeReason::not_authenticated:
-      return "not authenticated";
-    case GoodbyeReason::already_connected:
-      return "connected elsewhere";
-    case GoodbyeReason::server_full:
-      return "server full";
-    case GoodbyeReason::timed_out:
-      return "timed out";
-    case GoodbyeReason::flooding:
-      return "flooding";
-    case GoodbyeReason::internal:
-      return "internal error";
-  }
-  return "unknown";
 }
 
 }  // namespace runstone

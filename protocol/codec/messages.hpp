@@ -1,5 +1,5 @@
-// Messages as plain structs, and the one way from bytes to them and back. A decode ends validated: sizes, ranges,
-// enum values, descriptor bytes and chunk runs are checked before anybody sees the struct.
+// Messages as plain structs, and the one way from bytes to them and back. A decode ends validated: sizes,
+// ranges, enum values, descriptor bytes and chunk runs are checked before anybody sees the struct.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -62,8 +62,13 @@ struct Welcome {
   std::uint64_t edit_volume_max = 0;
   std::uint8_t view_radius_max = 0;
 };
-struct Proof { Signature signature{}; };
-struct Ready { AuthorId author = 0; ClientSequence decided = 0; };
+struct Proof {
+  Signature signature{};
+};
+struct Ready {
+  AuthorId author = 0;
+  ClientSequence decided = 0;
+};
 
 /// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`.
 struct View {
@@ -77,9 +82,14 @@ struct View {
     return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v && -dy <= radius_v;
   }
 };
-struct ChunkRequest { std::vector<ChunkKey> keys; };
+struct ChunkRequest {
+  std::vector<ChunkKey> keys;
+};
 /// Server side keeps data encoded (made once by a worker); client side gets the decoded chunk.
-struct ChunkSnapshot { ChunkKey key; Chunk chunk; };
+struct ChunkSnapshot {
+  ChunkKey key;
+  Chunk chunk;
+};
 struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
@@ -100,64 +110,109 @@ struct Commit {
 
 /// Values are on the wire.
 enum class RejectReason : std::uint8_t {
-  busy = 1,              // the log is full: try again later
-  already_decided = 2,   // this client sequence was applied or rejected before: see the chunks
+  busy = 1,             // the log is full: try again later
+  already_decided = 2,  // this client sequence was applied or rejected before: see the chunks
   unknown_material = 3,
-  too_large = 4,         // volume or touched chunks over the limit
+  too_large = 4,  // volume or touched chunks over the limit
   out_of_reach = 5,
   not_permitted = 6,
   rate_limited = 7,
-  bad_edit = 8,          // outside the world or otherwise invalid
+  bad_edit = 8,  // outside the world or otherwise invalid
 };
 inline constexpr std::uint8_t kRejectReasonMax = 8;
 const char* to_string(RejectReason reason);
 
-struct Reject { ClientSequence client_seq = 0; RejectReason reason = RejectReason::busy; std::string detail; };
-struct Durable { Epoch epoch = 0; Sequence seq = 0; };
-struct AuditEntry { ChunkKey key; Version version; Digest digest; };
-struct Audit { std::vector<AuditEntry> entries; };
-struct Move { Pose pose; };
-struct PlayerPose { AuthorId author = 0; Pose pose; };
-struct PlayerPoses { std::vector<PlayerPose> players; };
-struct PlayerName { AuthorId author = 0; std::string name; };
-struct Roster { std::vector<PlayerName> players; };
-struct Ping { TimeUs sent_us = 0; };
-struct Pong { TimeUs sent_us = 0, server_us = 0; };
+struct Reject {
+  ClientSequence client_seq = 0;
+  RejectReason reason = RejectReason::busy;
+  std::string detail;
+};
+struct Durable {
+  Epoch epoch = 0;
+  Sequence seq = 0;
+};
+struct AuditEntry {
+  ChunkKey key;
+  Version version;
+  Digest digest;
+};
+struct Audit {
+  std::vector<AuditEntry> entries;
+};
+struct Move {
+  Pose pose;
+};
+struct PlayerPose {
+  AuthorId author = 0;
+  Pose pose;
+};
+struct PlayerPoses {
+  std::vector<PlayerPose> players;
+};
+struct PlayerName {
+  AuthorId author = 0;
+  std::string name;
+};
+struct Roster {
+  std::vector<PlayerName> players;
+};
+struct Ping {
+  TimeUs sent_us = 0;
+};
+struct Pong {
+  TimeUs sent_us = 0, server_us = 0;
+};
 
 /// Values are on the wire and in docs/protocol.md.
 enum class GoodbyeReason : std::uint16_t {
-  closing = 1,             // the sender ends normally
-  wrong_protocol = 2,      // text names both versions
+  closing = 1,         // the sender ends normally
+  wrong_protocol = 2,  // text names both versions
   malformed_frame = 3,
   malformed_message = 4,
   unexpected_message = 5,  // valid, but not now or not from this side
   not_authenticated = 6,
-  already_connected = 7,   // the same key and instance is here
+  already_connected = 7,  // the same key and instance is here
   server_full = 8,
   timed_out = 9,
-  flooding = 10,           // faster than the limits
+  flooding = 10,  // faster than the limits
   internal = 11,
 };
 inline constexpr std::uint16_t kGoodbyeReasonMax = 11;
 const char* to_string(GoodbyeReason reason);
 
-struct Goodbye { GoodbyeReason reason = GoodbyeReason::closing; std::string text; };
+struct Goodbye {
+  GoodbyeReason reason = GoodbyeReason::closing;
+  std::string text;
+};
 
 /// Order follows the union of the schema.
-using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
-                             Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye>;
+using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest,
+                             Commit, Reject, Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye>;
 
-/// The class every message of this kind travels in.
+/// Whether the snapshot's digest is that of its voxels. O(runs).
+inline bool digest_holds(const ChunkSnapshot& snapshot) {
+  return digest_of(snapshot.chunk.voxels) == snapshot.chunk.digest;
+}
+
+/// The class every message of this kind travels in: edit requests, commits, rejects and durable in `edits`
+/// (so durable stays behind the commits it speaks of), snapshots in `chunks`, the rest in `control`.
 FrameClass frame_class_of(const Message& message);
 
-/// Serialises a message. Chunk snapshots: see encode_snapshot().
+/// Serialises a message: FlatBuffers of protocol/schema/runstone.fbs, chunk snapshots as `raw` (see
+/// encode_snapshot()). Requires what decode_message() demands, but for texts: reject details and goodbye
+/// texts longer than kTextBytesMax are cut. Any thread.
 EncodedMessage encode_message(const Message& message);
 
 /// A snapshot in the given encoding. Reads runs, makes no dense copy. O(runs).
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
 
-/// One message of a class from a sender. `chunk_edge` is the world's edge (0 before welcome): snapshots of another
-/// size are refused, and `previous` lists are checked against the edits' touched chunks.
-Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes, std::uint16_t chunk_edge);
+/// One message of a class from a sender; `bytes` must be 8-aligned, as FrameReader's are. `chunk_edge` is the
+/// world's edge (0 before welcome): snapshots of another size and keys outside the world are refused, and
+/// `previous` lists must fit the edits' touched chunks. The digest of a snapshot is only checked for its
+/// range: see digest_holds(). A hello or welcome of another protocol version carries nothing but that
+/// version, since its other fields may mean something else. Memory is bounded by a small multiple of the
+/// bytes, but for chunks: see decode_chunk(). Any thread.
+Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
+                               std::uint16_t chunk_edge);
 
 }  // namespace runstone

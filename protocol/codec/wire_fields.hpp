@@ -1,0 +1,92 @@
+// Fields of the wire schema and what they may hold: the checks that messages share. Internal to the message
+// decoder. Each take_() copies a field that the FlatBuffers verifier found inside the buffer, and says
+// whether its value may be.
+#pragma once
+#include <flatbuffers/flatbuffers.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/core/m61.hpp"
+#include "common/core/text.hpp"
+#include "protocol/codec/messages.hpp"
+#include "protocol/schema/runstone_generated.h"
+
+namespace runstone {
+
+using ByteField = flatbuffers::Vector<std::uint8_t>;
+
+inline ByteView view_of(const ByteField* from) {
+  return from == nullptr ? ByteView{} : ByteView(from->data(), from->size());
+}
+
+/// Exactly N bytes.
+template <std::size_t N>
+bool take_exact(const ByteField* from, std::array<std::uint8_t, N>& to) {
+  if (from == nullptr || from->size() != N) return false;
+  std::copy(from->begin(), from->end(), to.begin());
+  return true;
+}
+
+/// Printable UTF-8 of bytes_min .. bytes_max; absent counts as empty.
+inline bool take_text(const flatbuffers::String* from, std::size_t bytes_min, std::size_t bytes_max,
+                      std::string& to) {
+  if (from == nullptr) return bytes_min == 0;
+  if (from->size() < bytes_min || from->size() > bytes_max) return false;
+  to.assign(from->c_str(), from->size());
+  return is_printable_utf8(to);
+}
+
+/// Whether a chunk of this coordinate has a voxel inside the world, so that its voxels' positions fit i32.
+inline bool take_coord(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t edge, ChunkCoord& to) {
+  to = {x, y, z};
+  const std::int32_t reach = kWorldLimit / edge;
+  const auto inside = [reach](std::int32_t c) { return c >= -reach && c < reach; };
+  return inside(x) && inside(y) && inside(z);
+}
+
+inline bool take_key(const wire::Key* from, std::int32_t edge, ChunkKey& to) {
+  if (from == nullptr || from->lod() > kLodMax) return false;
+  to.lod = from->lod();
+  return take_coord(from->x(), from->y(), from->z(), edge, to.at);
+}
+
+/// (0, 0) is the base; every other version has an epoch and a sequence.
+inline bool take_version(const wire::Version* from, Version& to) {
+  if (from == nullptr) return false;
+  to = {from->epoch(), from->seq()};
+  return (to.epoch == 0) == (to.seq == 0);
+}
+
+inline bool take_digest(const wire::Digest* from, Digest& to) {
+  if (from == nullptr) return false;
+  to.lane = {from->lane0(), from->lane1()};
+  return to.lane[0] < m61::kPrime && to.lane[1] < m61::kPrime;
+}
+
+inline bool take_position(const wire::Position* from, WorldPos& to) {
+  if (from == nullptr) return false;
+  to = {from->x(), from->y(), from->z()};
+  const auto inside = [](double c) { return std::fabs(c) <= kWorldLimit; };  // so written, a NaN is outside
+  return inside(to.x) && inside(to.y) && inside(to.z);
+}
+
+inline bool take_pose(const wire::Pose* from, Pose& to) {
+  if (from == nullptr || !take_position(&from->at(), to.at)) return false;
+  to.yaw = from->yaw();
+  to.pitch = from->pitch();
+  return true;
+}
+
+/// Entries of a vector that may be absent; nothing if they exceed `count_max`.
+template <class Vector>
+std::optional<std::uint32_t> count_of(const Vector* vector, std::size_t count_max) {
+  const std::uint32_t count = vector == nullptr ? 0 : vector->size();
+  return count <= count_max ? std::optional(count) : std::nullopt;
+}
+
+}  // namespace runstone
