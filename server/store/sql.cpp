@@ -8,8 +8,8 @@ namespace runstone::sql {
 
 namespace {
 
-constexpr int kBusyMsMax =
-    5000;  // a reader may meet the writer's short exclusive moments (recovery, checkpoint)
+// A reader may meet the writer's short exclusive moments (recovery, the end of a checkpoint).
+constexpr int kBusyMsMax = 2000;
 
 StoreError::Kind kind_of_code(int code) {
   switch (code & 0xff) {

@@ -1,0 +1,109 @@
+// The bytes of world format 1: columns, row checksums and marks. A change here means a new
+// kStoreFormatVersion and a way to open the old one.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "server/store/sqlite_store.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+ChunkPtr golden_chunk(Material material, Version version) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(kSampleEdge), material, AxisOrder::xzy);
+  chunk.version = version;
+  chunk.digest = digest_of(chunk.voxels);
+  return std::make_shared<const Chunk>(std::move(chunk));
+}
+
+/// One row in every table, nothing in it left to chance.
+std::string make_world(const TempFolder& folder) {
+  auto store = *create_world(folder.path(), sample_meta());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{{0, {-1, 2, 3}}, golden_chunk(1, {})}};
+  REQUIRE(store->save_base(base).has_value());
+  REQUIRE(store->raise_epoch().has_value());
+  const PlayerRow player = sample_player(1);
+  const EditRecord record{{1, 1},
+                          {1, 0x8000000000000002ULL, 3},
+                          1'700'000'000'000'000,
+                          Cause::undo,
+                          {FillBox{{{-4, 5, 6}, {7, 8, 9}}}, {MaskKind::only_material, 2}, 3}};
+  REQUIRE(store->append({&player, 1}, {&record, 1}).has_value());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {{{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
+  REQUIRE(store->save_snapshots(snapshots, 1).has_value());
+  return store->file();
+}
+
+std::string columns(const std::string& file, const std::string& table) {
+  return raw_sql(
+      file, "SELECT group_concat(name || ' ' || type || pk, ', ') FROM pragma_table_info('" + table + "')");
+}
+
+}  // namespace
+
+TEST_CASE("the marks of a world are where format 1 has them", "[store][golden]") {
+  const TempFolder folder;
+  const std::string file = make_world(folder);
+  CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "1");
+  CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
+}
+
+TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
+  const TempFolder folder;
+  const std::string file = make_world(folder);
+  CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
+  CHECK(columns(file, "base") ==
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, digest0 INTEGER0, digest1 INTEGER0, checksum "
+        "INTEGER0, data BLOB0");
+  CHECK(columns(file, "edit_log") ==
+        "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, client_seq "
+        "INTEGER0, time_us INTEGER0, cause INTEGER0, min_x INTEGER0, min_y INTEGER0, min_z INTEGER0, max_x "
+        "INTEGER0, max_y INTEGER0, max_z INTEGER0, descriptor BLOB0, checksum INTEGER0");
+  CHECK(columns(file, "snapshot") ==
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
+        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+  CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
+  CHECK(columns(file, "player_instance") ==
+        "author INTEGER1, instance INTEGER2, decided INTEGER0, checksum INTEGER0");
+  CHECK(raw_sql(file,
+                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
+                "ORDER BY name)") == "base edit_log meta player player_instance snapshot");
+  CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
+        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version materials "
+        "seed server_key_seed snapshot_fold spawn world_id");
+}
+
+TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
+  const TempFolder folder;
+  const std::string file = make_world(folder);
+  const auto value = [&](const std::string& column, const std::string& from) {
+    return raw_sql(file, "SELECT " + column + " FROM " + from);
+  };
+  CHECK(value("checksum", "edit_log") == "1704138919162627537");
+  CHECK(value("hex(descriptor)", "edit_log") == "02030203070A0C0A0202");
+  CHECK(value("seq || ' ' || epoch || ' ' || author || ' ' || instance || ' ' || client_seq || ' ' || "
+              "time_us || ' ' || "
+              "cause || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x || ' ' || max_y || ' ' "
+              "|| max_z",
+              "edit_log") == "1 1 1 -9223372036854775806 3 1700000000000000 3 -4 5 6 7 8 9");
+  CHECK(value("hex(data)", "base") == "0201011010100101010100");
+  CHECK(value("digest0 || ' ' || digest1", "base") == "31824059738278227 938747246342400335");
+  CHECK(value("checksum", "base") == "2279636502801835223");
+  CHECK(value("hex(data)", "snapshot") == "0201011010100101020100");
+  CHECK(value("checksum", "snapshot") == "526761025094432557");
+  CHECK(value("checksum", "player") == "-8523557106004048105");
+  CHECK(value("checksum", "player_instance") == "-331194737533928893");
+  CHECK(value("checksum", "meta WHERE key = 'seed'") == "1688236515335772665");
+  CHECK(value("checksum", "meta WHERE key = 'world_id'") == "308304262276956158");
+  CHECK(value("checksum", "meta WHERE key = 'generator'") == "-5376564082402544169");
+  CHECK(value("hex(value)", "meta WHERE key = 'spawn'") ==
+        "000000000000E03F000000000090514000000000000008C0");
+  CHECK(value("hex(value)", "meta WHERE key = 'base_fold'") == "0100000000000000BED44F992268158D");
+  CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") == "0100000000000000D2455B47B79BD394");
+}
