@@ -83,9 +83,15 @@ constexpr Direction opposite(Direction d) { return static_cast<Direction>(static
 constexpr ChunkCoord neighbour(ChunkCoord c, Direction d) {
   const std::int32_t step = is_positive(d) ? 1 : -1;
   switch (axis_of(d)) {
-    case Axis::x: c.x += step; break;
-    case Axis::y: c.y += step; break;
-    case Axis::z: c.z += step; break;
+    case Axis::x:
+      c.x += step;
+      break;
+    case Axis::y:
+      c.y += step;
+      break;
+    case Axis::z:
+      c.z += step;
+      break;
   }
   return c;
 }

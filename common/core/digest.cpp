@@ -15,7 +15,8 @@ constexpr std::uint64_t kWorldSalt = 0x576f726c64466f6cULL;
 // A residue that is never 0: a zero factor would hide every voxel it multiplies.
 constexpr std::uint64_t nonzero_residue(std::uint64_t seed) { return 1 + mix64(seed) % (m61::kPrime - 1); }
 
-using PrefixSums = std::array<std::uint64_t, kSideMax + 1>;
+using PrefixSums = std::array<std::uint64_t, kDigestPrefixCount>;
+static_assert(kDigestPrefixCount == kSideMax + 2);
 using Tables = std::array<std::array<PrefixSums, 3>, kDigestLanes>;
 
 constexpr Tables make_tables() {
@@ -28,6 +29,7 @@ constexpr Tables make_tables() {
         sum = m61::add(sum, nonzero_residue(kAxisSalt ^ (lane << 16 | axis << 8 | i)));
       }
       tables[lane][axis][kSideMax] = sum;
+      tables[lane][axis][kSideMax + 1] = sum;
     }
   }
   return tables;
@@ -54,6 +56,10 @@ std::uint64_t digest_axis_sum(int lane, Axis axis, unsigned first, unsigned last
   RUNSTONE_DASSERT(first <= last && last <= kSideMax);
   const PrefixSums& sums = kPrefix[static_cast<std::size_t>(lane)][static_cast<std::size_t>(axis)];
   return m61::sub(sums[last], sums[first]);
+}
+
+std::span<const std::uint64_t, kDigestPrefixCount> digest_axis_prefix(int lane, Axis axis) {
+  return kPrefix[static_cast<std::size_t>(lane)][static_cast<std::size_t>(axis)];
 }
 
 Digest digest_of_box(Material material, std::array<unsigned, 3> min, std::array<unsigned, 3> max) {

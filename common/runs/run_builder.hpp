@@ -13,7 +13,8 @@ class RunBuilder {
 
   /// Voxels appended so far.
   std::uint32_t filled() const { return filled_; }
-  /// Appends `count` voxels (0 is allowed and does nothing). Requires filled() + count <= volume. O(1) amortised.
+  /// Appends `count` voxels (0 is allowed and does nothing). Requires filled() + count <= volume. O(1)
+  /// amortised.
   void append(std::uint32_t count, Material material);
   /// Appends voxels up to index `end`. Requires filled() <= end <= volume.
   void append_to(std::uint32_t end, Material material) { append(end - filled_, material); }

@@ -1,8 +1,8 @@
 #include "common/runs/run_chunk.hpp"
 
 #include <array>
-#include <algorithm>
 
+#include "common/core/m61.hpp"
 #include "common/runs/run_builder.hpp"
 
 namespace runstone {
@@ -15,19 +15,46 @@ RunChunk uniform_chunk(Extent extent, Material material, AxisOrder order) {
 
 namespace {
 
+/// First run from `low` on that ends behind `voxel`. Requires low < size and that no run before `low` does.
 template <class Runs>
-std::size_t find_run_in(const Runs& runs, VoxelIndex voxel) {
-  std::size_t low = 0;
-  std::size_t high = runs.size() - 1;
-  while (low < high) {
-    const std::size_t mid = low + (high - low) / 2;
-    if (runs.end(mid) <= voxel) {
-      low = mid + 1;
-    } else {
-      high = mid;
-    }
+std::size_t find_run_in(const Runs& runs, VoxelIndex voxel, std::size_t low = 0) {
+  std::size_t count = runs.size() - low;
+  // Halving without a branch on the comparison: where an edit lands is unpredictable.
+  while (count > 1) {
+    const std::size_t half = count / 2;
+    low += runs.end(low + half - 1) <= voxel ? half : 0;
+    count -= half;
   }
   return low;
+}
+
+/// What a fill replaces, and by what.
+struct FillPlan {
+  std::size_t from = 0, before = 0;  // edit index and edit area
+  std::array<Run, 3> with{};
+  std::size_t after = 0;  // entries of `with` in use; 0 if nothing changes
+};
+
+template <class Runs>
+FillPlan plan_fill(const Runs& runs, VoxelIndex first, VoxelIndex last, Material material) {
+  std::size_t from = find_run_in(runs, first);
+  std::size_t to = last <= runs.end(from) ? from : find_run_in(runs, last - 1, from + 1);
+  if (from == to && runs.material(from) == material) return {};
+  const auto begin = [&](std::size_t i) { return i == 0 ? 0 : runs.end(i - 1); };
+
+  // Neighbours of the same material melt into the new run, so that the list stays canonical.
+  if (first == begin(from) && from > 0 && runs.material(from - 1) == material) --from;
+  if (last == runs.end(to) && to + 1 < runs.size() && runs.material(to + 1) == material) ++to;
+  const std::uint32_t area_begin = begin(from);
+  const Run tail{runs.end(to), runs.material(to)};
+  const std::uint32_t start = runs.material(from) == material ? area_begin : first;
+  const std::uint32_t end = tail.material == material ? tail.end : last;
+
+  FillPlan plan{from, to - from + 1, {}, 0};
+  if (start > area_begin) plan.with[plan.after++] = {start, runs.material(from)};
+  plan.with[plan.after++] = {end, material};
+  if (end < tail.end) plan.with[plan.after++] = tail;
+  return plan;
 }
 
 }  // namespace
@@ -43,38 +70,21 @@ Material material_at(const RunChunk& chunk, LocalPos at) {
 
 bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material, EditArea* area) {
   RUNSTONE_ASSERT(count > 0 && first <= chunk.volume() && count <= chunk.volume() - first);
-  const VoxelIndex last = first + count;  // one past
-  std::size_t from = find_run(chunk, first);
-  std::size_t to = find_run(chunk, last - 1);
-  if (from == to && chunk.runs.material(from) == material) return false;
-
-  // Neighbours of the same material melt into the new run, so that the list stays canonical.
-  std::uint32_t start = first;
-  std::uint32_t end = last;
-  const auto runs = static_cast<std::size_t>(chunk.runs.size());
-  if (first == chunk.runs.begin(from) && from > 0 && chunk.runs.material(from - 1) == material) --from;
-  if (last == chunk.runs.end(to) && to + 1 < runs && chunk.runs.material(to + 1) == material) ++to;
-  const Run head = chunk.runs[from];
-  const Run tail = chunk.runs[to];
-  if (head.material == material) start = chunk.runs.begin(from);
-  if (tail.material == material) end = tail.end;
-
-  std::array<Run, 3> with{};
-  std::size_t n = 0;
-  if (start > chunk.runs.begin(from)) with[n++] = {start, head.material};
-  with[n++] = {end, material};
-  if (end < tail.end) with[n++] = tail;
-  const std::size_t before = to - from + 1;
-  chunk.runs.splice(from, before, std::span<const Run>(with.data(), n));
+  const FillPlan plan =
+      chunk.runs.visit([&](const auto& runs) { return plan_fill(runs, first, first + count, material); });
+  if (plan.after == 0) return false;
+  chunk.runs.splice(plan.from, plan.before, std::span<const Run>(plan.with.data(), plan.after));
   if (area != nullptr) {
-    *area = {static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(n)};
+    *area = {static_cast<std::uint32_t>(plan.from), static_cast<std::uint32_t>(plan.before),
+             static_cast<std::uint32_t>(plan.after)};
   }
   return true;
 }
 
 Result<void> validate(const RunChunk& chunk) {
   if (!chunk.extent.valid()) return fail(ErrorCode::bad_value, "chunk side outside 8..128");
-  if (static_cast<std::uint8_t>(chunk.order) >= kAxisOrderCount) return fail(ErrorCode::bad_value, "unknown axis order");
+  if (static_cast<std::uint8_t>(chunk.order) >= kAxisOrderCount)
+    return fail(ErrorCode::bad_value, "unknown axis order");
   if (chunk.runs.is_narrow() != (chunk.volume() <= kNarrowVolumeMax)) {
     return fail(ErrorCode::broken_invariant, "run list form does not fit the volume");
   }
@@ -89,79 +99,95 @@ Result<void> validate(const RunChunk& chunk) {
       }
       begin = runs.end(i);
     }
-    if (begin != volume) return fail(ErrorCode::broken_invariant, "runs do not reach the volume", runs.size() - 1);
+    if (begin != volume)
+      return fail(ErrorCode::broken_invariant, "runs do not reach the volume", runs.size() - 1);
     return {};
   });
 }
 
 namespace {
 
-/// Calls box(min, max) for at most five boxes, in ordered coordinates, that tile [first, last).
-template <class F>
-void for_each_box(OrderedExtent e, VoxelIndex first, VoxelIndex last, F&& box) {
-  const auto lines = [&](VoxelIndex a, VoxelIndex b) {  // whole lines a .. b (line numbers), at most 3 boxes
-    const std::uint32_t s0 = a / e.m;
-    const std::uint32_t s1 = b / e.m;
-    if (s0 == s1) {
-      if (a < b) box(OrderedPos{0, a % e.m, s0}, OrderedPos{e.f, b % e.m, s0 + 1});
-      return;
+/// Sum of A[x] * B[y] * C[z] over the first i voxels of the flattened chunk. They are whole layers, whole
+/// lines of one layer and part of one line: three boxes, two of which stay while the walk stays on one line.
+/// A span is the difference of two such sums.
+class PrefixDigest {
+ public:
+  PrefixDigest(Extent extent, AxisOrder order) : e_(ordered(extent, order)) {
+    const auto axes = axes_of(order);
+    for (int i = 0; i < kDigestLanes; ++i) {
+      Lane& lane = lanes_[static_cast<std::size_t>(i)];
+      lane.f = digest_axis_prefix(i, axes[0]).data();
+      lane.m = digest_axis_prefix(i, axes[1]).data();
+      lane.s = digest_axis_prefix(i, axes[2]).data();
+      lane.layer = m61::mul(lane.f[e_.f], lane.m[e_.m]);
     }
-    std::uint32_t whole = s0;
-    if (a % e.m != 0) {
-      box(OrderedPos{0, a % e.m, s0}, OrderedPos{e.f, e.m, s0 + 1});
-      ++whole;
-    }
-    if (whole < s1) box(OrderedPos{0, 0, whole}, OrderedPos{e.f, e.m, s1});
-    if (b % e.m != 0) box(OrderedPos{0, 0, s1}, OrderedPos{e.f, b % e.m, s1 + 1});
-  };
-  const auto part = [&](VoxelIndex a, VoxelIndex b) {  // inside one line
-    const std::uint32_t line = a / e.f;
-    const std::uint32_t f0 = a - line * e.f;
-    box(OrderedPos{f0, line % e.m, line / e.m}, OrderedPos{f0 + (b - a), line % e.m + 1, line / e.m + 1});
-  };
-  const VoxelIndex line_up = (first + e.f - 1) / e.f;  // first whole line
-  const VoxelIndex line_down = last / e.f;             // one past the last whole line
-  if (line_up > line_down) return part(first, last);
-  if (first < line_up * e.f) part(first, line_up * e.f);
-  lines(line_up, line_down);
-  if (line_down * e.f < last) part(line_down * e.f, last);
-}
+    move_to(0);
+  }
 
-Digest digest_of_ordered_span(OrderedExtent e, std::array<Axis, 3> axes, VoxelIndex first, VoxelIndex last,
-                              Material material) {
-  Digest sum;
-  if (material == kEmpty) return sum;
-  for_each_box(e, first, last, [&](OrderedPos min, OrderedPos max) {
-    std::array<unsigned, 3> low{};
-    std::array<unsigned, 3> high{};
-    const std::array<std::uint32_t, 3> lo = {min.f, min.m, min.s};
-    const std::array<std::uint32_t, 3> hi = {max.f, max.m, max.s};
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[static_cast<std::size_t>(axes[i])] = lo[i];
-      high[static_cast<std::size_t>(axes[i])] = hi[i];
+  Digest below(VoxelIndex i) {
+    const std::uint32_t line = i / e_.f;
+    if (line != line_) move_to(line);
+    const std::uint32_t f = i - line * e_.f;
+    Digest out;
+    for (std::size_t k = 0; k < kDigestLanes; ++k) {
+      out.lane[k] = m61::add(lanes_[k].before, m61::mul(lanes_[k].factor, lanes_[k].f[f]));
     }
-    sum = sum + digest_of_box(material, low, high);
-  });
-  return sum;
+    return out;
+  }
+
+ private:
+  struct Lane {
+    const std::uint64_t *f, *m, *s;  // prefix sums by rank
+    std::uint64_t layer;             // all of f times all of m
+    std::uint64_t before;            // whole layers and lines before the current line
+    std::uint64_t factor;            // what a voxel of the current line is multiplied with
+  };
+
+  void move_to(std::uint32_t line) {
+    line_ = line;
+    const std::uint32_t s = line / e_.m;  // one past the last layer at the very end of the chunk
+    const std::uint32_t m = line - s * e_.m;
+    for (Lane& lane : lanes_) {
+      const std::uint64_t of_s = m61::sub(lane.s[s + 1], lane.s[s]);
+      lane.before =
+          m61::add(m61::mul(lane.s[s], lane.layer), m61::mul(of_s, m61::mul(lane.f[e_.f], lane.m[m])));
+      lane.factor = m61::mul(of_s, m61::sub(lane.m[m + 1], lane.m[m]));
+    }
+  }
+
+  OrderedExtent e_;
+  std::uint32_t line_ = 0;
+  std::array<Lane, kDigestLanes> lanes_{};
+};
+
+Digest times_material(const Digest& sum, Material material) {
+  Digest out;
+  for (int i = 0; i < kDigestLanes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.lane[k] = m61::mul(sum.lane[k], digest_material(i, material));
+  }
+  return out;
 }
 
 }  // namespace
 
 Digest digest_of_span(const RunChunk& shape, VoxelIndex first, VoxelIndex last, Material material) {
   RUNSTONE_DASSERT(first <= last && last <= shape.volume());
-  if (first == last) return {};
-  return digest_of_ordered_span(ordered(shape.extent, shape.order), axes_of(shape.order), first, last, material);
+  if (first == last || material == kEmpty) return {};
+  PrefixDigest prefix(shape.extent, shape.order);
+  const Digest before = prefix.below(first);
+  return times_material(prefix.below(last) - before, material);
 }
 
 Digest digest_of(const RunChunk& chunk) {
-  const OrderedExtent e = ordered(chunk.extent, chunk.order);
-  const auto axes = axes_of(chunk.order);
+  PrefixDigest prefix(chunk.extent, chunk.order);
   return chunk.runs.visit([&](const auto& runs) {
     Digest sum;
-    std::uint32_t begin = 0;
+    Digest before;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      sum = sum + digest_of_ordered_span(e, axes, begin, runs.end(i), runs.material(i));
-      begin = runs.end(i);
+      const Digest below = prefix.below(runs.end(i));
+      if (runs.material(i) != kEmpty) sum = sum + times_material(below - before, runs.material(i));
+      before = below;
     }
     return sum;
   });

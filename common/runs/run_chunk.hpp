@@ -1,5 +1,5 @@
-// RunChunk: the voxels of one chunk, kept as runs in index order. The one form for disk, memory, wire and mesh.
-// Invariants (validate() checks them; the codec, the edits and the mesher rely on them):
+// RunChunk: the voxels of one chunk, kept as runs in index order. The one form for disk, memory, wire and
+// mesh. Invariants (validate() checks them; the codec, the edits and the mesher rely on them):
 //   - the extent is valid, the run list has the form its volume asks for, and there is at least one run;
 //   - run ends ascend strictly and the last one is the volume, so the runs tile the chunk exactly;
 //   - neighbouring runs differ in material, so equal voxels in equal axis order have equal runs (canonical).
@@ -46,12 +46,14 @@ struct EditArea {
 /// Sets voxels [first, first + count) of the flattened chunk to `material`, splitting and merging runs.
 /// Returns whether any voxel changed; then `area`, if given, says which runs were replaced.
 /// Requires 0 < count and first + count <= volume. O(log runs + runs moved).
-bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material, EditArea* area = nullptr);
+bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material,
+          EditArea* area = nullptr);
 
 /// Names the first broken invariant; the offset is the run index. Bytes from outside pass here before use.
 Result<void> validate(const RunChunk& chunk);
 
-/// Digest from scratch: a run is at most five boxes and a box is O(1), so O(runs).
+/// Digest from scratch. A run is at most five boxes, or the difference of two prefix sums over whole layers,
+/// whole lines and part of a line, as it is computed here: O(runs).
 Digest digest_of(const RunChunk& chunk);
 
 /// Digest of voxels [first, last) of the flattened chunk as if all were `material`. O(1).

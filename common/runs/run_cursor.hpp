@@ -1,5 +1,6 @@
 // RunCursor: walks a chunk's runs forward. Reading voxel by voxel or stretch by stretch costs O(1) amortised.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,7 +33,8 @@ class RunCursor {
       low += step;
       step *= 2;
     }
-    std::size_t high = low + step < runs_.size() ? low + step : runs_.size() - 1;
+    // Either run low + step - 1 ends behind the voxel, or the search left the list and the last run does.
+    std::size_t high = std::min(low + step, runs_.size()) - 1;
     while (low < high) {
       const std::size_t mid = low + (high - low) / 2;
       if (runs_.end(mid) <= voxel) {
