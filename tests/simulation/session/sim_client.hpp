@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "catch2/catch.hpp"
 #include "client/replica/client_session.hpp"
 #include "tests/simulation/session/sim_server.hpp"
 
@@ -62,7 +61,7 @@ class SimClient {
         session_.tick(time_.now());
         for (const Message& message : session_.take_outgoing())
           connection_->send_from_client(encode_message(message));
-        if (session_.wants_close()) FAIL("session closes: " << session_.end()->text);
+        if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
       }
       for (const RejectNews& r : take_news().rejects) rejected_[r.seq] = r.reason;
       pump();
@@ -81,11 +80,13 @@ class SimClient {
       const std::uint16_t edge =
           session_.welcome() && session_.state() != SessionState::greeting ? kSimEdge : 0;
       auto message = decode_message(Sender::server, c, bytes, edge);
-      if (!message) FAIL("client cannot decode: " << message.error().what);
+      if (!message) throw SimFault(std::string("client cannot decode: ") + message.error().what);
       session_.receive(std::move(*message), {time_.now(), time_.now(), time_.now()});
       return {};
     };
-    end.on_bad_stream = [](const Error& error) { FAIL("client got a bad stream: " << error.what); };
+    end.on_bad_stream = [](const Error& error) {
+      throw SimFault(std::string("client got a bad stream: ") + error.what);
+    };
     end.on_drained = [] {};
     end.on_closed = [this, link = link_] {
       if (link != link_ || !connection_) return;

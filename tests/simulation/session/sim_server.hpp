@@ -6,11 +6,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "catch2/catch.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/runs/run_builder.hpp"
 #include "server/store/store.hpp"
 #include "server/world/world_server.hpp"
 #include "tests/simulation/session/sim_network.hpp"
@@ -18,6 +19,11 @@
 namespace runstone::test {
 
 inline constexpr std::uint16_t kSimEdge = 16;
+
+/// Something happened that must not: ends the simulation, and the test unless it expects a fault.
+struct SimFault : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// The base of the simulated world: stone below y = 0, sand in a checkered crust at y = 0, air above.
 inline Material sim_base_material(VoxelPos at) {
@@ -36,7 +42,7 @@ inline RunChunk sim_base_chunk(ChunkCoord at) {
   return builder.finish();
 }
 
-class SimServer final : private WorldPorts {
+class SimServer final : public WorldPorts {
  public:
   /// `open` opens the world's store; called at each start.
   SimServer(VirtualTime& time, SplitMix64& rng, WorldConfig config,
@@ -59,7 +65,7 @@ class SimServer final : private WorldPorts {
       start.decided.push_back({h.author, h.instance, h.decided});
     std::vector<EditRecord> tail;
     if (start.log.last > start.checkpoint) {
-      REQUIRE(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
+      done(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
         tail.push_back(r);
         return true;
       }));
@@ -90,12 +96,14 @@ class SimServer final : private WorldPorts {
     end.on_message = [this, id, life = life_](FrameClass c, ByteView bytes) -> Result<void> {
       if (life != life_ || !sessions_.contains(id)) return {};
       auto message = decode_message(Sender::client, c, bytes, kSimEdge);
-      REQUIRE(message.has_value());  // our own client never sends anything else
+      if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
       world_->received(id, std::move(*message), now());
       turn_later();
       return {};
     };
-    end.on_bad_stream = [](const Error& error) { FAIL("server got a bad stream: " << error.what); };
+    end.on_bad_stream = [](const Error& error) {
+      throw SimFault(std::string("server got a bad stream: ") + error.what);
+    };
     end.on_closed = [this, id, life = life_] {
       if (life != life_) return;
       if (sessions_.erase(id) != 0) world_->disconnected(id);
@@ -128,8 +136,12 @@ class SimServer final : private WorldPorts {
 
   template <class T>
   static T value(StoreResult<T> result) {
-    if (!result) FAIL(result.error().message());
+    if (!result) throw SimFault(result.error().message());
     return *std::move(result);
+  }
+
+  static void done(const StoreResult<void>& result) {
+    if (!result) throw SimFault(result.error().message());
   }
 
   /// Runs `event` after a while, unless the server has died by then.
@@ -206,8 +218,7 @@ class SimServer final : private WorldPorts {
   void write_later() {
     later(500, 20'000, [this] {
       auto& [players, records] = batches_.front();
-      const auto result = store_->append(players, records);
-      if (!result) FAIL(result.error().message());
+      done(store_->append(players, records));
       const Sequence last = records.empty() ? 0 : records.back().version.seq;
       batches_.erase(batches_.begin());
       if (last != 0) world_->durable(last, now());
@@ -225,13 +236,12 @@ class SimServer final : private WorldPorts {
   }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override {
     later(500, 30'000, [this, saved = std::move(chunks), checkpoint] {
-      const auto result = store_->save_snapshots(saved, checkpoint);
-      if (!result) FAIL(result.error().message());
+      done(store_->save_snapshots(saved, checkpoint));
       world_->snapshots_saved(now());
     });
   }
   void log(WorldLogLevel level, const std::string& line) override {
-    if (level == WorldLogLevel::error) FAIL("server logs an error: " << line);
+    if (level == WorldLogLevel::error) throw SimFault("server logs an error: " + line);
   }
 
   VirtualTime& time_;
