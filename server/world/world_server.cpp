@@ -79,6 +79,7 @@ void WorldServer::connected(SessionId session, const Now& now) {
   fresh.connected_us = fresh.heard_us = now.steady_us;
   const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
   RUNSTONE_ASSERT(is_new);
+  if (state_->is_stopping) close_session(*state_, session, GoodbyeReason::closing, "the server stops");
 }
 
 void WorldServer::received(SessionId session, Message&& message, const Now& now) {
@@ -185,6 +186,7 @@ void WorldServer::begin_stop(const Now& now) {
   WorldState& world = *state_;
   commit(now);  // what was accepted is ordered
   world.accepts_edits = false;
+  world.is_stopping = true;
   world.keeper.finish();
   while (!world.sessions.empty()) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");

@@ -29,6 +29,7 @@ struct WorldState {
   WorldCounters counters;
   Sequence durable = 0;
   bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
+  bool is_stopping = false;
   bool roster_changed = false;
   TimeUs poses_us = 0, audits_us = 0;  // when last sent
 

@@ -1,0 +1,50 @@
+#include "server/app/chunk_source.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "common/runs/reorder.hpp"
+
+namespace runstone {
+
+StoreResult<std::unique_ptr<Store>> ChunkSource::borrow() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      auto reader = std::move(idle_.back());
+      idle_.pop_back();
+      return reader;
+    }
+  }
+  return open_world(folder_, StoreAccess::read_only);
+}
+
+void ChunkSource::give_back(std::unique_ptr<Store> reader) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(reader));
+}
+
+StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
+  auto reader = borrow();
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  auto chunk = load(**reader, key);
+  give_back(*std::move(reader));
+  return chunk;
+}
+
+StoreResult<Chunk> ChunkSource::load(Store& reader, const ChunkKey& key) const {
+  auto stored = reader.load_snapshot(key);
+  if (stored && !stored->has_value()) stored = reader.load_base(key);
+  if (!stored) return Unexpected<StoreError>{stored.error()};
+  Chunk chunk;
+  if (stored->has_value()) {
+    chunk = **std::move(stored);
+  } else {
+    chunk.voxels = generator_.generate(origin_of(key.at, edge_), Extent::cube(static_cast<unsigned>(edge_)));
+    chunk.digest = digest_of(chunk.voxels);
+  }
+  chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
+  return chunk;
+}
+
+}  // namespace runstone

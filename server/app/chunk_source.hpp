@@ -1,0 +1,37 @@
+// ChunkSource: where chunks come from that are not in memory: newest snapshot, else base, else the generator.
+// Threads: load() from any thread; it blocks on the disk, so workers call it. Each caller borrows a reader of
+// its own from a pool.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/generate/generator.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+class ChunkSource {
+ public:
+  /// `generator` must outlive the source.
+  ChunkSource(std::string folder, std::int32_t edge, const Generator& generator)
+      : folder_(std::move(folder)), edge_(edge), generator_(generator) {}
+
+  /// A chunk as it stands on disk, in its cheapest axis order, with its digest; an error names file, table
+  /// and row.
+  StoreResult<Chunk> load(const ChunkKey& key);
+
+ private:
+  StoreResult<std::unique_ptr<Store>> borrow();
+  void give_back(std::unique_ptr<Store> reader);
+  StoreResult<Chunk> load(Store& reader, const ChunkKey& key) const;
+
+  const std::string folder_;
+  const std::int32_t edge_;
+  const Generator& generator_;
+  std::mutex mutex_;  // a leaf: guards the pool
+  std::vector<std::unique_ptr<Store>> idle_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,114 @@
+#include "server/app/server.hpp"
+
+#include <sodium.h>
+
+#include <asio/executor_work_guard.hpp>
+#include <asio/io_context.hpp>
+#include <asio/thread_pool.hpp>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/app/logging.hpp"
+#include "server/app/server_core.hpp"
+
+namespace runstone {
+
+// Members are destroyed in reverse: the core goes before what it borrows.
+struct Server::Parts {
+  ServerConfig config;
+  OpenedWorld world;
+  asio::io_context io;
+  std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
+  std::unique_ptr<asio::thread_pool> workers;
+  std::vector<std::thread> io_threads;
+  std::unique_ptr<ServerCore> core;
+  bool is_running = false;
+};
+
+namespace {
+
+/// Digests of all chunks that have a snapshot: after a clean stop these are all chunks ever edited.
+StopReport sum_up(Store& store, bool is_clean) {
+  StopReport report;
+  report.is_clean = is_clean;
+  report.digests.world_id = store.meta().world_id;
+  const auto failed = [&](const StoreError& error) {
+    if (report.error.empty()) report.error = error.message();
+  };
+  const auto last = store.last_sequence();
+  if (last) report.digests.seq = *last;
+  if (!last) failed(last.error());
+  const auto keys = store.snapshot_keys();
+  if (!keys) {
+    failed(keys.error());
+    return report;
+  }
+  for (const auto& [key, version] : *keys) {
+    const auto chunk = store.load_snapshot(key);
+    if (!chunk) {
+      failed(chunk.error());
+    } else if (chunk->has_value()) {
+      report.digests.chunks.push_back({key, (*chunk)->version, (*chunk)->digest});
+      report.world_digest = report.world_digest + world_digest_term(key, (*chunk)->digest);
+    }
+  }
+  return report;
+}
+
+}  // namespace
+
+Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Server::~Server() {
+  if (parts_->is_running) stop();
+}
+
+Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& config,
+                                                           const WorldCreation& creation,
+                                                           std::function<void()> on_failure) {
+  if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
+  auto world = open_or_create_world(config.world, creation);
+  if (!world) return Unexpected<std::string>{world.error()};
+  auto parts = std::make_unique<Parts>();
+  parts->config = config;
+  parts->world = *std::move(world);
+  parts->workers = std::make_unique<asio::thread_pool>(config.worker_threads);
+  parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
+                                             *parts->world.generator, std::move(on_failure));
+  // The port comes before the epoch: a start that cannot serve leaves no trace in the world.
+  if (const auto bound = parts->core->listen(config.listen); !bound)
+    return Unexpected<std::string>{bound.error()};
+  if (const auto recovered = parts->core->recover(config.world); !recovered) {
+    return Unexpected<std::string>{recovered.error()};
+  }
+  parts->work.emplace(parts->io.get_executor());
+  parts->core->start();
+  for (std::uint64_t i = 0; i < config.io_threads; ++i) {
+    parts->io_threads.emplace_back([&io = parts->io] { io.run(); });
+  }
+  parts->is_running = true;
+  logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
+                     parts->world.is_new);
+  return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+std::uint16_t Server::port() const { return parts_->core->port(); }
+void Server::log_counters() { parts_->core->log_counters(); }
+
+StopReport Server::stop() {
+  Parts& parts = *parts_;
+  parts.is_running = false;
+  const bool is_settled = parts.core->begin_stop().get();
+  parts.core->stop_writer();
+  parts.workers->join();
+  parts.core->log_counters();
+  parts.work.reset();
+  for (std::thread& thread : parts.io_threads) thread.join();
+  const bool is_clean = is_settled && !parts.core->has_failed();
+  parts.core.reset();
+  return sum_up(*parts.world.store, is_clean);
+}
+
+}  // namespace runstone

@@ -1,0 +1,369 @@
+#include "server/app/server_core.hpp"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <asio/bind_executor.hpp>
+#include <asio/post.hpp>
+#include <chrono>
+#include <utility>
+
+#include "common/runs/dense.hpp"
+#include "server/app/logging.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr auto kTickInterval = std::chrono::milliseconds(50);
+
+Now now() {
+  using std::chrono::duration_cast;
+  using std::chrono::microseconds;
+  return {duration_cast<microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count()};
+}
+
+NetLimits net_limits(const ServerConfig& config) {
+  NetLimits limits;
+  limits.send.control_bytes = config.control_queue_kib * 1024;
+  limits.send.edit_bytes = config.edit_queue_kib * 1024;
+  limits.send.chunk_bytes = config.chunk_queue_kib * 1024;
+  limits.connections_max = config.sessions_max + 64;  // some more may be in the handshake
+  limits.messages_per_second = config.messages_per_second;
+  limits.message_burst = 2 * config.messages_per_second;
+  return limits;
+}
+
+}  // namespace
+
+ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config,
+                       Store& store, const Generator& generator, std::function<void()> on_failure)
+    : io_(io),
+      workers_(workers),
+      config_(config),
+      store_(store),
+      generator_(generator),
+      on_failure_(std::move(on_failure)),
+      strand_(asio::make_strand(io)),
+      tick_(strand_),
+      listener_(std::make_shared<Listener>(io, net_limits(config), store.meta().chunk_edge, *this)) {}
+
+ServerCore::~ServerCore() = default;
+
+// ---- start
+// ---------------------------------------------------------------------------------------------------
+
+WorldConfig ServerCore::world_config(const ServerConfig& config) const {
+  const WorldMeta& meta = store_.meta();
+  WorldConfig world;
+  world.world_id = meta.world_id;
+  world.chunk_edge = meta.chunk_edge;
+  world.y_min = generator_.y_min();
+  world.y_max = generator_.y_max();
+  world.spawn = meta.spawn;
+  world.materials = meta.materials;
+  world.server_keys = key_pair_of(meta.server_key_seed);
+  world.sessions_max = config.sessions_max;
+  world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
+  world.edit_volume_max = config.edit_volume_max;
+  world.reach_max = static_cast<double>(config.reach_max);
+  world.edits_per_second = config.edits_per_second;
+  world.edit_burst = config.edit_burst;
+  world.idle_us_max = static_cast<TimeUs>(config.idle_s) * 1'000'000;
+  world.preferred_encoding = config.encoding == "raw" ? ChunkEncoding::raw : ChunkEncoding::packed;
+  world.audit_interval_us = static_cast<TimeUs>(config.audit_ms) * 1'000;
+  world.audit_chunks = config.audit_chunks;
+  world.resident_bytes_max = config.memory_mib << 20;
+  world.snapshots.edits_max = config.snapshot_edits;
+  world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * 1'000'000;
+  return world;
+}
+
+Result<WorldStart, std::string> ServerCore::read_start() {
+  WorldStart start;
+  const auto failure = [](const StoreError& error) { return Unexpected<std::string>{error.message()}; };
+  const auto last = store_.last_sequence();
+  if (!last) return failure(last.error());
+  start.log.last = *last;
+  const auto checkpoint = store_.checkpoint();
+  if (!checkpoint) return failure(checkpoint.error());
+  start.checkpoint = *checkpoint;
+  auto snapshots = store_.snapshot_keys();
+  if (!snapshots) return failure(snapshots.error());
+  start.snapshots = *std::move(snapshots);
+  const auto players = store_.players();
+  if (!players) return failure(players.error());
+  for (const PlayerRow& row : *players) start.players.push_back({row.author, row.key, row.name});
+  const auto marks = store_.high_waters();
+  if (!marks) return failure(marks.error());
+  for (const HighWater& mark : *marks) start.decided.push_back({mark.author, mark.instance, mark.decided});
+  if (*last > 0) {
+    const auto read = store_.read_log(*last, *last, [&](const EditRecord& record) {
+      start.log.last_time_us = record.time_us;
+      return true;
+    });
+    if (!read) return failure(read.error());
+  }
+  return start;
+}
+
+Result<void, std::string> ServerCore::recover(const std::string& folder) {
+  auto start = read_start();
+  if (!start) return Unexpected<std::string>{start.error()};
+  const auto epoch = store_.raise_epoch();
+  if (!epoch) return Unexpected<std::string>{epoch.error().message()};
+  start->log.epoch = *epoch;
+
+  WorldConfig config = world_config(config_);
+  const auto base = store_.base_keys();
+  if (!base) return Unexpected<std::string>{base.error().message()};
+  for (const ChunkKey& key : *base) {  // an imported world reaches beyond what its generator makes
+    const VoxelBox box = box_of(key.at, config.chunk_edge);
+    config.y_min = std::min(config.y_min, box.min.y);
+    config.y_max = std::max(config.y_max, box.max.y);
+  }
+  world_ = std::make_unique<WorldServer>(std::move(config), *start, *this, [](std::span<std::uint8_t> out) {
+    randombytes_buf(out.data(), out.size());
+  });
+  std::uint64_t restacked = 0;
+  const auto read = store_.read_log(start->checkpoint + 1, start->log.last, [&](const EditRecord& record) {
+    world_->restack(record);
+    ++restacked;
+    return true;
+  });
+  if (!read) return Unexpected<std::string>{read.error().message()};
+  durable_.store(start->log.last);
+  chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
+  start_writer();
+  logger("world").info("world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder,
+                       *epoch, start->log.last, start->checkpoint, restacked, start->players.size(),
+                       start->snapshots.size());
+  return {};
+}
+
+void ServerCore::start_writer() {
+  LogWriter::Callbacks callbacks;
+  callbacks.on_durable = [this](Sequence seq) {
+    durable_.store(seq);
+    // One post at a time: under load several group commits become one watermark.
+    if (durable_posted_.exchange(true)) return;
+    asio::post(strand_, [this] {
+      durable_posted_.store(false);
+      world_->durable(durable_.load(), now());
+      check_settled();
+    });
+  };
+  callbacks.on_snapshots_saved = [this](const LogWriter::SnapshotChunks& /*chunks*/,
+                                        std::optional<Sequence> /*seq*/) {
+    asio::post(strand_, [this] {
+      world_->snapshots_saved(now());
+      check_settled();
+    });
+  };
+  callbacks.on_failed = [this](const StoreError& error) {
+    logger("store").error("{}", error.message());
+    failed_.store(true);
+    asio::post(strand_, [this] {
+      world_->log_failed();
+      check_settled();
+    });
+    on_failure_();
+  };
+  LogWriter::Limits limits;
+  limits.queued_records_max = config_.log_queue_records;
+  writer_ = std::make_unique<LogWriter>(store_, std::move(callbacks), limits);
+}
+
+void ServerCore::start() {
+  listener_->start();
+  asio::post(strand_, [this] { schedule_tick(); });
+}
+
+// ---- turns of the world strand
+// ---------------------------------------------------------------------------------
+
+void ServerCore::schedule_commit() {
+  // Runs behind everything that is queued on the strand now: edits that arrived together become one commit.
+  if (std::exchange(commit_posted_, true)) return;
+  asio::post(strand_, [this] {
+    commit_posted_ = false;
+    world_->commit(now());
+  });
+}
+
+void ServerCore::schedule_tick() {
+  if (has_stopped_) return;
+  tick_.expires_after(kTickInterval);
+  tick_.async_wait(asio::bind_executor(strand_, [this](const asio::error_code& error) {
+    if (error) return;
+    const Now at = now();
+    world_->tick(at);
+    check_settled();
+    if (config_.counters_s > 0 &&
+        at.steady_us - counters_us_ >= static_cast<TimeUs>(config_.counters_s) * 1'000'000) {
+      if (counters_us_ != 0) log_counters();
+      counters_us_ = at.steady_us;
+    }
+    schedule_tick();
+  }));
+}
+
+void ServerCore::log_counters() {
+  asio::post(strand_, [this] {
+    const WorldCounters& w = world_->counters();
+    const NetCounters& n = listener_->counters();
+    const LogWriter::Counters l = writer_->counters();
+    logger("app").info(
+        "counters sessions={} opened={} closed={} malformed={} edits_ordered={} edits_rejected={} commits={} "
+        "seq={} "
+        "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} chunks_resident={} "
+        "resident_bytes={} chunks_failed={} snapshots_sent={} chunks_stale={} queue_full={} audits_sent={} "
+        "audit_mismatches={} bytes_in={} bytes_out={} dense_expansions={}",
+        world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
+        w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
+        l.queued_records, l.commits, l.snapshots, world_->resident_chunks(), world_->resident_bytes(),
+        w.chunks_failed, w.snapshots_sent, w.chunks_stale, w.queue_full, w.audits_sent, w.audit_mismatches,
+        n.bytes_in.load(), n.bytes_out.load(), dense_expansions());
+  });
+}
+
+// ---- stop
+// ------------------------------------------------------------------------------------------------------
+
+std::future<bool> ServerCore::begin_stop() {
+  listener_->stop();
+  auto stopped = std::make_shared<std::promise<bool>>();
+  std::future<bool> answer = stopped->get_future();
+  asio::post(strand_, [this, stopped] {
+    stopped_ = std::move(*stopped);
+    world_->begin_stop(now());
+    listener_->close_all(GoodbyeReason::closing, "the server stops");  // those that have not said hello yet
+    check_settled();
+  });
+  return answer;
+}
+
+void ServerCore::check_settled() {
+  if (!stopped_ || !sessions_.empty()) return;
+  if (!failed_.load() && !world_->is_settled()) return;
+  has_stopped_ = true;
+  tick_.cancel();
+  stopped_->set_value(!failed_.load());
+  stopped_.reset();
+}
+
+void ServerCore::stop_writer() { writer_->stop(); }
+
+// ---- NetEvents
+// ---------------------------------------------------------------------------------------------------
+
+void ServerCore::on_connected(SessionId session) {
+  auto net = listener_->find(session);
+  logger("net").debug("session={} peer={} connected", session, net->peer());
+  asio::post(strand_, [this, session, net = std::move(net)]() mutable {
+    sessions_.emplace(session, std::move(net));
+    world_->connected(session, now());
+  });
+}
+
+void ServerCore::on_message(SessionId session, Message&& message) {
+  asio::post(strand_, [this, session, message = std::move(message)]() mutable {
+    world_->received(session, std::move(message), now());
+    if (NetSession* net = find(session)) net->handled(1);
+    schedule_commit();
+  });
+}
+
+void ServerCore::on_drained(SessionId session) {
+  asio::post(strand_, [this, session] { world_->drained(session, now()); });
+}
+
+void ServerCore::on_disconnected(SessionId session) {
+  logger("net").debug("session={} disconnected", session);
+  listener_->forget(session);
+  asio::post(strand_, [this, session] {
+    world_->disconnected(session);
+    sessions_.erase(session);
+    check_settled();
+  });
+}
+
+// ---- WorldPorts
+// --------------------------------------------------------------------------------------------------
+
+NetSession* ServerCore::find(SessionId session) {
+  const auto found = sessions_.find(session);
+  return found == sessions_.end() ? nullptr : found->second.get();
+}
+
+bool ServerCore::send(SessionId session, const EncodedMessage& message) {
+  NetSession* net = find(session);
+  return net == nullptr || net->send(message);  // to one who is gone everything fits
+}
+
+void ServerCore::set_encoding(SessionId session, ChunkEncoding encoding) {
+  if (NetSession* net = find(session)) net->set_encoding(encoding);
+}
+
+bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) {
+  const auto found = sessions_.find(session);
+  if (found == sessions_.end()) return true;
+  const auto place = found->second->reserve_chunk();
+  if (!place) return false;
+  asio::post(workers_, [net = found->second, key, chunk, place = *place] {
+    net->fill_chunk(place, encode_snapshot(key, *chunk, net->encoding()));
+  });
+  return true;
+}
+
+void ServerCore::close(SessionId session, GoodbyeReason reason, const std::string& text) {
+  if (NetSession* net = find(session)) net->close(reason, text);
+}
+
+bool ServerCore::log_has_room(std::size_t records) const { return writer_->has_room(records); }
+
+void ServerCore::log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) {
+  std::vector<PlayerRow> rows;
+  for (NewPlayer& player : players) rows.push_back({player.author, player.key, std::move(player.name)});
+  writer_->append(std::move(rows), std::move(records));
+}
+
+void ServerCore::load_chunk(const ChunkKey& key) {
+  asio::post(workers_, [this, key] {
+    auto loaded = chunks_->load(key);
+    asio::post(strand_, [this, key, loaded = std::move(loaded)]() mutable {
+      if (loaded) {
+        world_->chunk_loaded(key, *std::move(loaded), now());
+      } else {
+        world_->chunk_failed(key, loaded.error().message(), now());
+      }
+      check_settled();
+    });
+  });
+}
+
+void ServerCore::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) {
+  // The keeper has one job under way at a time, so the queue of jobs has room unless the writer has failed.
+  const bool taken = writer_->save_snapshots(std::move(chunks), checkpoint);
+  RUNSTONE_ASSERT(taken || failed_.load());
+}
+
+void ServerCore::log(WorldLogLevel level, const std::string& line) {
+  spdlog::logger& world = logger("world");
+  switch (level) {
+    case WorldLogLevel::debug:
+      world.debug("{}", line);
+      break;
+    case WorldLogLevel::info:
+      world.info("{}", line);
+      break;
+    case WorldLogLevel::warn:
+      world.warn("{}", line);
+      break;
+    case WorldLogLevel::error:
+      world.error("{}", line);
+      break;
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,103 @@
+// ServerCore: the world strand with its surroundings: it turns what sessions, workers and the log writer tell
+// into calls of WorldServer on one strand, and carries out what WorldServer asks for by WorldPorts. Threads:
+// I/O threads run the strands; workers load, generate and encode; the log writer has its own. `sessions_` and
+// everything of the world belong to the world strand.
+#pragma once
+#include <array>
+#include <asio/io_context.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/strand.hpp>
+#include <asio/thread_pool.hpp>
+#include <atomic>
+#include <functional>
+#include <future>
+#include <memory>
+#include <unordered_map>
+
+#include "server/admin/server_config.hpp"
+#include "server/app/chunk_source.hpp"
+#include "server/app/world_folder.hpp"
+#include "server/net/listener.hpp"
+#include "server/store/log_writer.hpp"
+#include "server/world/world_server.hpp"
+
+namespace runstone {
+
+class ServerCore final : public WorldPorts, public NetEvents {
+ public:
+  /// `io` and `workers` must outlive the core. `on_failure` is called at most once, from the log writer's
+  /// thread.
+  ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config, Store& store,
+             const Generator& generator, std::function<void()> on_failure);
+  ~ServerCore() override;
+
+  /// Binds the address; the world is not touched yet.
+  Result<void, std::string> listen(const std::string& address) { return listener_->listen(address); }
+  /// Raises the epoch, reads what the store remembers, restacks the log above the checkpoint, starts the log
+  /// writer.
+  Result<void, std::string> recover(const std::string& folder);
+  /// Accepts sessions and ticks from now on.
+  void start();
+  std::uint16_t port() const { return listener_->port(); }
+
+  /// Ends in this order: no new connections, goodbyes, what was accepted is ordered and durable, changed
+  /// chunks are snapshots. Ready with true when all of it is on disk, with false if the log failed.
+  std::future<bool> begin_stop();
+  /// After begin_stop()'s answer: writes what is queued and ends the writer's thread.
+  void stop_writer();
+  bool has_failed() const { return failed_.load(); }
+  /// One line at info. Any thread.
+  void log_counters();
+
+  // ---- NetEvents, on session strands
+  void on_connected(SessionId session) override;
+  void on_message(SessionId session, Message&& message) override;
+  void on_drained(SessionId session) override;
+  void on_disconnected(SessionId session) override;
+
+  // ---- WorldPorts, on the world strand
+  bool send(SessionId session, const EncodedMessage& message) override;
+  void set_encoding(SessionId session, ChunkEncoding encoding) override;
+  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
+  void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
+  bool log_has_room(std::size_t records) const override;
+  void log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) override;
+  void load_chunk(const ChunkKey& key) override;
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override;
+  void log(WorldLogLevel level, const std::string& line) override;
+
+ private:
+  WorldConfig world_config(const ServerConfig& config) const;
+  Result<WorldStart, std::string> read_start();
+  void start_writer();
+  void schedule_commit();
+  void schedule_tick();
+  void check_settled();
+  NetSession* find(SessionId session);
+
+  asio::io_context& io_;
+  asio::thread_pool& workers_;
+  const ServerConfig& config_;
+  Store& store_;
+  const Generator& generator_;
+  std::function<void()> on_failure_;
+  asio::strand<asio::io_context::executor_type> strand_;
+  asio::steady_timer tick_;
+  std::shared_ptr<Listener> listener_;
+  std::unique_ptr<ChunkSource> chunks_;
+  std::unique_ptr<WorldServer> world_;
+  std::unique_ptr<LogWriter> writer_;
+
+  std::atomic<Sequence> durable_{0};
+  std::atomic<bool> durable_posted_{false};
+  std::atomic<bool> failed_{false};
+
+  // On the world strand from here on.
+  std::unordered_map<SessionId, std::shared_ptr<NetSession>> sessions_;
+  bool commit_posted_ = false;
+  TimeUs counters_us_ = 0;
+  std::optional<std::promise<bool>> stopped_;  // while begin_stop() waits for its answer
+  bool has_stopped_ = false;
+};
+
+}  // namespace runstone
