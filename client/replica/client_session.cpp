@@ -42,6 +42,8 @@ void ClientSession::disconnected() {
   wants_close_ = false;
 }
 
+std::vector<Message> ClientSession::take_outgoing() { return std::exchange(outgoing_, {}); }
+
 void ClientSession::close(GoodbyeReason reason, std::string text) {
   if (state_ != SessionState::offline && !wants_close_) outgoing_.push_back(Goodbye{reason, std::move(text)});
   wants_close_ = true;

@@ -67,6 +67,14 @@ class AuthorityModel {
     ++epoch_;
   }
 
+  /// Replaces a material by air in a chunk that is to be handed out.
+  static void hollow(Chunk& chunk, Material material) {
+    for (VoxelIndex i = 0; i < chunk.voxels.volume(); ++i) {
+      if (chunk.voxels.runs.material(find_run(chunk.voxels, i)) == material) fill(chunk.voxels, i, 1, kEmpty);
+    }
+    chunk.digest = digest_of(chunk.voxels);
+  }
+
  private:
   std::int32_t edge_;
   Epoch epoch_;

@@ -1,0 +1,344 @@
+#include "client/replica/client_session.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/authority_model.hpp"
+
+using namespace runstone;
+using runstone::test::AuthorityModel;
+
+namespace {
+
+constexpr std::int32_t kEdge = 16;
+constexpr TimeUs kClockLead = 5'000'000;  // server clock minus client clock
+
+KeyPair keys(std::uint8_t seed) {
+  KeySeed bytes{};
+  bytes[0] = seed;
+  return key_pair_of(bytes);
+}
+
+SessionConfig config() {
+  SessionConfig out;
+  out.keys = keys(1);
+  out.name = "ada";
+  out.instance = 42;
+  out.view = {{0, 0, 0}, 1, 1};
+  return out;
+}
+
+/// The server's side, answered by hand.
+struct Server {
+  KeyPair own = keys(9);
+  WorldId world_id{1, 2, 3};
+  Hello hello;
+  Welcome welcome;
+  ClientSequence decided = 0;
+  AuthorityModel world{kEdge, 3};
+
+  Welcome make_welcome() {
+    welcome = {};
+    welcome.world_id = world_id;
+    welcome.epoch = world.epoch();
+    welcome.durable = welcome.head = world.head();
+    welcome.chunk_edge = kEdge;
+    welcome.materials = default_material_table();
+    welcome.server_key = own.public_key;
+    welcome.challenge = {7};
+    welcome.view_radius_max = 8;
+    welcome.edit_volume_max = 1000;
+    welcome.signature = sign(own, server_transcript(hello, welcome));
+    return welcome;
+  }
+};
+
+template <class T>
+std::vector<T> take(std::vector<Message>& messages) {
+  std::vector<T> out;
+  for (const Message& message : messages) {
+    if (const auto* wanted = std::get_if<T>(&message)) out.push_back(*wanted);
+  }
+  return out;
+}
+
+struct Fixture {
+  void receive(Message message) { session.receive(std::move(message), {now, now, now}); }
+  std::vector<Message> sent() { return session.take_outgoing(); }
+
+  void greet() {
+    session.connected({5}, now);
+    auto out = sent();
+    const auto hellos = take<Hello>(out);
+    REQUIRE(hellos.size() == 1);
+    server.hello = hellos[0];
+  }
+  std::vector<Message> open() {
+    greet();
+    receive(server.make_welcome());
+    auto out = sent();
+    const auto proofs = take<Proof>(out);
+    REQUIRE(proofs.size() == 1);
+    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome), proofs[0].signature));
+    receive(Ready{6, server.decided});
+    REQUIRE(session.is_open());
+    return sent();
+  }
+  void pong() { receive(Pong{now - 200, now - 100 + kClockLead}); }
+
+  Server server;
+  ClientSession session{config()};
+  TimeUs now = 1'000'000;
+};
+
+EditDescriptor set(VoxelPos at, Material material) { return {SetVoxel{at}, {}, material}; }
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "a session opens by hello, welcome, proof and ready, then asks for its view",
+                 "[replica]") {
+  auto out = open();
+  CHECK(server.hello.name == "ada");
+  CHECK(server.hello.instance == 42);
+  CHECK(server.hello.key == keys(1).public_key);
+  const auto views = take<View>(out);
+  REQUIRE(views.size() == 1);
+  CHECK(views[0] == View{{0, 0, 0}, 1, 1});
+  CHECK(take<Ping>(out).size() == 1);
+  CHECK(session.author() == 6);
+  CHECK(session.pinned().at(server.world_id) == server.own.public_key);
+  CHECK_FALSE(session.loaded());
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (session.view().contains({x, y, z})) receive(server.world.snapshot({x, y, z}));
+      }
+    }
+  }
+  CHECK(session.view_chunks() == 15);
+  CHECK(session.loaded());
+}
+
+TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[replica]") {
+  greet();
+  Welcome welcome = server.make_welcome();
+  welcome.epoch += 1;  // signed something else
+  receive(welcome);
+  CHECK(session.wants_close());
+  REQUIRE(session.end());
+  CHECK(session.end()->final);
+  CHECK_FALSE(session.end()->by_server);
+  CHECK(session.end()->reason == GoodbyeReason::not_authenticated);
+  auto out = sent();
+  CHECK(take<Proof>(out).empty());
+  CHECK(take<Goodbye>(out).size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "[replica]") {
+  SessionConfig pinned = config();
+  pinned.pinned[server.world_id] = keys(8).public_key;
+  session = ClientSession(pinned);
+  greet();
+  receive(server.make_welcome());
+  CHECK(session.wants_close());
+  REQUIRE(session.end());
+  CHECK(session.end()->final);
+}
+
+TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
+  const auto refused = [&](Message message) {
+    session = ClientSession(config());
+    greet();
+    receive(std::move(message));
+    return session.wants_close();
+  };
+  CHECK(refused(Ready{1, 0}));
+  CHECK(refused(Durable{1, 1}));
+  CHECK(refused(Hello{}));
+  session = ClientSession(config());
+  static_cast<void>(open());
+  receive(Ping{});
+  CHECK(session.wants_close());
+}
+
+TEST_CASE_METHOD(Fixture, "edits wait for the clock offset and carry the server's time of the click",
+                 "[replica]") {
+  static_cast<void>(open());
+  const auto seq = session.submit(set({1, 2, 3}, 4), now - 300, now);
+  REQUIRE(seq.has_value());
+  auto out = sent();
+  CHECK(take<EditRequest>(out).empty());
+  pong();
+  session.tick(now);
+  out = sent();
+  const auto edits = take<EditRequest>(out);
+  REQUIRE(edits.size() == 1);
+  CHECK(edits[0].client_seq == 1);
+  CHECK(edits[0].submitted_us == now - 300 + kClockLead);
+  CHECK(edits[0].edit == set({1, 2, 3}, 4));
+  // From now on they go at once.
+  REQUIRE(session.submit(set({1, 2, 3}, 5), now, now).has_value());
+  out = sent();
+  CHECK(take<EditRequest>(out).size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unknown time", "[replica]") {
+  static_cast<void>(open());
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  now += kOffsetWaitUsMax;
+  session.tick(now);
+  auto out = sent();
+  const auto edits = take<EditRequest>(out);
+  REQUIRE(edits.size() == 1);
+  CHECK(edits[0].submitted_us == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "[replica]") {
+  static_cast<void>(open());
+  const auto last = static_cast<Material>(default_material_table().size());
+  CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
+  CHECK(session.replica().own_edits().all().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "after a cut the undecided edits are offered again in order, before newer ones",
+                 "[replica]") {
+  static_cast<void>(open());
+  pong();
+  for (int i = 0; i < 3; ++i) REQUIRE(session.submit(set({i, 2, 3}, 4), now, now).has_value());
+  static_cast<void>(sent());
+  session.disconnected();
+  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while away
+  CHECK(sent().empty());
+  server.decided = 1;
+  auto out = open();
+  const auto edits = take<EditRequest>(out);
+  REQUIRE(edits.size() == 3);
+  CHECK(edits[0].client_seq == 2);
+  CHECK(edits[1].client_seq == 3);
+  CHECK(edits[2].client_seq == 4);
+  CHECK(session.openings() == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
+  static_cast<void>(open());
+  pong();
+  CHECK(session.clock().known());
+  session.disconnected();
+  static_cast<void>(open());
+  CHECK(session.clock().known());
+  session.disconnected();
+  server.world.restart({});
+  static_cast<void>(open());
+  CHECK_FALSE(session.clock().known());
+}
+
+TEST_CASE_METHOD(Fixture, "another world under the same address starts from nothing", "[replica]") {
+  static_cast<void>(open());
+  receive(server.world.snapshot({0, 0, 0}));
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  session.disconnected();
+  server.world_id = {9};
+  auto out = open();
+  CHECK(session.replica().confirmed_count() == 0);
+  CHECK(session.replica().own_edits().all().empty());
+  CHECK(take<EditRequest>(out).empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") {
+  static_cast<void>(open());
+  receive(server.world.snapshot({0, 0, 0}));
+  static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
+  receive(server.world.commit({9, 1, 2}, set({2, 1, 1}, 2)));
+  session.tick(now);
+  auto out = sent();
+  const auto requests = take<ChunkRequest>(out);
+  REQUIRE(requests.size() == 1);
+  CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
+}
+
+TEST_CASE_METHOD(Fixture, "an edit without an answer is offered again after a while, once per while",
+                 "[replica]") {
+  static_cast<void>(open());
+  pong();
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  static_cast<void>(sent());
+  now += kAnswerUsMax - 1;
+  pong();
+  session.tick(now);
+  auto out = sent();
+  CHECK(take<EditRequest>(out).empty());
+  now += 1;
+  session.tick(now);
+  out = sent();
+  CHECK(take<EditRequest>(out).size() == 1);
+  session.tick(now + 1);
+  out = sent();
+  CHECK(take<EditRequest>(out).empty());
+}
+
+TEST_CASE_METHOD(Fixture, "the wished view is cut to the server's limit and sent when it changes",
+                 "[replica]") {
+  static_cast<void>(open());
+  session.set_view({{1, 0, 0}, 60, 60});
+  auto out = sent();
+  auto views = take<View>(out);
+  REQUIRE(views.size() == 1);
+  CHECK(views[0] == View{{1, 0, 0}, 8, 8});
+  session.set_view({{1, 0, 0}, 60, 60});
+  out = sent();
+  CHECK(take<View>(out).empty());
+}
+
+TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a second", "[replica]") {
+  static_cast<void>(open());
+  Pose pose;
+  pose.at = {1, 2, 3};
+  session.set_pose(pose);
+  now += kMoveEveryUs;
+  session.tick(now);
+  auto out = sent();
+  CHECK(take<Move>(out).size() == 1);
+  now += kMoveEveryUs;
+  session.tick(now);
+  out = sent();
+  CHECK(take<Move>(out).empty());
+  pose.yaw = 5;
+  session.set_pose(pose);
+  session.tick(now);
+  pose.yaw = 6;
+  session.set_pose(pose);
+  session.tick(now + 1);
+  out = sent();
+  CHECK(take<Move>(out).size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses", "[replica]") {
+  static_cast<void>(open());
+  receive(Roster{{{6, "ada"}, {7, "bob"}}});
+  REQUIRE(session.others().size() == 1);
+  CHECK(session.others().at(7).name == "bob");
+  Pose pose;
+  pose.at = {4, 5, 6};
+  receive(PlayerPoses{{{7, pose}, {6, pose}}});
+  CHECK(session.others().at(7).pose == pose);
+  CHECK(session.others().size() == 1);
+  receive(Roster{{{6, "ada"}, {7, "bob"}, {8, "eve"}}});
+  CHECK(session.others().at(7).pose == pose);
+  receive(Roster{{{6, "ada"}}});
+  CHECK(session.others().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a silent server and a goodbye both end the connection, the former not for good",
+                 "[replica]") {
+  static_cast<void>(open());
+  session.tick(now + kServerSilenceUsMax + 1);
+  CHECK(session.wants_close());
+  CHECK_FALSE(session.end()->final);
+  session.disconnected();
+  static_cast<void>(open());
+  CHECK_FALSE(session.end());
+  receive(Goodbye{GoodbyeReason::closing, "restarting"});
+  CHECK(session.wants_close());
+  CHECK(session.end()->by_server);
+  CHECK(session.end()->text == "restarting");
+  CHECK_FALSE(session.end()->final);
+}
