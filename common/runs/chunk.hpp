@@ -12,6 +12,7 @@ struct Chunk {
   RunChunk voxels;
   Version version;
   Digest digest;  // of voxels; kept in step with them, and recomputed by audits
+  friend bool operator==(const Chunk&, const Chunk&) = default;
 };
 
 using ChunkPtr = std::shared_ptr<const Chunk>;

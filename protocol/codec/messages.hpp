@@ -45,6 +45,7 @@ struct Hello {
   Nonce nonce{};
   std::string name;
   std::uint8_t encodings = 3;  // bit per ChunkEncoding: 1 << (encoding - 1)
+  friend bool operator==(const Hello&, const Hello&) = default;
 };
 struct Welcome {
   std::uint32_t protocol = kProtocolVersion;
@@ -61,13 +62,16 @@ struct Welcome {
   ChunkEncoding encoding = ChunkEncoding::raw;
   std::uint64_t edit_volume_max = 0;
   std::uint8_t view_radius_max = 0;
+  friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct Proof {
   Signature signature{};
+  friend bool operator==(const Proof&, const Proof&) = default;
 };
 struct Ready {
   AuthorId author = 0;
   ClientSequence decided = 0;
+  friend bool operator==(const Ready&, const Ready&) = default;
 };
 
 /// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`.
@@ -84,16 +88,19 @@ struct View {
 };
 struct ChunkRequest {
   std::vector<ChunkKey> keys;
+  friend bool operator==(const ChunkRequest&, const ChunkRequest&) = default;
 };
 /// Server side keeps data encoded (made once by a worker); client side gets the decoded chunk.
 struct ChunkSnapshot {
   ChunkKey key;
   Chunk chunk;
+  friend bool operator==(const ChunkSnapshot&, const ChunkSnapshot&) = default;
 };
 struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
   EditDescriptor edit;
+  friend bool operator==(const EditRequest&, const EditRequest&) = default;
 };
 struct OrderedEdit {
   OperationId op;
@@ -101,11 +108,13 @@ struct OrderedEdit {
   TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
   EditDescriptor edit;
   std::vector<Sequence> previous;  // sequence each touched chunk stood at before, in touched_chunks() order
+  friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 struct Commit {
   Epoch epoch = 0;
   Sequence first = 0;
   std::vector<OrderedEdit> edits;
+  friend bool operator==(const Commit&, const Commit&) = default;
 };
 
 /// Values are on the wire.
@@ -126,41 +135,52 @@ struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
+  friend bool operator==(const Reject&, const Reject&) = default;
 };
 struct Durable {
   Epoch epoch = 0;
   Sequence seq = 0;
+  friend bool operator==(const Durable&, const Durable&) = default;
 };
 struct AuditEntry {
   ChunkKey key;
   Version version;
   Digest digest;
+  friend bool operator==(const AuditEntry&, const AuditEntry&) = default;
 };
 struct Audit {
   std::vector<AuditEntry> entries;
+  friend bool operator==(const Audit&, const Audit&) = default;
 };
 struct Move {
   Pose pose;
+  friend bool operator==(const Move&, const Move&) = default;
 };
 struct PlayerPose {
   AuthorId author = 0;
   Pose pose;
+  friend bool operator==(const PlayerPose&, const PlayerPose&) = default;
 };
 struct PlayerPoses {
   std::vector<PlayerPose> players;
+  friend bool operator==(const PlayerPoses&, const PlayerPoses&) = default;
 };
 struct PlayerName {
   AuthorId author = 0;
   std::string name;
+  friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
 struct Roster {
   std::vector<PlayerName> players;
+  friend bool operator==(const Roster&, const Roster&) = default;
 };
 struct Ping {
   TimeUs sent_us = 0;
+  friend bool operator==(const Ping&, const Ping&) = default;
 };
 struct Pong {
   TimeUs sent_us = 0, server_us = 0;
+  friend bool operator==(const Pong&, const Pong&) = default;
 };
 
 /// Values are on the wire and in docs/protocol.md.
@@ -183,6 +203,7 @@ const char* to_string(GoodbyeReason reason);
 struct Goodbye {
   GoodbyeReason reason = GoodbyeReason::closing;
   std::string text;
+  friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
 /// Order follows the union of the schema.

@@ -1,0 +1,246 @@
+#include "tests/support/random_message.hpp"
+
+#include <algorithm>
+
+#include "common/core/m61.hpp"
+#include "common/edits/edit_geometry.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+namespace {
+
+// Small and large values alike: a shift spreads the draw over all magnitudes.
+std::uint64_t any64(SplitMix64& rng) { return rng.next() >> rng.below(64); }
+std::int64_t any_time(SplitMix64& rng) { return static_cast<std::int64_t>(rng.next()) >> rng.below(63); }
+
+template <std::size_t N>
+void draw(SplitMix64& rng, std::array<std::uint8_t, N>& out) {
+  for (auto& byte : out) byte = static_cast<std::uint8_t>(rng.next());
+}
+
+std::string any_text(SplitMix64& rng, std::size_t bytes_min, std::size_t bytes_max) {
+  static constexpr const char* kPieces[] = {
+      "a", "Z", " ", "7", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\xa7\xb1"};
+  std::string out;
+  const auto target = static_cast<std::size_t>(
+      rng.between(static_cast<std::int32_t>(bytes_min), static_cast<std::int32_t>(bytes_max)));
+  while (out.size() < target) {
+    const std::string piece = kPieces[rng.below(7)];
+    out += out.size() + piece.size() <= bytes_max ? piece : "x";
+  }
+  return out;
+}
+
+ChunkCoord any_coord(SplitMix64& rng) {
+  constexpr std::int32_t kReach = kWorldLimit / kMessageEdge;
+  return {rng.between(-kReach, kReach - 1), rng.between(-40, 40), rng.between(-kReach, kReach - 1)};
+}
+
+Version any_version(SplitMix64& rng) {
+  if (rng.below(4) == 0) return {};
+  return {1 + rng.below(1000), 1 + (any64(rng) >> 1)};
+}
+
+Digest any_digest(SplitMix64& rng) { return {{m61::reduce(rng.next()), m61::reduce(rng.next())}}; }
+
+WorldPos any_position(SplitMix64& rng) {
+  const auto c = [&rng] { return rng.between(-kWorldLimit, kWorldLimit) / 8.0 + rng.below(1000) / 1024.0; };
+  return {c(), c(), c()};
+}
+
+Pose any_pose(SplitMix64& rng) {
+  return {any_position(rng), static_cast<std::uint16_t>(rng.next()), static_cast<std::int16_t>(rng.next())};
+}
+
+EditDescriptor any_edit(SplitMix64& rng) {
+  const VoxelPos at{rng.between(-1'000'000, 1'000'000), rng.between(-300, 300), rng.between(-1'000, 1'000)};
+  EditDescriptor edit;
+  switch (rng.below(3)) {
+    case 0:
+      edit.shape = SetVoxel{at};
+      break;
+    case 1:
+      edit.shape =
+          FillBox{{at, {at.x + rng.between(1, 60), at.y + rng.between(1, 60), at.z + rng.between(1, 60)}}};
+      break;
+    default:
+      edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(40))};
+  }
+  edit.mask.kind = static_cast<MaskKind>(rng.below(4));
+  if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.next());
+  edit.material = static_cast<Material>(rng.next());
+  return edit;
+}
+
+MaterialTable any_materials(SplitMix64& rng) {
+  MaterialTable table;
+  const std::uint32_t count = rng.below(20);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    MaterialInfo info;
+    info.name = std::to_string(i) + any_text(rng, 0, 50);
+    draw(rng, info.colour);
+    info.visibility = static_cast<Visibility>(rng.below(3));
+    if (info.visibility == Visibility::opaque) info.colour[3] = 255;
+    RUNSTONE_ASSERT(table.add(std::move(info)).has_value());
+  }
+  return table;
+}
+
+Hello any_hello(SplitMix64& rng) {
+  Hello m;
+  draw(rng, m.key);
+  m.instance = any64(rng);
+  draw(rng, m.nonce);
+  m.name = any_text(rng, 1, kPlayerNameBytesMax);
+  m.encodings = static_cast<std::uint8_t>(rng.below(64) * 4 + 1 + rng.below(3));
+  return m;
+}
+
+Welcome any_welcome(SplitMix64& rng) {
+  Welcome m;
+  draw(rng, m.world_id);
+  m.epoch = 1 + rng.below(1'000'000);
+  m.head = any64(rng);
+  m.durable = m.head - m.head / (1 + rng.below(9));
+  m.chunk_edge = static_cast<std::uint16_t>(16u << rng.below(4));
+  m.y_min = rng.between(-1000, 0);
+  m.y_max = rng.between(0, 1000);
+  m.spawn = any_position(rng);
+  m.materials = any_materials(rng);
+  draw(rng, m.server_key);
+  draw(rng, m.challenge);
+  draw(rng, m.signature);
+  m.encoding = rng.below(2) == 0 ? ChunkEncoding::raw : ChunkEncoding::packed;
+  m.edit_volume_max = any64(rng);
+  m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
+  return m;
+}
+
+Proof any_proof(SplitMix64& rng) {
+  Proof m;
+  draw(rng, m.signature);
+  return m;
+}
+
+View any_view(SplitMix64& rng) {
+  return {any_coord(rng), static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
+          static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1))};
+}
+
+ChunkRequest any_chunk_request(SplitMix64& rng) {
+  ChunkRequest m;
+  m.keys.resize(1 + rng.below(kChunkRequestKeysMax));
+  for (ChunkKey& key : m.keys) key.at = any_coord(rng);
+  return m;
+}
+
+ChunkSnapshot any_snapshot(SplitMix64& rng) {
+  ChunkSnapshot m;
+  m.key.at = any_coord(rng);
+  m.chunk.voxels = random_chunk(rng, Extent::cube(kMessageEdge), random_order(rng), 1 + rng.below(300));
+  m.chunk.version = any_version(rng);
+  m.chunk.digest = digest_of(m.chunk.voxels);
+  return m;
+}
+
+Commit any_commit(SplitMix64& rng) {
+  Commit m;
+  m.epoch = 1 + rng.below(1'000'000);
+  m.first = 1 + (any64(rng) >> 1);
+  m.edits.resize(1 + rng.below(6));
+  for (std::size_t i = 0; i < m.edits.size(); ++i) {
+    OrderedEdit& e = m.edits[i];
+    e.op = {rng.below(1000), rng.next(), any64(rng)};
+    e.cause = static_cast<Cause>(rng.below(kCauseMax + 1u));
+    e.submitted_us = any_time(rng);
+    e.ordered_us = any_time(rng);
+    e.edit = any_edit(rng);
+    const Sequence seq = m.first + i;
+    for (std::size_t c = touched_chunks(e.edit, kMessageEdge).size(); c > 0; --c) {
+      e.previous.push_back(rng.below(4) == 0 ? 0 : seq - std::min<std::uint64_t>(seq, 1 + any64(rng)));
+    }
+  }
+  return m;
+}
+
+Audit any_audit(SplitMix64& rng) {
+  Audit m;
+  m.entries.resize(rng.below(20));
+  for (AuditEntry& e : m.entries) e = {{0, any_coord(rng)}, any_version(rng), any_digest(rng)};
+  return m;
+}
+
+PlayerPoses any_poses(SplitMix64& rng) {
+  PlayerPoses m;
+  m.players.resize(rng.below(20));
+  for (PlayerPose& p : m.players) p = {rng.below(1000), any_pose(rng)};
+  return m;
+}
+
+Roster any_roster(SplitMix64& rng) {
+  Roster m;
+  m.players.resize(rng.below(20));
+  for (PlayerName& p : m.players) p = {rng.below(1000), any_text(rng, 1, kPlayerNameBytesMax)};
+  return m;
+}
+
+}  // namespace
+
+Message random_message(SplitMix64& rng, std::size_t kind) {
+  switch (kind) {
+    case 0:
+      return any_hello(rng);
+    case 1:
+      return any_welcome(rng);
+    case 2:
+      return any_proof(rng);
+    case 3:
+      return Ready{static_cast<AuthorId>(any64(rng) >> 32), any64(rng)};
+    case 4:
+      return any_view(rng);
+    case 5:
+      return any_chunk_request(rng);
+    case 6:
+      return any_snapshot(rng);
+    case 7:
+      return EditRequest{1 + (any64(rng) >> 1), any_time(rng), any_edit(rng)};
+    case 8:
+      return any_commit(rng);
+    case 9:
+      return Reject{1 + (any64(rng) >> 1), static_cast<RejectReason>(1 + rng.below(kRejectReasonMax)),
+                    any_text(rng, 0, kTextBytesMax)};
+    case 10:
+      return Durable{1 + rng.below(1000), any64(rng)};
+    case 11:
+      return any_audit(rng);
+    case 12:
+      return Move{any_pose(rng)};
+    case 13:
+      return any_poses(rng);
+    case 14:
+      return any_roster(rng);
+    case 15:
+      return Ping{any_time(rng)};
+    case 16:
+      return Pong{any_time(rng), any_time(rng)};
+    default:
+      RUNSTONE_ASSERT(kind == 17);
+      return Goodbye{static_cast<GoodbyeReason>(1 + rng.below(kGoodbyeReasonMax)),
+                     any_text(rng, 0, kTextBytesMax)};
+  }
+}
+
+Sender sender_of(const Message& message) {
+  const bool client = std::holds_alternative<Hello>(message) || std::holds_alternative<Proof>(message) ||
+                      std::holds_alternative<View>(message) ||
+                      std::holds_alternative<ChunkRequest>(message) ||
+                      std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
+                      std::holds_alternative<Ping>(message) || std::holds_alternative<Goodbye>(message);
+  return client ? Sender::client : Sender::server;
+}
+
+Result<Message> decode(const Message& kind, const EncodedMessage& encoded) {
+  return decode_message(sender_of(kind), encoded.frame_class, *encoded.bytes, kMessageEdge);
+}
+
+}  // namespace runstone::test
