@@ -39,14 +39,12 @@ std::vector<SessionId> receivers_of(const WorldState& world, const OrderedBatch&
 /// message, for the client cannot tell from a snapshot that they were applied.
 void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch, const Now& now) {
   mark_stale(world, session, batch.touched, now);
-  const WorldSession* mine = world.find(session);
-  if (mine == nullptr) return;
-  const OperationId own{mine->author, mine->instance, 0};
+  const WorldSession& mine = *world.find(session);
+  const OperationId own{mine.author, mine.instance, 0};
   for (const OrderedEdit& edit : batch.commit.edits) {
     if (edit.op.author != own.author || edit.op.instance != own.instance) continue;
-    const Reject answer{edit.op.seq, RejectReason::already_decided,
-                        "applied; its commit did not fit the queue"};
-    if (!send_or_close(world, session, answer)) return;
+    answer(world, session,
+           {edit.op.seq, RejectReason::already_decided, "applied; its commit did not fit the queue"});
   }
 }
 

@@ -41,7 +41,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   }
   if (!refusal) return;
   ++world.counters.edits_rejected;
-  send_or_close(world, session, Reject{request.client_seq, *refusal, ""});
+  answer(world, session, {request.client_seq, *refusal, ""});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

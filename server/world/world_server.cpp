@@ -57,11 +57,7 @@ void retry_owed(WorldState& world, const Now& now) {
     if (session.state == SessionState::open) open.push_back(id);
   }
   for (const SessionId id : open) {
-    WorldSession& session = *world.find(id);
-    if (session.owes_durable) {
-      const Durable durable{world.authority.epoch(), world.durable};
-      session.owes_durable = !send_or_skip(world, id, encode_message(durable));
-    }
+    send_owed(world, id);
     deliver(world, id, now);
   }
 }
@@ -114,6 +110,7 @@ void WorldServer::drained(SessionId session, const Now& now) {
   WorldSession* mine = state_->find(session);
   if (mine == nullptr) return;
   mine->stalled_us.reset();
+  send_owed(*state_, session);
   deliver(*state_, session, now);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/bytes.hpp"
 #include "protocol/codec/messages.hpp"
@@ -24,6 +25,7 @@ struct WorldSession {
   Pose pose;
   bool pose_changed = false;  // since the last poses
   bool owes_durable = false;  // the watermark did not fit its queue: again on the next tick
+  std::vector<Reject> owed;   // answers that did not fit its queue, in order: again when it drains
   TokenBucket edits{0, 0};
   std::optional<TimeUs>
       stalled_us;  // its queue was full then: no snapshots until drained or the retry interval

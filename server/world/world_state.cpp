@@ -5,6 +5,8 @@
 namespace runstone {
 namespace {
 
+constexpr std::size_t kOwedMax = 4096;  // answers: a session this far behind does not read at all
+
 EditLimits limits_of(const WorldConfig& config) {
   EditLimits limits;
   limits.chunk_edge = config.chunk_edge;
@@ -51,6 +53,29 @@ bool send_or_close(WorldState& world, SessionId session, const Message& message)
   ++world.counters.queue_full;
   close_session(world, session, GoodbyeReason::timed_out, "send queue full: the peer reads too slowly");
   return false;
+}
+
+void answer(WorldState& world, SessionId session, Reject reject) {
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr) return;
+  mine->owed.push_back(std::move(reject));
+  if (mine->owed.size() == 1) {
+    send_owed(world, session);
+  } else if (mine->owed.size() > kOwedMax) {
+    close_session(world, session, GoodbyeReason::timed_out, "send queue full: the peer reads too slowly");
+  }
+}
+
+void send_owed(WorldState& world, SessionId session) {
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr) return;
+  std::size_t sent = 0;
+  while (sent < mine->owed.size() && send_or_skip(world, session, encode_message(mine->owed[sent]))) ++sent;
+  mine->owed.erase(mine->owed.begin(), mine->owed.begin() + static_cast<std::ptrdiff_t>(sent));
+  if (mine->owed.empty() && mine->owes_durable) {
+    const Durable durable{world.authority.epoch(), world.durable};
+    mine->owes_durable = !send_or_skip(world, session, encode_message(durable));
+  }
 }
 
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message) {

@@ -45,6 +45,11 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason, c
 void forget_session(WorldState& world, SessionId session);
 /// Sends a message the session must not miss: closes the session if its queue is full. True if it is queued.
 bool send_or_close(WorldState& world, SessionId session, const Message& message);
+/// Answers an edit. What does not fit is owed and sent later, in order; a session that is owed too much is
+/// closed.
+void answer(WorldState& world, SessionId session, Reject reject);
+/// Sends what the session is owed, as far as it fits: answers, then the durable watermark.
+void send_owed(WorldState& world, SessionId session);
 /// Sends a message that a later one of its kind replaces: a full queue only counts.
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message);
 

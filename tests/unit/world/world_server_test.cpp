@@ -400,11 +400,13 @@ TEST_CASE("a full session loses commits, gets fresh snapshots later and an answe
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).empty());
   CHECK(bench.server.counters().chunks_stale == 1);
+  CHECK(bench.ports.messages<Reject>(1, kEdge).empty());  // answers travel in order with commits: it is owed
+  // While it is stale it gets no commits of that chunk, and no snapshot before there is room.
+  bench.ports.refuse_edits.clear();
+  bench.tick(0);
   const auto rejects = bench.ports.messages<Reject>(1, kEdge);
   REQUIRE(rejects.size() == 1);
   CHECK(rejects[0].reason == RejectReason::already_decided);
-  // While it is stale it gets no commits of that chunk, and no snapshot before there is room.
-  bench.ports.refuse_edits.clear();
   bench.edit(1, 2, SetVoxel{{20, 1, 1}}, 2);  // the chunk to the east is still subscribed
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).size() == 1);
@@ -417,11 +419,31 @@ TEST_CASE("a full session loses commits, gets fresh snapshots later and an answe
   CHECK(bench.ports.snapshots[5].chunk->version == Version{1, 1});
 }
 
-TEST_CASE("a session whose control queue is full is closed", "[world]") {
+TEST_CASE("answers that do not fit are owed in order, and too many of them close the session", "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.ports.full.insert(1);
-  bench.edit(1, 1, kAtOrigin, 99);  // its reject does not fit
+  for (ClientSequence seq = 1; seq <= 3; ++seq) bench.edit(1, seq, kAtOrigin, 99);
+  CHECK(bench.ports.closed.empty());
+  bench.ports.full.clear();
+  bench.edit(1, 4, kAtOrigin, 99);
+  bench.server.drained(1, bench.now());
+  const auto rejects = bench.ports.messages<Reject>(1, kEdge);
+  REQUIRE(rejects.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(rejects[i].client_seq == i + 1);
+  bench.ports.full.insert(1);
+  for (ClientSequence seq = 5; seq <= 5000 && bench.ports.closed.empty(); ++seq) {
+    bench.edit(1, seq, kAtOrigin, 99);
+  }
+  REQUIRE(bench.ports.closed.size() == 1);
+  CHECK(bench.ports.closed[0].reason == GoodbyeReason::timed_out);
+}
+
+TEST_CASE("a client that cannot take its welcome is closed", "[world]") {
+  Bench bench;
+  bench.server.connected(1, bench.now());
+  bench.ports.full.insert(1);
+  bench.server.received(1, bench.hello(1), bench.now());
   REQUIRE(bench.ports.closed.size() == 1);
   CHECK(bench.ports.closed[0].reason == GoodbyeReason::timed_out);
 }

@@ -1,0 +1,149 @@
+// RawClient: a blocking socket that speaks frames and messages and nothing more: it does only what a test
+// says, and can send anything, broken bytes included. Reads end with a deadline, so a test fails instead of
+// hanging.
+#pragma once
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/core/assert.hpp"
+#include "protocol/codec/frame.hpp"
+#include "protocol/codec/handshake.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone::test {
+
+class RawClient {
+ public:
+  explicit RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
+    is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~RawClient() { ::close(socket_); }
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  bool is_open() const { return is_open_; }
+
+  void send_bytes(ByteView bytes) {
+    while (!bytes.empty()) {
+      const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent <= 0) {
+        is_open_ = false;
+        return;
+      }
+      bytes = bytes.subspan(static_cast<std::size_t>(sent));
+    }
+  }
+  void send(const Message& message) {
+    Bytes bytes;
+    frames_.append(encode_message(message), bytes);
+    send_bytes(bytes);
+  }
+  void shutdown_send() { ::shutdown(socket_, SHUT_WR); }
+
+  /// The next message, or nothing at the end of the stream or the deadline.
+  std::optional<Message> next(int deadline_ms = 10'000) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(deadline_ms);
+    while (arrived_.empty()) {
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+      if (left.count() <= 0 || !read_some(static_cast<int>(left.count()))) return std::nullopt;
+    }
+    Message message = std::move(arrived_.front());
+    arrived_.pop_front();
+    return message;
+  }
+  /// The next message of one kind; others are dropped on the way, unless `seen` takes them.
+  template <class Kind>
+  std::optional<Kind> next_of(std::vector<Message>* seen = nullptr) {
+    while (auto message = next()) {
+      if (auto* found = std::get_if<Kind>(&*message)) return std::move(*found);
+      if (seen != nullptr) seen->push_back(std::move(*message));
+    }
+    return std::nullopt;
+  }
+  /// Reads until the server closes; the goodbye, if there was one.
+  std::optional<Goodbye> goodbye() {
+    auto found = next_of<Goodbye>();
+    while (found && next()) {
+    }
+    return found;
+  }
+  /// True once the server has closed the connection.
+  bool sees_the_end() {
+    while (next()) {
+    }
+    return !is_open_;
+  }
+
+  Hello hello(std::uint8_t who, ClientInstance instance = 1) {
+    seed_.fill(who);
+    Hello h;
+    h.key = key_pair_of(seed_).public_key;
+    h.instance = instance;
+    h.name = "player" + std::to_string(who);
+    return h;
+  }
+  /// The whole handshake; nothing if the server closed.
+  std::optional<Ready> join(std::uint8_t who, ClientInstance instance = 1) {
+    const Hello h = hello(who, instance);
+    send(h);
+    auto got = next_of<Welcome>();
+    if (!got) return std::nullopt;
+    welcome = *std::move(got);
+    chunk_edge_ = welcome.chunk_edge;
+    if (!verify(welcome.server_key, server_transcript(h, welcome), welcome.signature)) return std::nullopt;
+    send(Proof{sign(key_pair_of(seed_), client_transcript(h, welcome))});
+    return next_of<Ready>();
+  }
+
+  Welcome welcome;
+
+ private:
+  bool read_some(int deadline_ms) {
+    if (!is_open_) return false;
+    pollfd wait{socket_, POLLIN, 0};
+    if (::poll(&wait, 1, deadline_ms) <= 0) return false;
+    Bytes buffer(65'536);
+    const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), 0);
+    if (got <= 0) {
+      is_open_ = false;
+      return false;
+    }
+    const auto on_message = [this](FrameClass frame_class, ByteView body) -> Result<void> {
+      auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
+      if (!message) return Unexpected<Error>{message.error()};
+      // The edge counts from welcome on, also for messages of the same read.
+      if (const auto* w = std::get_if<Welcome>(&*message)) chunk_edge_ = w->chunk_edge;
+      arrived_.push_back(*std::move(message));
+      return {};
+    };
+    const auto fed = reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(got)), on_message);
+    RUNSTONE_ASSERT(fed.has_value());  // the server never sends what its own decoder refuses
+    return true;
+  }
+
+  int socket_;
+  bool is_open_ = false;
+  KeySeed seed_{};
+  std::uint16_t chunk_edge_ = 0;
+  FrameWriter frames_;
+  FrameReader reader_{Sender::server};
+  std::deque<Message> arrived_;
+};
+
+}  // namespace runstone::test

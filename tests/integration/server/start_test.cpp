@@ -1,0 +1,194 @@
+// What a server does when it cannot start, or meets damage: one clear line, and nothing overwritten.
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "tests/integration/server/raw_client.hpp"
+#include "tests/integration/server/server_bench.hpp"
+
+namespace runstone {
+namespace {
+
+using test::flat_creation;
+using test::quiet_config;
+using test::RawClient;
+using test::start_server;
+using test::TempFolder;
+
+std::string start_error(const ServerConfig& config, const WorldCreation& creation) {
+  const auto server = Server::start(config, creation);
+  REQUIRE_FALSE(server.has_value());
+  CHECK(server.error().find('\n') == std::string::npos);
+  return server.error();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+void run_sql(const std::string& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &database) == SQLITE_OK);
+  char* message = nullptr;
+  const int code = sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &message);
+  INFO((message == nullptr ? "" : message));
+  CHECK(code == SQLITE_OK);
+  CHECK(sqlite3_changes(database) > 0);
+  sqlite3_close(database);
+}
+
+TEST_CASE("a busy port is named, and the world keeps its epoch", "[integration]") {
+  const TempFolder folder;
+  const auto first = start_server(quiet_config(folder / "first"), flat_creation());
+  ServerConfig config = quiet_config(folder / "second");
+  {
+    CHECK(start_server(config, flat_creation())->stop().is_clean);
+  }
+  config.listen = "127.0.0.1:" + std::to_string(first->port());
+  CHECK(contains(start_error(config, flat_creation()), config.listen));
+  config.listen = "127.0.0.1:0";
+  const auto server = start_server(config, flat_creation());
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  CHECK(client.welcome.epoch == 2);
+}
+
+TEST_CASE("an address that is none is named", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  for (const char* address : {"localhost", "127.0.0.1:", "127.0.0.1:70000", "127.0.0.1:x"}) {
+    config.listen = address;
+    CHECK(contains(start_error(config, flat_creation()), address));
+  }
+}
+
+TEST_CASE("an unknown generator, edge or materials file makes no world", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  WorldCreation creation = flat_creation();
+  SECTION("generator") {
+    creation.generator = "volcano";
+    CHECK(contains(start_error(config, creation), "volcano"));
+  }
+  SECTION("edge") {
+    creation.edge = 33;
+    CHECK(contains(start_error(config, creation), "33"));
+  }
+  SECTION("missing materials") {
+    creation.materials_file = folder / "none.toml";
+    CHECK(contains(start_error(config, creation), "none.toml"));
+  }
+  SECTION("broken materials") {
+    creation.materials_file = folder / "broken.toml";
+    std::ofstream(creation.materials_file) << "[[material]]\nname = \n";
+    CHECK(contains(start_error(config, creation), "broken.toml:2"));
+  }
+  CHECK_FALSE(has_world(config.world));
+}
+
+TEST_CASE("a second server on the same world is refused", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  const auto first = start_server(config, flat_creation());
+  CHECK(contains(start_error(config, flat_creation()), "world"));
+  RawClient client(first->port());
+  CHECK(client.join(1).has_value());
+}
+
+TEST_CASE("a file that is no world is refused and left as it is", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  std::filesystem::create_directories(config.world);
+  const std::string file = config.world + "/world.sqlite";
+  const std::string content = "this is a text, not a database, and somebody may still need it";
+  std::ofstream(file) << content;
+  CHECK(contains(start_error(config, flat_creation()), "world.sqlite"));
+  std::ifstream in(file);
+  CHECK(std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>()) == content);
+}
+
+TEST_CASE("a folder that cannot be written is named", "[integration]") {
+  if (::geteuid() == 0) {
+    WARN("root may write everywhere: a file in place of the folder stands in");
+  }
+  const TempFolder folder;
+  std::ofstream(folder / "file") << "x";
+  const ServerConfig config = quiet_config(folder / "file/world");
+  CHECK(contains(start_error(config, flat_creation()), "file"));
+}
+
+/// A world with edits in three chunks, stopped cleanly.
+void make_edited_world(const ServerConfig& config) {
+  const auto server = start_server(config, flat_creation());
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  for (ClientSequence seq = 1; seq <= 3; ++seq) {
+    const auto x = static_cast<std::int32_t>(seq - 1) * 16;
+    client.send(EditRequest{seq, 0, {SetVoxel{{x, 1, 1}}, {}, 2}});
+  }
+  while (true) {
+    const auto durable = client.next_of<Durable>();
+    REQUIRE(durable.has_value());
+    if (durable->seq == 3) break;
+  }
+  REQUIRE(server->stop().is_clean);
+}
+
+TEST_CASE("a damaged snapshot is quarantined: not sent, not made anew, its edits still ordered",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1");
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(View{{0, 0, 0}, 2, 0});
+    std::set<ChunkKey> got;
+    for (int i = 0; i < 12; ++i) {
+      const auto snapshot = client.next_of<ChunkSnapshot>();
+      REQUIRE(snapshot.has_value());
+      got.insert(snapshot->key);
+    }
+    CHECK(got.size() == 12);
+    CHECK_FALSE(got.contains({0, {1, 0, 0}}));
+    client.send(EditRequest{4, 0, {SetVoxel{{17, 1, 1}}, {}, 3}});
+    const auto commit = client.next_of<Commit>();
+    REQUIRE(commit.has_value());
+    CHECK(commit->first == 4);
+    CHECK(commit->edits.at(0).previous == std::vector<Sequence>{2});
+    const StopReport report = server->stop();
+    CHECK(report.is_clean);
+    CHECK(contains(report.error, "chunk=1,0,0"));
+  }
+  // The damaged row is as it was: nothing replaced it.
+  run_sql(config.world + "/world.sqlite",
+          "UPDATE snapshot SET data = data WHERE x = 1 AND data = zeroblob(40)");
+}
+
+TEST_CASE("a damaged log row above the checkpoint stops the start and is named", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  const std::string file = config.world + "/world.sqlite";
+  run_sql(file, "UPDATE edit_log SET checksum = checksum + 1 WHERE seq = 3");
+  CHECK(contains(start_error(config, flat_creation()), "seq=3"));
+}
+
+TEST_CASE("a world of a newer version is refused", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite",
+          "CREATE TABLE t(x); INSERT INTO t VALUES(1); PRAGMA user_version = 99");
+  const std::string error = start_error(config, flat_creation());
+  CHECK(contains(error, "world.sqlite"));
+}
+
+}  // namespace
+}  // namespace runstone
