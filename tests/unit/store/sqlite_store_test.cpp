@@ -372,6 +372,33 @@ TEST_CASE("a write that another program blocks is reported and works later", "[s
   CHECK(store->append({}, sample_records(rng, 1, 4, 1)).has_value());
 }
 
+TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(10);
+  std::string file;
+  const auto pages = [&] { return std::stol(raw_sql(file, "PRAGMA page_count")); };
+  long before = 0;
+  constexpr Sequence kEdits = 20'000;
+  {
+    auto store = filled(folder.path(), rng, 1);
+    file = store->file();
+    before = pages();
+    for (Sequence seq = 2; seq < 2 + kEdits; seq += 100) {
+      auto records = sample_records(rng, 1, seq, 100);
+      for (EditRecord& record : records) {
+        record.edit = {
+            SetVoxel{{rng.between(-2000, 2000), rng.between(0, 120), rng.between(-2000, 2000)}}, {}, 1};
+        record.op.instance = mix64(rng.below(8));  // random numbers of full width, few client processes
+      }
+      REQUIRE(store->append({}, records).has_value());
+    }
+  }
+  const double bytes = static_cast<double>((pages() - before) * 4096) / kEdits;
+  CAPTURE(bytes);
+  CHECK(bytes < 120);
+  CHECK(bytes > 40);  // a figure below the payload would mean that nothing was measured
+}
+
 TEST_CASE("an error message names file, place and cause in one line", "[store]") {
   CHECK(StoreError{StoreError::Kind::corrupt, "w/world.sqlite", "edit_log seq=7", "checksum is wrong"}
             .message() == "w/world.sqlite: edit_log seq=7: checksum is wrong");
