@@ -1,0 +1,31 @@
+// Writes Luanti map blocks for tests, from the published format and sharing nothing with the decoder.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+
+namespace runstone::test {
+
+/// What stands in a block before compression; every field can be set wrong.
+struct LuantiBlockFields {
+  std::uint8_t name_table_version = 0;
+  std::vector<std::pair<std::uint16_t, std::string>> names;
+  std::uint8_t content_width = 2, params_width = 2;
+  std::vector<std::uint16_t> nodes = std::vector<std::uint16_t>(4096);  // z * 256 + y * 16 + x
+  Bytes rest = {0, 0, 0, 0, 0, 10, 0, 0};                               // empty metadata, objects and timers
+};
+
+/// The bytes inside the stream.
+Bytes luanti_plain(const LuantiBlockFields& fields);
+/// A whole row: version byte and zstd stream, without a content size as the game writes it.
+Bytes luanti_row(const Bytes& plain, std::uint8_t version = 29);
+inline Bytes luanti_row(const LuantiBlockFields& fields) { return luanti_row(luanti_plain(fields)); }
+
+/// Reads a row back node by node: the name of every node, in node order. An oracle for whole worlds; rows
+/// must be sound.
+std::vector<std::string> luanti_nodes(ByteView row);
+
+}  // namespace runstone::test

@@ -1,0 +1,229 @@
+#include "common/formats/luanti_block.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "common/core/hash.hpp"
+#include "tests/support/luanti_bytes.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+/// Three materials in simple places, so that a wrong axis or byte order shows.
+LuantiBlockFields sample() {
+  LuantiBlockFields fields;
+  fields.names = {{7, "air"}, {300, "default:stone"}, {2, "default:dirt"}};
+  fields.nodes.assign(4096, 7);
+  fields.nodes[0] = 300;                    // x 0, y 0, z 0
+  fields.nodes[1] = 2;                      // x 1
+  fields.nodes[16 * 3] = 300;               // y 3
+  fields.nodes[256 * 5 + 16 * 2 + 15] = 2;  // x 15, y 2, z 5
+  return fields;
+}
+
+std::string name_at(const LuantiBlock& block, LocalPos at) {
+  const Material material = material_at(block.voxels, at);
+  return material == kEmpty ? "" : block.names[material - 1u];
+}
+
+ErrorCode code_of(ByteView row) {
+  const auto block = decode_luanti_block(row);
+  REQUIRE_FALSE(block.has_value());
+  return block.error().code;
+}
+
+void check_sound(const LuantiBlock& block) {
+  REQUIRE(validate(block.voxels).has_value());
+  for (std::size_t i = 0; i < block.voxels.runs.size(); ++i) {
+    REQUIRE(block.voxels.runs.material(i) <= block.names.size());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a block's nodes come out where they are", "[formats]") {
+  const auto block = decode_luanti_block(luanti_row(sample()));
+  REQUIRE(block.has_value());
+  check_sound(*block);
+  CHECK(block->names == std::vector<std::string>{"air", "default:stone", "default:dirt"});
+  CHECK(block->voxels.order == AxisOrder::xyz);
+  CHECK(block->voxels.runs.size() == 7);
+  CHECK(name_at(*block, {0, 0, 0}) == "default:stone");
+  CHECK(name_at(*block, {1, 0, 0}) == "default:dirt");
+  CHECK(name_at(*block, {2, 0, 0}) == "air");
+  CHECK(name_at(*block, {0, 3, 0}) == "default:stone");
+  CHECK(name_at(*block, {15, 2, 5}) == "default:dirt");
+  CHECK(name_at(*block, {15, 15, 15}) == "air");
+}
+
+TEST_CASE("a block that the game wrote comes out as it is known to be", "[formats][golden]") {
+  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/fuzz/corpus/luanti_block_fuzz/game_written",
+                   std::ios::binary);
+  REQUIRE(in.good());
+  const Bytes row{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto block = decode_luanti_block(row);
+  REQUIRE(block.has_value());
+  check_sound(*block);
+  const std::vector<std::string> nodes = luanti_nodes(row);
+  for (std::uint32_t i = 0; i < 4096; ++i) {
+    const LocalPos at{static_cast<std::uint8_t>(i % 16), static_cast<std::uint8_t>(i / 16 % 16),
+                      static_cast<std::uint8_t>(i / 256)};
+    REQUIRE(name_at(*block, at) == nodes[i]);
+  }
+  CHECK(to_hex(digest_of(block->voxels)) == "0481e14fc178484e13c9df2eeae9a9dd");
+}
+
+TEST_CASE("random blocks come out node by node", "[formats]") {
+  SplitMix64 random(Catch::rngSeed());
+  for (int round = 0; round < 30; ++round) {
+    LuantiBlockFields fields;
+    const std::uint32_t names = 1 + random.below(round % 5 == 0 ? 4096 : 12);
+    const auto first_id = static_cast<std::uint16_t>(random.below(61440));
+    for (std::uint32_t i = 0; i < names; ++i) {
+      fields.names.emplace_back(static_cast<std::uint16_t>(first_id + i), "mod:node_" + std::to_string(i));
+    }
+    std::uint32_t left = 0;
+    std::uint16_t id = 0;
+    for (auto& node : fields.nodes) {
+      if (left == 0) {
+        left = 1 + random.below(40);
+        id = static_cast<std::uint16_t>(first_id + random.below(names));
+      }
+      node = id;
+      --left;
+    }
+    const auto block = decode_luanti_block(luanti_row(fields));
+    REQUIRE(block.has_value());
+    check_sound(*block);
+    for (std::uint32_t i = 0; i < 4096; ++i) {
+      const LocalPos at{static_cast<std::uint8_t>(i % 16), static_cast<std::uint8_t>(i / 16 % 16),
+                        static_cast<std::uint8_t>(i / 256)};
+      REQUIRE(name_at(*block, at) == "mod:node_" + std::to_string(fields.nodes[i] - first_id));
+    }
+  }
+}
+
+TEST_CASE("ignore nodes are not there", "[formats]") {
+  LuantiBlockFields fields = sample();
+  fields.names[2].second = "ignore";
+  const auto block = decode_luanti_block(luanti_row(fields));
+  REQUIRE(block.has_value());
+  CHECK(material_at(block->voxels, {1, 0, 0}) == kEmpty);
+  CHECK(name_at(*block, {0, 0, 0}) == "default:stone");
+}
+
+TEST_CASE("two ids of one name are both known", "[formats]") {
+  LuantiBlockFields fields = sample();
+  fields.names[2].second = "default:stone";
+  const auto block = decode_luanti_block(luanti_row(fields));
+  REQUIRE(block.has_value());
+  CHECK(name_at(*block, {1, 0, 0}) == "default:stone");
+}
+
+TEST_CASE("every truncation of a block is refused", "[formats]") {
+  const Bytes row = luanti_row(sample());
+  for (std::size_t size = 0; size < row.size(); ++size) {
+    CAPTURE(size, row.size());
+    const auto block = decode_luanti_block(ByteView(row).first(size));
+    REQUIRE_FALSE(block.has_value());
+    CHECK(block.error().code == ErrorCode::truncated);
+  }
+}
+
+TEST_CASE("every truncation inside the stream is refused up to the end of the nodes", "[formats]") {
+  const Bytes plain = luanti_plain(sample());
+  const std::size_t needed = plain.size() - sample().rest.size();
+  for (std::size_t size = 0; size < plain.size(); size += size < 64 ? 1 : 61) {
+    const auto block = decode_luanti_block(
+        luanti_row(Bytes(plain.begin(), plain.begin() + static_cast<std::ptrdiff_t>(size))));
+    CAPTURE(size, needed);
+    REQUIRE(block.has_value() == (size >= needed));
+    if (!block) CHECK(block.error().code == ErrorCode::truncated);
+  }
+}
+
+TEST_CASE("a byte after the stream is refused", "[formats]") {
+  Bytes row = luanti_row(sample());
+  row.push_back(0);
+  CHECK(code_of(row) == ErrorCode::trailing_bytes);
+}
+
+TEST_CASE("other versions of the format are refused by name", "[formats]") {
+  for (int version = 0; version < 256; ++version) {
+    if (version == 29) continue;
+    CHECK(code_of(luanti_row(luanti_plain(sample()), static_cast<std::uint8_t>(version))) ==
+          ErrorCode::bad_version);
+  }
+  LuantiBlockFields fields = sample();
+  fields.name_table_version = 1;
+  CHECK(code_of(luanti_row(fields)) == ErrorCode::bad_version);
+}
+
+TEST_CASE("fields out of their range are refused", "[formats]") {
+  LuantiBlockFields fields = sample();
+  SECTION("content width") { fields.content_width = 1; }
+  SECTION("parameter width") { fields.params_width = 1; }
+  SECTION("an id without a name") { fields.nodes[4095] = 8; }
+  SECTION("an id with two names") { fields.names.emplace_back(std::uint16_t{300}, "default:sand"); }
+  CHECK(code_of(luanti_row(fields)) == ErrorCode::bad_value);
+}
+
+TEST_CASE("a name table that nodes could not use up is refused", "[formats]") {
+  LuantiBlockFields fields = sample();
+  fields.names.clear();
+  for (std::uint16_t i = 0; i < 4097; ++i) fields.names.emplace_back(i, "n");
+  CHECK(code_of(luanti_row(fields)) == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("a stream that grows without bound is refused", "[formats]") {
+  LuantiBlockFields fields = sample();
+  fields.rest.assign(kLuantiBlockBytesMax, 0);
+  const Bytes bomb = luanti_row(fields);
+  CHECK(bomb.size() < 4096);
+  CHECK(code_of(bomb) == ErrorCode::limit_exceeded);
+  fields.rest.resize(kLuantiBlockBytesMax - 20000);
+  CHECK(decode_luanti_block(luanti_row(fields)).has_value());
+}
+
+TEST_CASE("flipped bytes give an error or a sound block", "[formats]") {
+  const Bytes row = luanti_row(sample());
+  int refused = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      Bytes flipped = row;
+      flipped[i] = static_cast<std::uint8_t>(flipped[i] ^ (1 << bit));
+      const auto block = decode_luanti_block(flipped);
+      if (block) check_sound(*block);
+      refused += static_cast<int>(!block);
+    }
+  }
+  CHECK(refused > 0);
+  // Inside the stream too, where no checksum of the outer format can help.
+  const Bytes plain = luanti_plain(sample());
+  for (std::size_t i = 0; i < 64; ++i) {
+    Bytes flipped = plain;
+    flipped[i] = static_cast<std::uint8_t>(~flipped[i]);
+    const auto block = decode_luanti_block(luanti_row(flipped));
+    if (block) check_sound(*block);
+  }
+}
+
+TEST_CASE("a row's key and its block coordinates are each other's inverse", "[formats]") {
+  CHECK(luanti_block_coord(0) == ChunkCoord{0, 0, 0});
+  CHECK(luanti_block_coord(1) == ChunkCoord{1, 0, 0});
+  CHECK(luanti_block_coord(-1) == ChunkCoord{-1, 0, 0});
+  CHECK(luanti_block_coord(-4096 * 4096 + 4096 * 2 - 3) == ChunkCoord{-3, 2, -1});
+  CHECK(luanti_block_pos({-3, 2, -1}) == -4096 * 4096 + 4096 * 2 - 3);
+  SplitMix64 random(Catch::rngSeed());
+  for (int i = 0; i < 1000; ++i) {
+    const ChunkCoord at{random.between(-2048, 2047), random.between(-2048, 2047),
+                        random.between(-2048, 2047)};
+    REQUIRE(luanti_block_coord(luanti_block_pos(at)) == at);
+  }
+  for (const std::int64_t wild : {INT64_MAX, INT64_MIN, std::int64_t{1} << 36}) {
+    CHECK(luanti_block_pos(luanti_block_coord(wild)) != wild);
+  }
+}

@@ -1,0 +1,77 @@
+#include <catch2/catch.hpp>
+
+#include "common/core/hash.hpp"
+#include "common/formats/luanti_block.hpp"
+
+using namespace runstone;
+
+namespace {
+
+Visibility visibility_of(std::string_view name, bool keep_all = false) {
+  return material_of_luanti_node(name, keep_all).visibility;
+}
+
+}  // namespace
+
+TEST_CASE("air and what is not generated are air", "[formats]") {
+  for (const bool keep_all : {false, true}) {
+    CHECK(material_of_luanti_node("air", keep_all) == MaterialTable()[kEmpty]);
+    CHECK(material_of_luanti_node("ignore", keep_all) == MaterialTable()[kEmpty]);
+  }
+}
+
+TEST_CASE("ground is opaque, water and glass are seen through, plants are left out", "[formats]") {
+  CHECK(visibility_of("default:stone") == Visibility::opaque);
+  CHECK(visibility_of("default:acacia_leaves") == Visibility::opaque);
+  CHECK(visibility_of("default:sand_with_kelp") == Visibility::opaque);
+  CHECK(visibility_of("default:water_source") == Visibility::transparent);
+  CHECK(visibility_of("default:glass") == Visibility::transparent);
+  CHECK(visibility_of("default:grass_3") == Visibility::empty);
+  CHECK(visibility_of("default:grass_3", true) == Visibility::transparent);
+  CHECK(visibility_of("default:torch_wall") == Visibility::empty);
+  CHECK(visibility_of("flowers:some_new_flower") == Visibility::empty);
+  CHECK(visibility_of("farming:wheat_5") == Visibility::empty);
+  CHECK(visibility_of("farming:straw") == Visibility::opaque);
+  CHECK(visibility_of("othermod:marble") == Visibility::opaque);
+}
+
+TEST_CASE("stairs and walls look as what they are made of", "[formats]") {
+  const auto colour = [](std::string_view name) { return material_of_luanti_node(name, false).colour; };
+  CHECK(colour("stairs:stair_cobble") == colour("default:cobble"));
+  CHECK(colour("stairs:stair_inner_brick") == colour("default:brick"));
+  CHECK(colour("stairs:slab_wood") == colour("default:wood"));
+  CHECK(colour("walls:mossycobble") == colour("default:mossycobble"));
+}
+
+TEST_CASE("unknown names get a colour of their kind, and their own shade of it", "[formats]") {
+  const auto a = material_of_luanti_node("mod:oak_leaves", false),
+             b = material_of_luanti_node("mod:fir_leaves", false);
+  CHECK(a.colour != b.colour);
+  for (const auto& leaves : {a, b}) {
+    CHECK(leaves.colour[1] > leaves.colour[0]);
+    CHECK(leaves.colour[1] > leaves.colour[2]);
+  }
+  // Pinned: colours end up in worlds, so they must not depend on compiler or run.
+  const auto colour = material_of_luanti_node("mod:xyzzy", false).colour;
+  const std::array<int, 4> pinned{colour[0], colour[1], colour[2], colour[3]};
+  CHECK(pinned == std::array<int, 4>{140, 201, 113, 255});
+}
+
+TEST_CASE("every name becomes a row that a table takes", "[formats]") {
+  SplitMix64 random(Catch::rngSeed());
+  MaterialTable table;
+  for (int i = 0; i < 500; ++i) {
+    std::string name;
+    const std::uint32_t size = random.below(150);
+    for (std::uint32_t k = 0; k < size; ++k) name += static_cast<char>(random.below(256));
+    if (i % 2 == 0) name = "mod:" + std::string(random.below(100), 'a') + std::to_string(i);
+    CAPTURE(name);
+    const MaterialInfo info = material_of_luanti_node(name, random.below(2) == 0);
+    CHECK(info == material_of_luanti_node(name, info.visibility == Visibility::transparent));
+    if (!table.find(info.name)) REQUIRE(table.add(info).has_value());
+  }
+  CHECK(table.size() > 400);
+  CHECK(material_of_luanti_node(std::string(65, 'a'), false).name !=
+        material_of_luanti_node(std::string(66, 'a'), false).name);
+  CHECK(material_of_luanti_node("default:stone", false).name == "default:stone");
+}
