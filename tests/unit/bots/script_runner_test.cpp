@@ -1,0 +1,259 @@
+#include "client/bots/script_runner.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+using namespace runstone;
+
+namespace {
+
+/// A world of single voxels that answers at once.
+struct FakeHost final : ScriptHost {
+  struct Submitted {
+    EditDescriptor edit;
+    TimeUs due_us, now_us;
+  };
+  bool open = true, is_loaded = true, is_durable = true, draws = true, picture_done = true, takes = true;
+  std::uint64_t pongs = 0;
+  WorldPos at{10, 20, 30};
+  double yaw = 0, pitch = 0;
+  std::map<VoxelPos, Material> voxels;
+  std::optional<RayHit> hit;
+  std::vector<Submitted> edits;
+  std::vector<std::string> files;
+
+  bool ready() const override { return open; }
+  WorldPos eye() const override { return at; }
+  void move_to(const WorldPos& eye) override { at = eye; }
+  void look(double y, double p) override { yaw = y, pitch = p; }
+  std::optional<Material> material(std::string_view name) const override {
+    if (name == "air" || name == "0") return kEmpty;
+    if (name == "stone") return Material{5};
+    if (name == "sand") return Material{2};
+    return std::nullopt;
+  }
+  std::optional<Material> shown_at(VoxelPos pos) const override {
+    if (pos.x > 1000) return std::nullopt;
+    const auto it = voxels.find(pos);
+    return it == voxels.end() ? kEmpty : it->second;
+  }
+  std::optional<RayHit> pick() const override { return hit; }
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
+    if (x > 1000) return std::nullopt;
+    return 7;
+  }
+  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+    edits.push_back({edit, due_us, now_us});
+    return takes;
+  }
+  bool loaded() const override { return is_loaded; }
+  bool durable() const override { return is_durable; }
+  std::uint64_t sync_mark() const override { return pongs; }
+  bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
+  bool screenshot(const std::string& file) override {
+    files.push_back(file);
+    return draws;
+  }
+  bool screenshot_done() const override { return picture_done; }
+  bool digests(const std::string& file) override {
+    files.push_back(file);
+    return file != "bad";
+  }
+};
+
+struct Fixture {
+  void load(std::string_view text) {
+    auto parsed = parse_script(text, "s.txt");
+    INFO((parsed ? "" : parsed.error().message()));
+    REQUIRE(parsed.has_value());
+    script = *parsed;
+    runner.emplace(script, host);
+  }
+  void run(std::string_view text) {
+    load(text);
+    runner->step(0);
+    REQUIRE(runner->finished());
+  }
+  FakeHost host;
+  Script script;
+  std::optional<ScriptRunner> runner;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from the surface", "[bots]") {
+  run("set 1 2 3 stone\nset ~ ~-1 ~+2 stone\nset -4 ^+1 5 stone\nset -0.5 1.9 2.5 sand");
+  REQUIRE(host.edits.size() == 4);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{1, 2, 3}}, {}, 5});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{10, 19, 32}}, {}, 5});
+  CHECK(host.edits[2].edit == EditDescriptor{SetVoxel{{-4, 8, 5}}, {}, 5});
+  CHECK(host.edits[3].edit == EditDescriptor{SetVoxel{{-1, 1, 2}}, {}, 2});
+  CHECK(runner->failures().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both included", "[bots]") {
+  run("box 5 2 3 1 4 3 stone empty\nsphere 1 2 3 4 air only:sand");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{1, 2, 3}, {6, 5, 4}}}, {MaskKind::only_empty, 0}, 5});
+  CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
+}
+
+TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {
+  run("look 90 -45");
+  CHECK(host.yaw == Approx(std::numbers::pi / 2));
+  CHECK(host.pitch == Approx(-std::numbers::pi / 4));
+  run("lookat 20 30 30");  // along +x, 45 degrees up
+  CHECK(host.yaw == Approx(std::numbers::pi / 2));
+  CHECK(host.pitch == Approx(std::numbers::pi / 4));
+}
+
+TEST_CASE_METHOD(Fixture, "walking takes its time and ends where it should", "[bots]") {
+  load("walk 14 20 30 2\nquit");
+  runner->step(1'000'000);
+  CHECK_FALSE(runner->finished());
+  CHECK(runner->due_us().has_value());
+  runner->step(2'000'000);
+  CHECK(host.at.x == Approx(12));
+  runner->step(2'999'999);
+  CHECK_FALSE(runner->finished());
+  runner->step(3'000'001);
+  CHECK(runner->finished());
+  CHECK(host.at == WorldPos{14, 20, 30});
+}
+
+TEST_CASE_METHOD(Fixture, "digging and placing go through the picked voxel", "[bots]") {
+  host.hit = RayHit{{4, 5, 6}, 3, Direction::pos_y, 2};
+  run("dig\nplace sand");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{4, 5, 6}}, {}, kEmpty});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{4, 6, 6}}, {}, 2});
+  host.hit.reset();
+  run("dig\nplace sand");
+  CHECK(host.edits.size() == 2);
+  CHECK(runner->failures().size() == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then", "[bots]") {
+  load("wait 1.5\nwait loaded\nwait durable\nwait synced");
+  host.is_loaded = host.is_durable = false;
+  runner->step(100);
+  CHECK(runner->due_us() == 1'500'100);
+  runner->step(1'500'100);
+  CHECK_FALSE(runner->finished());
+  host.is_loaded = true;
+  runner->step(1'600'000);
+  host.is_durable = true;
+  runner->step(1'700'000);
+  CHECK_FALSE(runner->finished());
+  host.pongs = 1;
+  runner->step(1'800'000);
+  CHECK_FALSE(runner->finished());
+  host.pongs = 2;
+  runner->step(1'900'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a state that does not come fails the script and lets it go on", "[bots]") {
+  load("wait loaded 2\nquit");
+  host.is_loaded = false;
+  runner->step(0);
+  runner->step(2'000'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: not loaded in time"});
+}
+
+TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
+  host.open = false;
+  load("set 1 2 3 stone");
+  runner->step(0);
+  CHECK(host.edits.empty());
+  host.open = true;
+  runner->step(1);
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the script goes on", "[bots]") {
+  host.voxels[{1, 2, 3}] = 5;
+  run("expect 1 2 3 stone\nexpect 1 2 4 stone\nexpect 2000 2 3 stone\nset 1 1 1 sand");
+  REQUIRE(runner->failures().size() == 2);
+  CHECK(runner->failures()[0] == "s.txt:2: expected stone at 1 2 4, found material 0");
+  CHECK(runner->failures()[1] == "s.txt:3: expected stone at 2000 2 3, but its chunk is not here");
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]") {
+  run("set 1 2 3 unobtainium\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: the world has no material \"unobtainium\""});
+  run("set 2000 ^ 3 stone\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  run("box 0 0 0 5000 1 1 stone\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  CHECK(runner->failures().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empty ones too", "[bots]") {
+  run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 sand\nend\nrepeat "
+      "5\nend");
+  CHECK(host.edits.size() == 9);
+  CHECK(std::count_if(host.edits.begin(), host.edits.end(),
+                      [](const auto& e) { return e.edit.material == 5; }) == 6);
+}
+
+TEST_CASE_METHOD(Fixture, "a long script yields now and then", "[bots]") {
+  load("repeat 1000\nlook 0 0\nend");
+  int turns = 0;
+  for (; !runner->finished(); ++turns) runner->step(turns);
+  CHECK(turns > 5);
+}
+
+TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", "[bots]") {
+  load("burst 5 100 3 42 stone");
+  runner->step(1'000'000);
+  CHECK(host.edits.size() == 1);
+  CHECK(runner->due_us() == 1'010'000);
+  host.takes = false;  // refused edits do not hold it up
+  host.at = {500, 500, 500};
+  runner->step(1'035'000);  // late: three were due meanwhile
+  REQUIRE(host.edits.size() == 4);
+  CHECK(host.edits[1].due_us == 1'010'000);
+  CHECK(host.edits[2].due_us == 1'020'000);
+  CHECK(host.edits[3].due_us == 1'030'000);
+  CHECK(host.edits[3].now_us == 1'035'000);
+  runner->step(1'040'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+  for (const auto& submitted : host.edits) {
+    const VoxelPos at = std::get<SetVoxel>(submitted.edit.shape).at;
+    CHECK(std::abs(at.x - 10) <= 3);
+    CHECK(std::abs(at.y - 20) <= 3);
+    CHECK(std::abs(at.z - 30) <= 3);
+  }
+  const auto first = host.edits;
+  host.edits.clear();
+  host.at = {10, 20, 30};
+  load("burst 5 100 3 42 stone");
+  runner->step(0);
+  runner->step(1'000'000);
+  REQUIRE(host.edits.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) CHECK(host.edits[i].edit == first[i].edit);
+}
+
+TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn", "[bots]") {
+  load("screenshot a.png\nquit");
+  host.picture_done = false;
+  runner->step(0);
+  CHECK_FALSE(runner->finished());
+  host.picture_done = true;
+  runner->step(1);
+  CHECK(runner->finished());
+  CHECK(host.files == std::vector<std::string>{"a.png"});
+  host.draws = false;
+  run("screenshot b.png\ndigests good\ndigests bad");
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
+                                                       "s.txt:3: bad cannot be written"});
+}

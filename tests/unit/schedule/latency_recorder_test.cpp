@@ -1,0 +1,206 @@
+#include "client/schedule/latency_recorder.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+namespace {
+
+const ChunkKey kA{0, {0, 0, 0}};
+const ChunkKey kB{0, {1, 0, 0}};
+const OperationId kMine{5, 77, 1};
+const OperationId kTheirs{6, 1, 1};
+
+ChunkNews chunk(const ChunkKey& key, std::uint64_t serial) {
+  ChunkNews news;
+  news.key = key;
+  news.serial = serial;
+  return news;
+}
+ChunkNews gone(const ChunkKey& key) {
+  ChunkNews news;
+  news.key = key;
+  news.removed = true;
+  return news;
+}
+EditNews remote(std::vector<ChunkKey> chunks) {
+  EditNews news;
+  news.op = kTheirs;
+  news.seq = 1;
+  news.submitted_us = 10'000;  // server clock
+  news.ordered_us = 10'100;
+  news.received_us = 300;
+  news.unpacked_us = 310;
+  news.applied_us = 350;
+  news.chunks = std::move(chunks);
+  return news;
+}
+EditNews own(bool predicted, std::vector<ChunkKey> chunks, TimeUs applied) {
+  EditNews news;
+  news.op = kMine;
+  news.own = true;
+  news.predicted = predicted;
+  news.ordered_us = 10'200;
+  news.received_us = applied - 20;
+  news.unpacked_us = applied - 10;
+  news.applied_us = applied;
+  news.chunks = std::move(chunks);
+  return news;
+}
+ReplicaNews news(std::vector<ChunkNews> chunks, std::vector<EditNews> edits) {
+  ReplicaNews out;
+  out.chunks = std::move(chunks);
+  out.edits = std::move(edits);
+  return out;
+}
+ClockOffset clock_ahead() {
+  ClockOffset clock;
+  clock.add(0, 9'900, 0);  // the server's clock is 9900 ahead, exactly
+  return clock;
+}
+std::int64_t only(const Histogram& histogram) {
+  REQUIRE(histogram.count() == 1);
+  return *histogram.max();
+}
+const Histogram& since(const LatencyReport& report, LatencyWay way, LatencyStage stage) {
+  return report[way].since_submit[static_cast<std::size_t>(stage)];
+}
+const Histogram& step(const LatencyReport& report, LatencyWay way, LatencyStage stage) {
+  return report[way].step[static_cast<std::size_t>(stage)];
+}
+
+}  // namespace
+
+TEST_CASE("a remote edit is timed through every stage, in this client's clock", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.take(news({chunk(kA, 7)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.meshed(kA, 6, 380);  // of older runs: does not contain it
+  recorder.meshed(kA, 7, 400);
+  recorder.uploaded(kA, 7, 420);
+  CHECK(recorder.open_edits() == 1);
+  recorder.presented(500);
+  CHECK(recorder.open_edits() == 0);
+  const LatencyReport report = recorder.report();
+  const auto way = LatencyWay::remote;
+  CHECK(only(since(report, way, LatencyStage::ordered)) == 100);
+  CHECK(only(since(report, way, LatencyStage::received)) == 200);
+  CHECK(only(since(report, way, LatencyStage::unpacked)) == 210);
+  CHECK(only(since(report, way, LatencyStage::applied)) == 250);
+  CHECK(only(since(report, way, LatencyStage::meshed)) == 300);
+  CHECK(only(since(report, way, LatencyStage::uploaded)) == 320);
+  CHECK(only(since(report, way, LatencyStage::presented)) == 400);
+  CHECK(only(step(report, way, LatencyStage::meshed)) == 50);
+  CHECK(report[way].edits == 1);
+}
+
+TEST_CASE("an edit is through a stage when the last of its chunks is", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.take(news({chunk(kA, 1), chunk(kB, 2)}, {remote({kA, kB})}), clock_ahead(), 350);
+  recorder.meshed(kA, 1, 400);
+  recorder.uploaded(kA, 1, 410);
+  recorder.presented(420);
+  CHECK(recorder.open_edits() == 1);
+  recorder.meshed(kB, 2, 600);
+  recorder.uploaded(kB, 2, 610);
+  recorder.presented(620);
+  const LatencyReport report = recorder.report();
+  CHECK(only(since(report, LatencyWay::remote, LatencyStage::meshed)) == 500);
+  CHECK(only(since(report, LatencyWay::remote, LatencyStage::presented)) == 520);
+}
+
+TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.take(news({chunk(kA, 3)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.meshed(kA, 5, 400);
+  recorder.meshed(kA, 9, 500);
+  recorder.uploaded(kA, 9, 510);
+  recorder.presented(520);
+  CHECK(only(since(recorder.report(), LatencyWay::remote, LatencyStage::meshed)) == 300);
+}
+
+TEST_CASE("an own edit counts from the time it was scheduled for, shown and confirmed apart", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.submitted(1, 1000);  // handed in at 1500: the program was late
+  recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1500)}), clock_ahead(), 1500);
+  recorder.meshed(kA, 1, 1600);
+  recorder.uploaded(kA, 1, 1610);
+  recorder.presented(1700);
+  recorder.take(news({}, {own(false, {}, 3000)}), clock_ahead(), 3000);
+  ReplicaNews durable;
+  durable.durable = {1};
+  recorder.take(durable, clock_ahead(), 4000);
+  const LatencyReport report = recorder.report();
+  CHECK(only(since(report, LatencyWay::own_predicted, LatencyStage::applied)) == 500);
+  CHECK(only(since(report, LatencyWay::own_predicted, LatencyStage::presented)) == 700);
+  CHECK(since(report, LatencyWay::own_predicted, LatencyStage::received).count() == 0);
+  CHECK(only(since(report, LatencyWay::own_confirmed, LatencyStage::applied)) == 2000);
+  CHECK(since(report, LatencyWay::own_confirmed, LatencyStage::meshed).count() == 0);
+  CHECK(only(report.durable) == 3000);
+  CHECK(report[LatencyWay::remote].edits == 0);
+}
+
+TEST_CASE("what was never seen is infinite in the stages it did not reach", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.submitted(1, 1000);
+  recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1100)}), clock_ahead(), 1100);
+  recorder.not_submitted();
+  const LatencyReport report = recorder.report();
+  const auto& applied = since(report, LatencyWay::own_predicted, LatencyStage::applied);
+  CHECK(applied.count() == 2);
+  CHECK(applied.infinite() == 1);
+  CHECK(since(report, LatencyWay::own_predicted, LatencyStage::presented).infinite() == 2);
+  CHECK(since(report, LatencyWay::own_confirmed, LatencyStage::applied).infinite() == 2);
+  CHECK(report.durable.infinite() == 1);
+  CHECK(report[LatencyWay::own_predicted].edits == 2);
+}
+
+TEST_CASE("a rejected edit is counted as rejected and as nothing else but its prediction", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.submitted(1, 1000);
+  ReplicaNews all = news({chunk(kA, 1)}, {own(true, {kA}, 1100)});
+  all.rejects.push_back({1, RejectReason::busy, ""});
+  recorder.take(all, clock_ahead(), 1100);
+  recorder.meshed(kA, 1, 1200);
+  recorder.uploaded(kA, 1, 1200);
+  recorder.presented(1300);
+  const LatencyReport report = recorder.report();
+  CHECK(report.rejected == 1);
+  CHECK(report[LatencyWay::own_confirmed].edits == 0);
+  CHECK(report.durable.count() == 0);
+}
+
+TEST_CASE("edits without effect and edits that left the view are told apart", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.take(news({}, {remote({})}), clock_ahead(), 350);
+  EditNews second = remote({kA});
+  second.op.seq = 2;
+  recorder.take(news({chunk(kA, 1)}, {second}), clock_ahead(), 350);
+  recorder.take(news({gone(kA)}, {}), clock_ahead(), 360);
+  const LatencyReport report = recorder.report();
+  CHECK(report[LatencyWay::remote].edits == 2);
+  CHECK(report[LatencyWay::remote].without_effect == 1);
+  CHECK(report[LatencyWay::remote].left_view == 1);
+  CHECK(since(report, LatencyWay::remote, LatencyStage::applied).count() == 2);
+  CHECK(since(report, LatencyWay::remote, LatencyStage::presented).count() == 0);
+}
+
+TEST_CASE("a late part of an edit that was finished does not count again", "[schedule]") {
+  LatencyRecorder recorder(LatencyStage::meshed);
+  recorder.take(news({chunk(kA, 1)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.meshed(kA, 1, 400);
+  recorder.take(news({chunk(kB, 2)}, {remote({kB})}), clock_ahead(), 900);
+  recorder.meshed(kB, 2, 1000);
+  const LatencyReport report = recorder.report();
+  CHECK(report[LatencyWay::remote].edits == 1);
+  CHECK(only(since(report, LatencyWay::remote, LatencyStage::meshed)) == 300);
+}
+
+TEST_CASE("without a clock offset only the steps from ordering on are known", "[schedule]") {
+  LatencyRecorder recorder(LatencyStage::meshed);
+  recorder.take(news({chunk(kA, 1)}, {remote({kA})}), ClockOffset{}, 350);
+  recorder.meshed(kA, 1, 400);
+  const LatencyReport report = recorder.report();
+  CHECK(report[LatencyWay::remote].unknown_submit == 1);
+  CHECK(since(report, LatencyWay::remote, LatencyStage::meshed).count() == 0);
+  CHECK(only(step(report, LatencyWay::remote, LatencyStage::meshed)) == 50);
+}
