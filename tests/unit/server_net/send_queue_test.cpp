@@ -1,0 +1,180 @@
+#include "server/net/send_queue.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "common/core/hash.hpp"
+
+namespace runstone {
+namespace {
+
+EncodedMessage message(FrameClass frame_class, std::size_t bytes, std::uint8_t fill = 1) {
+  return {frame_class, std::make_shared<const Bytes>(bytes, fill)};
+}
+
+SendLimits limits() {
+  SendLimits l;
+  l.control_bytes = 100'000;
+  l.edit_bytes = 1'000;
+  l.chunk_bytes = 50'000;
+  l.chunk_count = 4;
+  return l;
+}
+
+/// Everything the queue gives out, as the reader on the other side sees it.
+struct Wire {
+  Bytes bytes;
+  void take_all(SendQueue& queue) {
+    SendQueue::Batch batch;
+    while (queue.take(batch)) append(batch);
+  }
+  void append(const SendQueue::Batch& batch) {
+    for (const auto& piece : batch.pieces) {
+      bytes.insert(bytes.end(), piece.header.begin(), piece.header.end());
+      bytes.insert(bytes.end(), piece.body.begin(), piece.body.end());
+    }
+  }
+  std::vector<std::pair<FrameClass, Bytes>> messages() const {
+    std::vector<std::pair<FrameClass, Bytes>> got;
+    FrameReader reader(Sender::server);
+    const auto fed = reader.feed(bytes, [&](FrameClass c, ByteView body) -> Result<void> {
+      got.emplace_back(c, Bytes(body.begin(), body.end()));
+      return {};
+    });
+    REQUIRE(fed.has_value());
+    return got;
+  }
+};
+
+TEST_CASE("each class is bounded by itself, and says no instead of growing", "[net]") {
+  SendQueue queue(limits());
+  CHECK(queue.push(message(FrameClass::edits, 600)));
+  CHECK(queue.push(message(FrameClass::edits, 400)));
+  CHECK_FALSE(queue.push(message(FrameClass::edits, 1)));
+  CHECK(queue.push(message(FrameClass::control, 90'000)));
+  CHECK_FALSE(queue.push(message(FrameClass::control, 10'001)));
+  for (int i = 0; i < 4; ++i) CHECK(queue.reserve_chunk().has_value());
+  CHECK_FALSE(queue.reserve_chunk().has_value());  // places count even before they are filled
+}
+
+TEST_CASE("a message larger than its bound still fits an empty class", "[net]") {
+  SendQueue queue(limits());
+  CHECK(queue.push(message(FrameClass::edits, 5'000)));
+  CHECK_FALSE(queue.push(message(FrameClass::edits, 1)));
+}
+
+TEST_CASE("an edit overtakes terrain at the next fragment", "[net]") {
+  SendQueue queue(limits());
+  const auto place = queue.reserve_chunk();
+  queue.fill(*place, message(FrameClass::chunks, 3 * kFragmentBytesMax));
+  Wire wire;
+  SendQueue::Batch batch;
+  REQUIRE(queue.take(batch));
+  CHECK(batch.pieces.size() == 1);  // one fragment of terrain per write
+  wire.append(batch);
+  CHECK(queue.push(message(FrameClass::control, 10)));
+  CHECK(queue.push(message(FrameClass::edits, 10)));
+  wire.take_all(queue);
+  const auto got = wire.messages();
+  REQUIRE(got.size() == 3);
+  CHECK(got[0].first == FrameClass::edits);
+  CHECK(got[1].first == FrameClass::control);
+  CHECK(got[2].first == FrameClass::chunks);
+  CHECK(got[2].second.size() == 3 * kFragmentBytesMax);
+  CHECK(queue.empty());
+}
+
+TEST_CASE("chunks keep the order of their places, however late they are filled", "[net]") {
+  SendQueue queue(limits());
+  const auto first = queue.reserve_chunk();
+  const auto second = queue.reserve_chunk();
+  queue.fill(*second, message(FrameClass::chunks, 10, 2));
+  SendQueue::Batch batch;
+  CHECK_FALSE(queue.take(batch));
+  queue.fill(*first, message(FrameClass::chunks, 10, 1));
+  Wire wire;
+  wire.take_all(queue);
+  const auto got = wire.messages();
+  REQUIRE(got.size() == 2);
+  CHECK(got[0].second[0] == 1);
+  CHECK(got[1].second[0] == 2);
+}
+
+TEST_CASE("after a refusal the queue says once that there is room again", "[net]") {
+  SendQueue queue(limits());
+  SendQueue::Batch batch;
+  CHECK_FALSE(queue.take_drained());
+  REQUIRE(queue.push(message(FrameClass::edits, 1'000)));
+  REQUIRE_FALSE(queue.push(message(FrameClass::edits, 1)));
+  CHECK_FALSE(queue.take_drained());
+  REQUIRE(queue.take(batch));
+  CHECK(queue.take_drained());
+  CHECK_FALSE(queue.take_drained());
+}
+
+TEST_CASE("dropped chunks are gone, and filling their places does nothing", "[net]") {
+  SendQueue queue(limits());
+  const auto sent_in_part = queue.reserve_chunk();
+  queue.fill(*sent_in_part, message(FrameClass::chunks, 2 * kFragmentBytesMax));
+  SendQueue::Batch batch;
+  REQUIRE(queue.take(batch));
+  const auto open = queue.reserve_chunk();
+  queue.drop_chunks();
+  queue.fill(*open, message(FrameClass::chunks, 10));
+  CHECK(queue.empty());
+  CHECK_FALSE(queue.take(batch));
+  CHECK(queue.queued_bytes(FrameClass::chunks) == 0);
+}
+
+TEST_CASE("whatever is queued in whatever order arrives whole and in order within its class",
+          "[net][property]") {
+  SplitMix64 rng(Catch::rngSeed());
+  SendLimits wide;
+  wide.chunk_count = 1000;
+  SendQueue queue(wide);
+  Wire wire;
+  std::map<FrameClass, std::vector<Bytes>> sent;
+  std::vector<std::pair<ChunkPlace, EncodedMessage>> unfilled;
+  SendQueue::Batch batch;
+  for (int step = 0; step < 400; ++step) {
+    const auto size = 1 + rng.below(rng.below(4) == 0 ? 60'000 : 200);
+    switch (rng.below(4)) {
+      case 0:
+      case 1: {
+        const auto frame_class = rng.below(2) == 0 ? FrameClass::edits : FrameClass::control;
+        const auto m = message(frame_class, size, static_cast<std::uint8_t>(rng.next()));
+        if (queue.push(m)) sent[frame_class].push_back(*m.bytes);
+        break;
+      }
+      case 2: {
+        const auto m = message(FrameClass::chunks, size, static_cast<std::uint8_t>(rng.next()));
+        if (const auto place = queue.reserve_chunk()) {
+          sent[FrameClass::chunks].push_back(*m.bytes);
+          unfilled.emplace_back(*place, m);
+        }
+        break;
+      }
+      default:
+        if (!unfilled.empty()) {
+          const auto at = rng.below(static_cast<std::uint32_t>(unfilled.size()));
+          queue.fill(unfilled[at].first, unfilled[at].second);
+          unfilled.erase(unfilled.begin() + at);
+        }
+        if (queue.take(batch)) {
+          CHECK(batch.bytes < wide.write_bytes + kFragmentBytesMax + kFrameHeaderBytes);
+          wire.append(batch);
+        }
+    }
+  }
+  for (const auto& [place, m] : unfilled) queue.fill(place, m);
+  wire.take_all(queue);
+  std::map<FrameClass, std::vector<Bytes>> got;
+  for (auto& [frame_class, bytes] : wire.messages()) got[frame_class].push_back(std::move(bytes));
+  CHECK(got == sent);
+  CHECK(queue.empty());
+  for (const auto c : {FrameClass::control, FrameClass::edits, FrameClass::chunks})
+    CHECK(queue.queued_bytes(c) == 0);
+}
+
+}  // namespace
+}  // namespace runstone
