@@ -29,6 +29,7 @@ class Column {
     from = std::max(from, y_min_);
     to = std::min(to, spans_.back().end);
     if (from >= to) return;
+    if (from == y_min_) return paint_bottom(to, material);
     next_.clear();
     std::int32_t begin = y_min_;
     bool painted = false;
@@ -46,7 +47,14 @@ class Column {
 
   /// Sets what is empty in [y_min, to) to `material`.
   void flood(std::int32_t to, Material material) {
+    // Most columns of a landscape have no empty voxel below the sea.
     std::int32_t begin = y_min_;
+    bool dry = true;
+    for (std::size_t i = 0; dry && i < spans_.size() && begin < to; begin = spans_[i++].end) {
+      dry = spans_[i].material != kEmpty;
+    }
+    if (dry) return;
+    begin = y_min_;
     next_.clear();
     for (const Span& span : spans_) {
       if (span.material == kEmpty && begin < to) {
@@ -91,6 +99,20 @@ class Column {
   }
 
  private:
+  /// paint() from the lowest voxel, as nearly every layer of terrain does: what it covers goes, in place.
+  void paint_bottom(std::int32_t to, Material material) {
+    std::size_t covered = 0;  // spans that end at or below `to`
+    while (covered < spans_.size() && spans_[covered].end <= to) ++covered;
+    if (covered < spans_.size() && spans_[covered].material == material) {
+      spans_.erase(spans_.begin(), spans_.begin() + static_cast<std::ptrdiff_t>(covered));
+    } else if (covered == 0) {
+      spans_.insert(spans_.begin(), {to, material});
+    } else {
+      spans_.erase(spans_.begin(), spans_.begin() + static_cast<std::ptrdiff_t>(covered - 1));
+      spans_.front() = {to, material};
+    }
+  }
+
   /// Appends to the list in the making; empty spans vanish and equal neighbours merge.
   void push(std::int32_t end, Material material) {
     if (!next_.empty() && end <= next_.back().end) return;
