@@ -195,7 +195,11 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
       if (snapshot.chunk.version < held) ++counters_.snapshots_stale;
       // Nothing new, but what was answered while we could not listen is in here, and so in what we hold.
       const auto settled = std::erase_if(entry.pending, [](const Pending& p) { return p.until_snapshot; });
-      if (settled != 0) show(snapshot.key, entry, predict(snapshot.key, entry), {});
+      if (!entry.awaiting) {
+        settle(snapshot.key, entry, true, arrival.now_us);
+      } else if (settled != 0) {
+        show(snapshot.key, entry, predict(snapshot.key, entry), {});
+      }
       return;
     }
   } else {
@@ -259,7 +263,7 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
         }
       }
       entry.inbox.push_back({shared_info(), ordered.previous[c]});
-      if (!entry.confirmed || entry.awaiting) {
+      if (!entry.current || entry.awaiting) {
         ++counters_.chunk_edits_buffered;
         if (entry.inbox.size() > kInboxEditsMax) {
           // Whoever falls this far behind is served by a newer snapshot: `latest` remembers what it must
@@ -373,7 +377,8 @@ void Replica::settle(const ChunkKey& key, Entry& entry, bool from_snapshot, Time
     next->version = version;
     entry.confirmed = std::move(next);
   }
-  if (entry.latest > version.seq) {
+  // Without a snapshot of this connection a gap is no surprise: it was overtaken, and closes what is missing.
+  if (entry.latest > version.seq && entry.current) {
     ++counters_.gaps;
     // A snapshot that still leaves a gap was taken too early; the next one is asked for after a pause, by
     // tick().

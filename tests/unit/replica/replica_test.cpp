@@ -467,3 +467,34 @@ TEST_CASE_METHOD(Fixture, "a prediction whose edit is gone does not survive a cr
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
+
+TEST_CASE_METHOD(Fixture,
+                 "after a resumption a commit ahead of its snapshot waits for it and asks for nothing",
+                 "[replica]") {
+  load(kHere);
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // while we were away
+  CHECK(replica.open(opening()).empty());
+  CHECK(replica.current_count() == 0);
+  const ChunkSnapshot overtaken = world.snapshot(kHere.at);
+  take(world.commit(other(2), set({2, 1, 1}, 2)));
+  CHECK(replica.take_requests().empty());
+  CHECK(replica.confirmed(kHere)->version.seq == 0);
+  replica.receive(overtaken, kNow);
+  require_in_step(kHere);
+  CHECK(replica.current_count() == 1);
+  CHECK(replica.counters().gaps == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "a gap that the first snapshot after a resumption does not close is asked for",
+                 "[replica]") {
+  load(kHere);
+  CHECK(replica.open(opening()).empty());
+  const ChunkSnapshot equal = world.snapshot(kHere.at);
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // dropped for us
+  take(world.commit(other(2), set({2, 1, 1}, 2)));
+  CHECK(replica.take_requests().empty());
+  replica.receive(equal, kNow);
+  CHECK(replica.take_requests() == std::vector{kHere});
+  replica.receive(world.snapshot(kHere.at), kNow);
+  require_in_step(kHere);
+}
