@@ -1,0 +1,114 @@
+// What the chunk codec allocates, counted by the global operator new of this test program.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "protocol/codec/chunk_codec.hpp"
+#include "tests/support/packed_spelling.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace {
+std::size_t allocations = 0, allocated_bytes = 0;  // test programs are single-threaded
+}  // namespace
+
+// Not inlined: g++ would see free() meet operator new and warn.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++allocations;
+  allocated_bytes += size;
+  return std::malloc(size == 0 ? 1 : size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* p = operator new(size, std::nothrow)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace runstone::test {
+namespace {
+
+struct Cost {
+  std::size_t allocations = 0, bytes = 0;
+};
+
+template <class F>
+Cost cost_of(F&& f) {
+  const Cost before{::allocations, ::allocated_bytes};
+  f();
+  return {::allocations - before.allocations, ::allocated_bytes - before.bytes};
+}
+
+Cost cost_of_refusing(const Bytes& bytes) {
+  return cost_of([&] { REQUIRE_FALSE(decode_chunk(bytes).has_value()); });
+}
+
+}  // namespace
+
+TEST_CASE("the counter of allocations counts", "[protocol]") {
+  const Cost cost = cost_of([] { Bytes(1000, std::uint8_t{1}).swap(*std::make_unique<Bytes>()); });
+  CHECK(cost.allocations == 2);
+  CHECK(cost.bytes >= 1000);
+}
+
+TEST_CASE("a count that the bytes cannot back allocates nothing to speak of", "[protocol]") {
+  static_cast<void>(
+      encode_chunk(uniform_chunk(Extent::cube(16), 1), ChunkEncoding::packed));  // scratch of the thread
+  Bytes raw{1, 1, 0, 0, 128, 128, 128, 0, 0xff, 0xff, 0x1f, 0};                  // 2,097,151 runs, none there
+  CHECK(cost_of_refusing(raw).bytes < 10'000);
+  PackedSpelling packed;
+  packed.sides = {128, 128, 128};
+  packed.runs = 128 * 128 * 128;
+  packed.body_bytes = 2 * packed.runs - 1;
+  CHECK(cost_of_refusing(packed.bytes()).bytes < 10'000);
+  packed.palette_size = 65'536;  // three are there
+  CHECK(cost_of_refusing(packed.bytes()).bytes < 10'000);
+  packed = {};
+  packed.order |= 8;
+  packed.body_bytes = 1ULL << 40;
+  packed.stored = zstd_frame(packed.body);
+  CHECK(cost_of_refusing(packed.bytes()).bytes < 10'000);
+}
+
+TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack to", "[protocol]") {
+  PackedSpelling bomb;
+  bomb.order = 8;
+  bomb.runs = 512;
+  bomb.palette = {0};
+  bomb.body_bytes = 1023;
+  bomb.stored = zstd_frame(Bytes(64 << 20, std::uint8_t{0}));
+  REQUIRE(bomb.stored->size() < 10'000);
+  CHECK(cost_of_refusing(bomb.bytes()).bytes < 10'000);
+
+  // The worst that passes all announcements: every voxel a run. All its runs are equal, so it is refused
+  // later.
+  bomb.sides = {128, 128, 128};
+  bomb.runs = 128 * 128 * 128;
+  bomb.body_bytes = 2 * bomb.runs - 1;
+  bomb.stored = zstd_frame(Bytes(*bomb.body_bytes, std::uint8_t{0}));
+  REQUIRE(bomb.bytes().size() < 1'000);
+  CHECK(cost_of_refusing(bomb.bytes()).bytes < 11ULL * 128 * 128 * 128);
+  // And is not even begun where the world's chunks are smaller.
+  const Cost small =
+      cost_of([&] { REQUIRE_FALSE(decode_chunk(bomb.bytes(), Extent::cube(32)).has_value()); });
+  CHECK(small.bytes < 10'000);
+}
+
+TEST_CASE("in a steady state the codec allocates the chunk and nothing else", "[protocol]") {
+  SplitMix64 rng{3};
+  const RunChunk chunk = random_chunk(rng, Extent::cube(32), AxisOrder::xyz, 40, Shape::boxes);
+  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed}) {
+    Bytes out;
+    encode_chunk(chunk, encoding, out);
+    static_cast<void>(decode_chunk(out));
+    const Bytes bytes = out;
+    const Cost encoding_cost = cost_of([&] {
+      out.clear();
+      encode_chunk(chunk, encoding, out);
+    });
+    CHECK(encoding_cost.allocations == 0);
+    const Cost decoding_cost = cost_of([&] { REQUIRE(decode_chunk(bytes).has_value()); });
+    CHECK(decoding_cost.allocations <= (encoding == ChunkEncoding::raw ? 1 : 2));  // the runs; the palette
+  }
+}
+
+}  // namespace runstone::test
