@@ -130,6 +130,7 @@ struct Renderer::State {
     glBindTexture(GL_TEXTURE_2D, palette.get());
     glUniform1i(glGetUniformLocation(quad_program.get(), "palette"), 0);
     glEnable(GL_CULL_FACE);
+    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0002F);
     for (const Visible& v : visible) {  // near to far: hidden pixels fail the depth test early
       place(v);
       v.buffers->draw_opaque();
@@ -140,6 +141,7 @@ struct Renderer::State {
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
     glDisable(GL_CULL_FACE);  // water is seen from below, too
+    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0F);  // overlaps would blend twice
     for (auto v = visible.rbegin(); v != visible.rend(); ++v) {
       if (v->buffers->transparent_count() == 0) continue;
       place(*v);

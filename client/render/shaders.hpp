@@ -21,6 +21,7 @@ inline constexpr const char* kQuadVertexShader =
     "uniform vec3 origin;\n"                 // chunk origin minus eye
     "uniform vec3 pattern;\n"                // chunk origin modulo 4096: world-fixed texture coordinates
     "uniform sampler2D palette;\n"
+    "uniform float seam;\n"                 // growth of a quad per unit of distance
     "out vec3 relative;\n"
     "out vec3 voxel;\n"
     "flat out vec3 normal;\n"
@@ -43,7 +44,7 @@ inline constexpr const char* kQuadVertexShader =
     "  vec3 local = base + (positive ? n : vec3(0.0)) + u * (cu * w) + v * (cv * h);\n"
     "  relative = origin + local;\n"
     // Merged quads meet in T-junctions; growing each by a fraction of a pixel closes the pinholes.
-    "  relative += (u * (cu * 2.0 - 1.0) + v * (cv * 2.0 - 1.0)) * length(relative) * 0.0002;\n"
+    "  relative += (u * (cu * 2.0 - 1.0) + v * (cv * 2.0 - 1.0)) * length(relative) * seam;\n"
     "  voxel = pattern + local - (positive ? n : -n) * 0.5;\n"
     "  normal = positive ? n : -n;\n"
     "  colour = texelFetch(palette, ivec2(id & 255u, id >> 8), 0);\n"

@@ -54,7 +54,7 @@ class Simulation {
       if (server_.running() && rng_.below(1000) < crashes_per_1000) crash();
     }
     faults_.stalls_per_1000 = 0;
-    server_.drop_edit_messages = 0;
+    server_.drop_commits = 0;
     const TimeUs give_up = time_.now() + 300'000'000;
     do {
       time_.run_until(time_.now() + 1'000'000);
@@ -262,7 +262,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
 
 TEST_CASE("commits that vanish between server and replica are noticed and repaired", "[simulation]") {
   Simulation simulation(11);
-  simulation.server().drop_edit_messages = 20;
+  simulation.server().drop_commits = 20;
   simulation.run(1500, 0);
   const Reckoning r = simulation.reckon();
   INFO(joined(r.faults));

@@ -121,7 +121,7 @@ class SimServer final : public WorldPorts {
   Now now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
 
   // Faults, in occurrences per 1000.
-  std::uint32_t drop_edit_messages =
+  std::uint32_t drop_commits =
       0;  // a send that says "queued" and loses a commit: a bug no queue would have
   std::size_t server_queue_bytes = 200'000;
   bool log_full = false;
@@ -138,6 +138,12 @@ class SimServer final : public WorldPorts {
   static T value(StoreResult<T> result) {
     if (!result) throw SimFault(result.error().message());
     return *std::move(result);
+  }
+
+  static bool is_commit(const EncodedMessage& message) {
+    if (message.frame_class != FrameClass::edits) return false;
+    const auto decoded = decode_message(Sender::server, message.frame_class, *message.bytes, kSimEdge);
+    return decoded && std::holds_alternative<Commit>(*decoded);
   }
 
   static void done(const StoreResult<void>& result) {
@@ -169,7 +175,7 @@ class SimServer final : public WorldPorts {
   bool send(SessionId id, const EncodedMessage& message) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end()) return false;
-    if (message.frame_class == FrameClass::edits && rng_.below(1000) < drop_edit_messages) {
+    if (is_commit(message) && rng_.below(1000) < drop_commits) {
       ++dropped;
       return true;
     }
