@@ -1,0 +1,48 @@
+#include <catch2/catch.hpp>
+
+#include "common/core/text.hpp"
+
+namespace runstone::test {
+
+TEST_CASE("text from outside is well-formed UTF-8 without control characters", "[core]") {
+  for (const char* good :
+       {"", "a", "\x7e", "\xc2\xa0", "\xc3\xa9", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+        "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf", "stone \xe2\x82\xac 5"}) {
+    CAPTURE(good);
+    CHECK(is_printable_utf8(good));
+  }
+  for (const char* bad : {"\n",
+                          "\x1f",
+                          "\x7f",
+                          "\x80",
+                          "\xbf",
+                          "\xc0\x80",
+                          "\xc1\xbf",
+                          "\xc2",
+                          "\xc2\x7f",
+                          "\xc2\x80",
+                          "\xc2\x9f",  // C1 controls
+                          "\xe0\x9f\xbf",
+                          "\xe2\x82",
+                          "\xe2\x82z",  // overlong, cut, broken
+                          "\xed\xa0\x80",
+                          "\xed\xbf\xbf",  // surrogates
+                          "\xf0\x8f\xbf\xbf",
+                          "\xf4\x90\x80\x80",
+                          "\xf5\x80\x80\x80",
+                          "\xff",
+                          "\xf0\x90\x80"}) {
+    CAPTURE(bad);
+    CHECK_FALSE(is_printable_utf8(bad));
+  }
+  CHECK_FALSE(is_printable_utf8(std::string_view("\0", 1)));
+}
+
+TEST_CASE("text is cut between characters", "[core]") {
+  const std::string_view text = "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // of 1, 2, 3 and 4 bytes
+  const std::size_t kept[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
+  for (std::size_t most = 0; most < 12; ++most) CHECK(cut_utf8(text, most) == text.substr(0, kept[most]));
+  CHECK(cut_utf8("", 0).empty());
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,462 @@
+// Messages that verify as FlatBuffers and break a rule of their own, built field by field.
+#include <flatbuffers/flatbuffers.h>
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "protocol/codec/messages.hpp"
+#include "protocol/schema/runstone_generated.h"
+#include "tests/support/random_message.hpp"
+
+namespace runstone::test {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+using Vector = Offset<flatbuffers::Vector<std::uint8_t>>;
+
+template <class Table>
+Bytes message_of(FlatBufferBuilder& b, Offset<Table> body, const char* identifier = "RUN1") {
+  b.Finish(wire::CreateMessage(b, wire::BodyTraits<Table>::enum_value, body.Union()), identifier);
+  return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
+}
+
+Vector filled(FlatBufferBuilder& b, std::size_t size) { return b.CreateVector(Bytes(size, std::uint8_t{7})); }
+
+/// What one side makes of a body built by `build`; the class is the body's own.
+template <class Build>
+Result<Message> received(Sender sender, FrameClass frame_class, Build&& build,
+                         std::uint16_t edge = kMessageEdge) {
+  FlatBufferBuilder b;
+  const Bytes bytes = message_of(b, build(b));
+  return decode_message(sender, frame_class, bytes, edge);
+}
+
+template <class Build>
+bool passes_from_client(Build&& build, FrameClass frame_class = FrameClass::control) {
+  return received(Sender::client, frame_class, build).has_value();
+}
+template <class Build>
+bool passes_from_server(Build&& build, FrameClass frame_class = FrameClass::control) {
+  return received(Sender::server, frame_class, build).has_value();
+}
+
+struct HelloFields {
+  std::uint32_t protocol = kProtocolVersion;
+  std::size_t key = 32, nonce = 32;
+  std::string name = "ann";
+  std::uint8_t encodings = 3;
+  Offset<wire::Hello> operator()(FlatBufferBuilder& b) const {
+    const auto k = filled(b, key), n = filled(b, nonce);
+    return wire::CreateHello(b, protocol, k, 1, n, b.CreateString(name), encodings);
+  }
+};
+
+struct WelcomeFields {
+  std::size_t world_id = 16, server_key = 32, challenge = 32, signature = 64;
+  std::uint32_t epoch = 1;
+  std::uint64_t durable = 4, head = 5;
+  std::uint16_t edge = 32;
+  std::int32_t y_min = -10, y_max = 10;
+  WorldPos spawn;
+  std::uint8_t encoding = 1, view_radius = 8;
+  struct Row {
+    std::string name;
+    std::uint32_t rgba;
+    std::uint8_t visibility;
+  };
+  std::vector<Row> rows = {{"air", 0, 0}, {"stone", 0xff808080, 1}};
+  bool has_spawn = true;
+  Offset<wire::Welcome> operator()(FlatBufferBuilder& b) const {
+    std::vector<Offset<wire::MaterialRow>> table;
+    for (const Row& row : rows) {
+      table.push_back(wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility));
+    }
+    const auto materials = b.CreateVector(table);
+    const auto w = filled(b, world_id), k = filled(b, server_key), c = filled(b, challenge),
+               s = filled(b, signature);
+    const wire::Position at(spawn.x, spawn.y, spawn.z);
+    return wire::CreateWelcome(b, kProtocolVersion, w, epoch, durable, head, edge, y_min, y_max,
+                               has_spawn ? &at : nullptr, materials, k, c, s, encoding, 1000, view_radius);
+  }
+};
+
+const EditDescriptor kEdit{SetVoxel{{1, 2, 3}}, {}, 1};
+
+struct CommitFields {
+  std::uint32_t epoch = 1;
+  std::uint64_t first = 10;
+  std::uint8_t cause = 0;
+  Bytes edit = encode(kEdit);
+  Bytes previous{1};
+  std::size_t edits = 1;
+  bool shared = false;  // all edits point at one list
+  Offset<wire::Commit> operator()(FlatBufferBuilder& b) const {
+    std::vector<Offset<wire::OrderedEdit>> list;
+    Vector list_of_all;
+    if (shared) list_of_all = b.CreateVector(previous);
+    for (std::size_t i = 0; i < edits; ++i) {
+      const auto e = b.CreateVector(edit);
+      const auto p = shared ? list_of_all : b.CreateVector(previous);
+      list.push_back(wire::CreateOrderedEdit(b, 1, 1, 1, cause, 0, 0, e, p));
+    }
+    return wire::CreateCommit(b, epoch, first, b.CreateVector(list));
+  }
+};
+
+struct ChunkFields {
+  wire::Key key{0, 1, 2, 3};
+  wire::Version version{1, 1};
+  wire::Digest digest{5, 6};
+  Bytes data = encode_chunk(uniform_chunk(Extent::cube(kMessageEdge), 1), ChunkEncoding::raw);
+  bool has_key = true, has_version = true, has_digest = true;
+  Offset<wire::Chunk> operator()(FlatBufferBuilder& b) const {
+    const auto d = b.CreateVector(data);
+    return wire::CreateChunk(b, has_key ? &key : nullptr, has_version ? &version : nullptr,
+                             has_digest ? &digest : nullptr, d);
+  }
+};
+
+/// `fields` as they are pass; with `bend` they do not.
+template <class Fields>
+void refuses(Sender sender, FrameClass frame_class, const std::vector<std::function<void(Fields&)>>& bends) {
+  REQUIRE(received(sender, frame_class, Fields{}).has_value());
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    CAPTURE(i);
+    Fields fields;
+    bends[i](fields);
+    CHECK_FALSE(received(sender, frame_class, fields).has_value());
+  }
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int32_t kReach = kWorldLimit / kMessageEdge;
+
+}  // namespace
+
+TEST_CASE("hello is refused with a field of the wrong size or range", "[protocol]") {
+  refuses<HelloFields>(Sender::client, FrameClass::control,
+                       {[](auto& h) { h.key = 31; }, [](auto& h) { h.key = 33; },
+                        [](auto& h) { h.nonce = 0; }, [](auto& h) { h.name = ""; },
+                        [](auto& h) { h.name = std::string(33, 'a'); }, [](auto& h) { h.name = "a\nb"; },
+                        [](auto& h) { h.name = "\xc3"; }, [](auto& h) { h.name = "\x1b[2J"; },
+                        [](auto& h) { h.encodings = 0; }, [](auto& h) { h.encodings = 4; }});
+  HelloFields future;
+  future.encodings = 1 + 128;  // an encoding that does not exist yet
+  CHECK(passes_from_client(future));
+}
+
+TEST_CASE("hello of another protocol passes with its version alone, so that it can be answered",
+          "[protocol]") {
+  HelloFields other;
+  other.protocol = 2;
+  other.key = 48;
+  other.name = "";
+  const auto hello = received(Sender::client, FrameClass::control, other);
+  REQUIRE(hello.has_value());
+  Hello expected;
+  expected.protocol = 2;
+  CHECK(*hello == Message(expected));
+}
+
+TEST_CASE("welcome is refused with a field of the wrong size or range", "[protocol]") {
+  refuses<WelcomeFields>(Sender::server, FrameClass::control,
+                         {[](auto& w) { w.world_id = 15; },
+                          [](auto& w) { w.server_key = 33; },
+                          [](auto& w) { w.challenge = 0; },
+                          [](auto& w) { w.signature = 63; },
+                          [](auto& w) { w.epoch = 0; },
+                          [](auto& w) { w.durable = 6; },
+                          [](auto& w) { w.edge = 0; },
+                          [](auto& w) { w.edge = 48; },
+                          [](auto& w) { w.edge = 256; },
+                          [](auto& w) { w.y_min = 11; },
+                          [](auto& w) { w.y_max = kWorldLimit + 1; },
+                          [](auto& w) { w.spawn.y = kNan; },
+                          [](auto& w) { w.spawn.x = -kInfinity; },
+                          [](auto& w) { w.spawn.z = kWorldLimit + 1.0; },
+                          [](auto& w) { w.has_spawn = false; },
+                          [](auto& w) { w.encoding = 0; },
+                          [](auto& w) { w.encoding = 3; },
+                          [](auto& w) { w.view_radius = 65; },
+                          [](auto& w) { w.rows.clear(); },
+                          [](auto& w) { w.rows[0].name = "void"; },
+                          [](auto& w) { w.rows[0].visibility = 1; },
+                          [](auto& w) { w.rows[0].rgba = 1; },
+                          [](auto& w) { w.rows[1].name = "air"; },
+                          [](auto& w) { w.rows[1].name = ""; },
+                          [](auto& w) { w.rows[1].name = std::string(65, 'a'); },
+                          [](auto& w) { w.rows[1].name = "\xff"; },
+                          [](auto& w) { w.rows[1].visibility = 3; },
+                          [](auto& w) { w.rows[1].rgba = 0x7f000000; }});
+}
+
+TEST_CASE("a table of all 65,536 materials fits welcome", "[protocol]") {
+  Welcome welcome;
+  welcome.epoch = 1;
+  for (unsigned i = 1; i < kMaterialCountMax; ++i) {
+    const std::string digits = std::to_string(i);
+    REQUIRE(welcome.materials.add({std::string(kMaterialNameBytesMax - digits.size(), 'm') + digits,
+                                   {1, 2, 3, 255},
+                                   Visibility::opaque,
+                                   std::nullopt}));
+  }
+  const EncodedMessage encoded = encode_message(welcome);
+  CHECK(encoded.bytes->size() <= kServerControlBytesMax);
+  const auto decoded = decode(welcome, encoded);
+  REQUIRE(decoded.has_value());
+  CHECK(std::get<Welcome>(*decoded).materials == welcome.materials);
+}
+
+TEST_CASE("the longest roster and the longest list of poses fit their class", "[protocol]") {
+  Roster roster;
+  PlayerPoses poses;
+  for (unsigned i = 0; i < kPlayersMax; ++i) {
+    roster.players.push_back({i, std::string(kPlayerNameBytesMax, 'n')});
+    poses.players.push_back({i, {}});
+  }
+  for (const Message& message : {Message(roster), Message(poses)}) {
+    const auto decoded = decode(message, encode_message(message));
+    REQUIRE(decoded.has_value());
+    CHECK(*decoded == message);
+  }
+}
+
+TEST_CASE("signatures, views, keys and poses keep their bounds", "[protocol]") {
+  CHECK(passes_from_client([](auto& b) { return wire::CreateProof(b, filled(b, 64)); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateProof(b, filled(b, 65)); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateProof(b); }));
+
+  const auto view = [](std::int32_t x, std::uint8_t h, std::uint8_t v) {
+    return passes_from_client([=](auto& b) { return wire::CreateView(b, x, 0, 0, h, v); });
+  };
+  CHECK(view(-kReach, 64, 64));
+  CHECK(view(kReach - 1, 0, 0));
+  CHECK_FALSE(view(kReach, 1, 1));
+  CHECK_FALSE(view(-kReach - 1, 1, 1));
+  CHECK_FALSE(view(0, 65, 1));
+  CHECK_FALSE(view(0, 1, 65));
+
+  const auto request = [](const std::vector<wire::Key>& keys) {
+    return passes_from_client(
+        [&](auto& b) { return wire::CreateChunkRequest(b, b.CreateVectorOfStructs(keys)); });
+  };
+  CHECK(request(std::vector<wire::Key>(64)));
+  CHECK_FALSE(request(std::vector<wire::Key>(65)));
+  CHECK_FALSE(request({}));
+  CHECK_FALSE(request({wire::Key(0, 0, kReach, 0)}));
+  CHECK_FALSE(request({wire::Key(1, 0, 0, 0)}));  // levels of detail are reserved
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateChunkRequest(b); }));
+
+  const auto move = [](double x, double y, double z) {
+    return passes_from_client([=](auto& b) {
+      const wire::Pose pose(wire::Position(x, y, z), 1, 2);
+      return wire::CreateMove(b, &pose);
+    });
+  };
+  CHECK(move(kWorldLimit, -kWorldLimit, 0));
+  CHECK_FALSE(move(kNan, 0, 0));
+  CHECK_FALSE(move(0, kInfinity, 0));
+  CHECK_FALSE(move(0, 0, -1e10));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateMove(b); }));
+}
+
+TEST_CASE("a snapshot is refused with bad keys, versions, digests, bytes or size", "[protocol]") {
+  refuses<ChunkFields>(
+      Sender::server, FrameClass::chunks,
+      {[](auto& c) { c.has_key = false; }, [](auto& c) { c.has_version = false; },
+       [](auto& c) { c.has_digest = false; }, [](auto& c) { c.key = wire::Key(0, kReach, 0, 0); },
+       [](auto& c) { c.key = wire::Key(1, 0, 0, 0); }, [](auto& c) { c.version = wire::Version(0, 1); },
+       [](auto& c) { c.version = wire::Version(1, 0); },
+       [](auto& c) { c.digest = wire::Digest((1ULL << 61) - 1, 0); },
+       [](auto& c) { c.digest = wire::Digest(0, ~0ULL); }, [](auto& c) { c.data.clear(); },
+       [](auto& c) { c.data.pop_back(); }, [](auto& c) { c.data.push_back(0); },
+       [](auto& c) { c.data = encode_chunk(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::raw); }});
+  ChunkFields base;
+  base.version = wire::Version(0, 0);
+  CHECK(passes_from_server(base, FrameClass::chunks));
+  // Before welcome the size of chunks is not known.
+  base.data = encode_chunk(uniform_chunk(Extent{8, 9, 10}, 1), ChunkEncoding::packed);
+  CHECK(received(Sender::server, FrameClass::chunks, base, 0).has_value());
+}
+
+TEST_CASE("an edit request needs a sequence and one whole descriptor", "[protocol]") {
+  const auto request = [](std::uint64_t seq, const Bytes& edit) {
+    return passes_from_client(
+        [&](auto& b) { return wire::CreateEditRequest(b, seq, 0, b.CreateVector(edit)); }, FrameClass::edits);
+  };
+  const Bytes edit = encode(kEdit);
+  CHECK(request(1, edit));
+  CHECK_FALSE(request(0, edit));
+  CHECK_FALSE(request(1, {}));
+  CHECK_FALSE(request(1, Bytes(edit.begin(), edit.end() - 1)));
+  Bytes longer = edit;
+  longer.push_back(0);
+  CHECK_FALSE(request(1, longer));
+}
+
+TEST_CASE("a commit is refused where it contradicts itself", "[protocol]") {
+  const Bytes large_box = encode({FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}, {}, 1});
+  refuses<CommitFields>(
+      Sender::server, FrameClass::edits,
+      {[](auto& c) { c.epoch = 0; }, [](auto& c) { c.first = 0; }, [](auto& c) { c.first = ~0ULL; },
+       [](auto& c) { c.edits = 0; }, [](auto& c) { c.edits = kCommitEditsMax + 1; },
+       [](auto& c) { c.cause = kCauseMax + 1; }, [](auto& c) { c.edit.pop_back(); },
+       [](auto& c) { c.previous = {0}; },           // precedes itself
+       [](auto& c) { c.previous = {11}; },          // before the log
+       [](auto& c) { c.previous = {}; },            // one chunk is touched
+       [](auto& c) { c.previous = {1, 1}; },        // only one
+       [](auto& c) { c.previous = {0x81, 0x00}; },  // varint longer than needed
+       [](auto& c) { c.previous = {0x81}; },        // and cut
+       [&](auto& c) { c.edit = large_box; },        // 2^24 chunks: refused before they are listed
+       [](auto& c) { c.previous = Bytes(kTouchedChunksMax + 1, 1), c.first = 10; },
+       [](auto& c) { c.edits = 2000, c.shared = true, c.previous = Bytes(4000, 1); }});
+  CommitFields from_base;
+  from_base.previous = {10};
+  const auto decoded = received(Sender::server, FrameClass::edits, from_base);
+  REQUIRE(decoded.has_value());
+  CHECK(std::get<Commit>(*decoded).edits[0].previous == std::vector<Sequence>{0});
+}
+
+TEST_CASE("lists of previous sequences that edits share cannot outgrow the message", "[protocol]") {
+  // 128 KB on the wire would become 64 MB of sequences.
+  CommitFields shared;
+  shared.edits = 2000;
+  shared.shared = true;
+  shared.previous = Bytes(4000, 1);
+  const auto decoded = received(Sender::server, FrameClass::edits, shared, 0);
+  REQUIRE_FALSE(decoded.has_value());
+  CHECK(decoded.error().what == std::string("commit shares its lists of previous sequences"));
+}
+
+TEST_CASE("answers and texts keep their bounds", "[protocol]") {
+  const auto reject = [](std::uint64_t seq, std::uint8_t reason, const std::string& text) {
+    return passes_from_server(
+        [&](auto& b) { return wire::CreateReject(b, seq, reason, b.CreateString(text)); }, FrameClass::edits);
+  };
+  CHECK(reject(1, 1, std::string(256, 'x')));
+  CHECK_FALSE(reject(0, 1, ""));
+  CHECK_FALSE(reject(1, 0, ""));
+  CHECK_FALSE(reject(1, kRejectReasonMax + 1, ""));
+  CHECK_FALSE(reject(1, 1, std::string(257, 'x')));
+  CHECK_FALSE(reject(1, 1, "\xed\xa0\x80"));
+
+  const auto goodbye = [](std::uint16_t reason, const std::string& text) {
+    return passes_from_client([&](auto& b) { return wire::CreateGoodbye(b, reason, b.CreateString(text)); });
+  };
+  CHECK(goodbye(kGoodbyeReasonMax, ""));
+  CHECK_FALSE(goodbye(0, ""));
+  CHECK_FALSE(goodbye(kGoodbyeReasonMax + 1, ""));
+  CHECK_FALSE(goodbye(1, "\t"));
+  CHECK(passes_from_client([](auto& b) { return wire::CreateGoodbye(b, 1); }));  // no text is no harm
+
+  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateDurable(b, 0, 5); }, FrameClass::edits));
+  const auto roster = [](const std::string& name) {
+    return passes_from_server([&](auto& b) {
+      const std::vector<Offset<wire::PlayerName>> names{wire::CreatePlayerName(b, 1, b.CreateString(name))};
+      return wire::CreateRoster(b, b.CreateVector(names));
+    });
+  };
+  CHECK(roster("bo"));
+  CHECK_FALSE(roster(""));
+  CHECK_FALSE(roster(std::string(33, 'b')));
+  const auto audit = [](std::size_t count) {
+    return passes_from_server([&](auto& b) {
+      const wire::Key key(0, 0, 0, 0);
+      const wire::Version version(1, 1);
+      const wire::Digest digest(1, 1);
+      const std::vector<Offset<wire::AuditEntry>> entries(count,
+                                                          wire::CreateAuditEntry(b, &key, &version, &digest));
+      return wire::CreateAudit(b, b.CreateVector(entries));
+    });
+  };
+  CHECK(audit(0));
+  CHECK(audit(kAuditEntriesMax));
+  CHECK_FALSE(audit(kAuditEntriesMax + 1));
+  CHECK_FALSE(passes_from_server([](auto& b) {
+    const std::vector<Offset<wire::AuditEntry>> empty{wire::CreateAuditEntry(b)};
+    return wire::CreateAudit(b, b.CreateVector(empty));
+  }));
+}
+
+TEST_CASE("texts that are too long are cut when written, between characters", "[protocol]") {
+  std::string text(kTextBytesMax - 1, 'x');
+  text += "\xe2\x82\xac and more";
+  for (const Message& message :
+       {Message(Goodbye{GoodbyeReason::internal, text}), Message(Reject{1, RejectReason::busy, text})}) {
+    const auto decoded = decode(message, encode_message(message));
+    REQUIRE(decoded.has_value());
+    const auto* goodbye = std::get_if<Goodbye>(&*decoded);
+    CHECK((goodbye != nullptr ? goodbye->text : std::get<Reject>(*decoded).detail) ==
+          std::string(kTextBytesMax - 1, 'x'));
+  }
+}
+
+TEST_CASE("a message without a known body is refused", "[protocol]") {
+  const auto with_type = [](std::uint8_t type, bool body) {
+    FlatBufferBuilder b;
+    Offset<void> table;
+    if (body) table = wire::CreatePing(b, 5).Union();
+    wire::MessageBuilder message(b);
+    message.add_body_type(static_cast<wire::Body>(type));
+    if (body) message.add_body(table);
+    b.Finish(message.Finish(), "RUN1");
+    return Bytes(b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize());
+  };
+  const auto refused = [](const Bytes& bytes) {
+    return !decode_message(Sender::client, FrameClass::control, bytes, kMessageEdge).has_value();
+  };
+  const auto ping = static_cast<std::uint8_t>(wire::Body::Ping);
+  REQUIRE_FALSE(refused(with_type(ping, true)));
+  CHECK(refused(with_type(ping, false)));
+  CHECK(refused(with_type(0, true)));
+  for (unsigned type = 19; type < 256; ++type)
+    CHECK(refused(with_type(static_cast<std::uint8_t>(type), true)));
+}
+
+TEST_CASE("a buffer of another kind, or larger than its class, is refused", "[protocol]") {
+  FlatBufferBuilder b;
+  const Bytes other = message_of(b, wire::CreatePing(b, 5), "RUN2");
+  CHECK_FALSE(decode_message(Sender::client, FrameClass::control, other, kMessageEdge).has_value());
+  CHECK_FALSE(decode_message(Sender::client, FrameClass::control, {}, kMessageEdge).has_value());
+  FlatBufferBuilder c;
+  Bytes ping = message_of(c, wire::CreatePing(c, 5));
+  ping.resize(kClientControlBytesMax);
+  CHECK(decode_message(Sender::client, FrameClass::control, ping, kMessageEdge).has_value());
+  ping.push_back(0);
+  CHECK_FALSE(decode_message(Sender::client, FrameClass::control, ping, kMessageEdge).has_value());
+}
+
+TEST_CASE("a snapshot's digest can be held against its voxels", "[protocol]") {
+  ChunkSnapshot snapshot;
+  snapshot.chunk.voxels = uniform_chunk(Extent::cube(kMessageEdge), 4);
+  snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+  CHECK(digest_holds(snapshot));
+  ++snapshot.chunk.digest.lane[1];
+  CHECK_FALSE(digest_holds(snapshot));
+}
+
+TEST_CASE("raw snapshot bytes lie 4-aligned in their message", "[protocol]") {
+  SplitMix64 rng{2};
+  for (int step = 0; step < 20; ++step) {
+    const EncodedMessage encoded = encode_message(random_message(rng, 6));
+    const auto* chunk = wire::GetMessage(encoded.bytes->data())->body_as_Chunk();
+    CHECK(reinterpret_cast<std::uintptr_t>(chunk->data()->data()) % 4 == 0);
+  }
+}
+
+TEST_CASE("every reason has a name of its own", "[protocol]") {
+  std::vector<std::string> names;
+  for (unsigned i = 1; i <= kRejectReasonMax; ++i)
+    names.emplace_back(to_string(static_cast<RejectReason>(i)));
+  for (unsigned i = 1; i <= kGoodbyeReasonMax; ++i)
+    names.emplace_back(to_string(static_cast<GoodbyeReason>(i)));
+  std::sort(names.begin(), names.end());
+  CHECK(std::unique(names.begin(), names.end()) == names.end());
+  CHECK(std::count(names.begin(), names.end(), "unknown") == 0);
+}
+
+}  // namespace runstone::test
