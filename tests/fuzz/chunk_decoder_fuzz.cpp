@@ -1,0 +1,23 @@
+// Any bytes as chunk bytes: what decodes is valid and comes back from both encodings; raw bytes have one
+// spelling.
+#include <cstdint>
+
+#include "common/core/assert.hpp"
+#include "protocol/codec/chunk_codec.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace runstone;
+  const ByteView in(data, size);
+  const auto chunk = decode_chunk(in);
+  if (!chunk) return 0;
+  RUNSTONE_ASSERT(validate(*chunk).has_value());
+  const Bytes raw = encode_chunk(*chunk, ChunkEncoding::raw);
+  RUNSTONE_ASSERT(raw.size() == raw_bytes(*chunk));
+  if (in[0] == static_cast<std::uint8_t>(ChunkEncoding::raw))
+    RUNSTONE_ASSERT(raw == Bytes(in.begin(), in.end()));
+  const auto from_raw = decode_chunk(raw, chunk->extent);
+  RUNSTONE_ASSERT(from_raw && *from_raw == *chunk);
+  const auto from_packed = decode_chunk(encode_chunk(*chunk, ChunkEncoding::packed), chunk->extent);
+  RUNSTONE_ASSERT(from_packed && *from_packed == *chunk);
+  return 0;
+}
