@@ -1,0 +1,216 @@
+// Includes point down: server/, client/ -> protocol/ -> common/, and inside common/ as docs/architecture.md
+// draws it. The libraries are pure: no sockets, files, clocks, threads, logs or graphics in common/ and
+// protocol/, and none of the first kinds where authority and replica decide.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+struct SourceFile {
+  std::string path;  // from the repository root, with forward slashes
+  std::string text;
+};
+
+struct Include {
+  std::string path;
+  bool quoted = false;  // "..." rather than <...>
+};
+
+bool below(std::string_view path, std::string_view folder) {
+  return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+std::vector<Include> includes_of(const std::string& text) {
+  std::vector<Include> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view kBlank = " \t";
+    std::size_t at = line.find_first_not_of(kBlank);
+    if (at == std::string::npos || line[at] != '#') continue;
+    at = line.find_first_not_of(kBlank, at + 1);
+    if (at == std::string::npos || line.compare(at, 7, "include") != 0) continue;
+    at = line.find_first_not_of(kBlank, at + 7);
+    if (at == std::string::npos || (line[at] != '"' && line[at] != '<')) continue;
+    const bool quoted = line[at] == '"';
+    const std::size_t end = line.find(quoted ? '"' : '>', at + 1);
+    if (end != std::string::npos) out.push_back({line.substr(at + 1, end - at - 1), quoted});
+  }
+  return out;
+}
+
+/// What the files below a folder may include of this repository; everything below the folder itself besides.
+/// An entry is a folder or a single header.
+const std::map<std::string, std::vector<std::string>, std::less<>>& arrows() {
+  static const std::map<std::string, std::vector<std::string>, std::less<>> kArrows = {
+      {"common/core", {}},
+      {"common/runs", {"common/core"}},
+      {"common/materials", {"common/core", "common/runs"}},
+      {"common/edits", {"common/core", "common/runs", "common/materials"}},
+      // Of the edits, mesh and generate see geometry: where a descriptor lands and which layers it made
+      // dirty.
+      {"common/mesh",
+       {"common/core", "common/runs", "common/materials", "common/edits/edit_geometry.hpp",
+        "common/edits/edit_stack.hpp"}},
+      {"common/generate",
+       {"common/core", "common/runs", "common/materials", "common/edits/edit_geometry.hpp"}},
+      {"common/formats", {"common/core", "common/runs", "common/materials", "common/edits"}},
+      {"protocol", {"common"}},
+      {"server", {"protocol", "common"}},
+      {"client", {"protocol", "common"}},
+  };
+  return kArrows;
+}
+
+/// Headers that a folder may not see, as <...> or "...": a prefix ending in '/' names a folder of headers.
+struct Ban {
+  std::vector<std::string> folders;
+  std::vector<std::string> headers;
+};
+
+const std::vector<Ban>& bans() {
+  static const std::vector<Ban> kBans = {
+      {{"common", "protocol"},
+       {"asio.hpp", "asio/",  "boost/",   "spdlog/",    "sqlite3.h",    "GL/",       "GLES2/", "GLES3/",
+        "GLFW/",    "EGL/",   "epoxy/",   "chrono",     "ctime",        "time.h",    "thread", "fstream",
+        "iostream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "filesystem"}},
+      {{"server/world", "server/interest", "client/replica"},
+       {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread", "fstream",
+        "random", "unistd.h", "sys/time.h", "sys/socket.h"}},
+  };
+  return kBans;
+}
+
+bool names(const std::string& header, const std::string& banned) {
+  return banned.ends_with('/') ? header.starts_with(banned) : header == banned;
+}
+
+/// One line for each wrong include: "file includes header: rule".
+std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
+  static constexpr std::string_view kRoots[] = {"common", "protocol", "server", "client", "tests"};
+  std::vector<std::string> out;
+  for (const SourceFile& file : files) {
+    const auto home = std::find_if(arrows().begin(), arrows().end(),
+                                   [&](const auto& arrow) { return below(file.path, arrow.first); });
+    const bool is_test = below(file.path, "tests");
+    if (home == arrows().end() && !is_test) {
+      out.push_back(file.path + " lies in no folder of the house");
+      continue;
+    }
+    for (const Include& include : includes_of(file.text)) {
+      const auto complain = [&](const char* rule) {
+        out.push_back(file.path + " includes " + include.path + ": " + rule);
+      };
+      for (const Ban& ban : bans()) {
+        const bool applies = std::any_of(ban.folders.begin(), ban.folders.end(),
+                                         [&](const auto& f) { return below(file.path, f); });
+        if (applies && std::any_of(ban.headers.begin(), ban.headers.end(),
+                                   [&](const auto& banned) { return names(include.path, banned); })) {
+          complain("this folder does no I/O, reads no clock and starts no thread");
+        }
+      }
+      const bool ours = std::any_of(std::begin(kRoots), std::end(kRoots), [&](std::string_view root) {
+        return include.path.starts_with(std::string(root) + "/");
+      });
+      if (ours != include.quoted) {
+        complain("headers of this repository are quoted, from its root; all others stand in angle brackets");
+        if (!ours) continue;
+      }
+      if (!ours || is_test || below(include.path, home->first)) continue;
+      if (std::none_of(home->second.begin(), home->second.end(),
+                       [&](const auto& allowed) { return below(include.path, allowed); })) {
+        complain("no arrow of the house points that way");
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
+  std::vector<SourceFile> out;
+  for (const char* folder : {"common", "protocol", "server", "client", "tests"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+      const auto extension = entry.path().extension();
+      if (!entry.is_regular_file() || (extension != ".hpp" && extension != ".cpp" && extension != ".h"))
+        continue;
+      std::ifstream in(entry.path(), std::ios::binary);
+      out.push_back({entry.path().lexically_relative(root).generic_string(),
+                     {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}});
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+  return out;
+}
+
+// The verdict on one file with one line.
+bool is_wrong(const std::string& path, const std::string& line) {
+  return !wrong_includes({{path, "#pragma once\n" + line + "\nint x;\n"}}).empty();
+}
+
+}  // namespace
+
+TEST_CASE("every include of the tree follows the arrows of the house", "[house]") {
+  const std::vector<SourceFile> files = source_tree(RUNSTONE_SOURCE_DIR);
+  REQUIRE(files.size() > 100);
+  for (const char* folder : {"common/core", "common/runs", "common/edits", "protocol", "server", "client"}) {
+    CAPTURE(folder);
+    CHECK(std::any_of(files.begin(), files.end(), [&](const auto& f) { return below(f.path, folder); }));
+  }
+  for (const std::string& complaint : wrong_includes(files)) {
+    CAPTURE(complaint);
+    CHECK(complaint.empty());
+  }
+}
+
+TEST_CASE("a planted wrong include is caught", "[house]") {
+  // Up, or across.
+  CHECK(is_wrong("common/core/ids.hpp", "#include \"common/runs/run_list.hpp\""));
+  CHECK(is_wrong("common/runs/run_chunk.cpp", "#include \"common/edits/edit_stack.hpp\""));
+  CHECK(is_wrong("common/edits/edit_stack.cpp", "#include \"common/mesh/quad.hpp\""));
+  CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/edits/edit_record.hpp\""));
+  CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/generate/generator.hpp\""));
+  CHECK(is_wrong("common/generate/hills.cpp", "#include \"common/edits/edit_stack.hpp\""));
+  CHECK(is_wrong("common/formats/luanti_block.cpp", "#include \"common/mesh/quad.hpp\""));
+  CHECK(is_wrong("common/runs/layer.cpp", "#include \"protocol/limits.hpp\""));
+  CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"server/net/session.hpp\""));
+  CHECK(is_wrong("server/net/session.cpp", "#include \"client/net/link.hpp\""));
+  CHECK(is_wrong("client/net/link.cpp", "#include \"server/net/session.hpp\""));
+  CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
+  // Out of the pure libraries.
+  for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h", "GL/gl.h",
+                             "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
+    CAPTURE(header);
+    CHECK(is_wrong("common/edits/edit_stack.cpp", "#include <" + std::string(header) + ">"));
+    CHECK(is_wrong("protocol/codec/frame.hpp", "#include <" + std::string(header) + ">"));
+  }
+  CHECK(is_wrong("server/world/authority.cpp", "#include <chrono>"));
+  CHECK(is_wrong("client/replica/replica.cpp", "#include <asio.hpp>"));
+  // Written in other ways.
+  CHECK(is_wrong("common/core/ids.hpp", "  #  include\t\"common/runs/run_list.hpp\""));
+  CHECK(is_wrong("common/core/ids.hpp", "#include <common/core/hash.hpp>"));
+  CHECK(is_wrong("common/core/ids.hpp", "#include \"hash.hpp\""));
+  CHECK(is_wrong("common/core/ids.hpp", "#include \"../runs/run_list.hpp\""));
+  CHECK(is_wrong("common/corelike/ids.hpp", "#include <vector>"));
+}
+
+TEST_CASE("right includes pass", "[house]") {
+  CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include \"common/core/ids.hpp\""));
+  CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include <vector>"));
+  CHECK_FALSE(is_wrong("common/edits/edit_stack.cpp", "#include \"common/materials/material_table.hpp\""));
+  CHECK_FALSE(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/edits/edit_geometry.hpp\""));
+  CHECK_FALSE(is_wrong("common/formats/luanti_block.cpp", "#include <zstd.h>"));
+  CHECK_FALSE(is_wrong("protocol/codec/frame.cpp", "#include \"common/edits/edit_record.hpp\""));
+  CHECK_FALSE(is_wrong("server/net/session.cpp", "#include <asio.hpp>"));
+  CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"server/world/authority.hpp\""));
+  CHECK_FALSE(is_wrong("client/replica/replica.cpp", "#include \"protocol/codec/frame.hpp\""));
+  CHECK_FALSE(
+      is_wrong("tests/simulation/session/replica_test.cpp", "#include \"client/replica/replica.hpp\""));
+  CHECK_FALSE(is_wrong("common/core/ids.cpp", "// #include <chrono>"));
+}
