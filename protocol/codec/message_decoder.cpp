@@ -201,6 +201,7 @@ struct BodyReader {
     if (m.client_seq == 0) return bad("client sequences start at 1");
     if (t.reason() == 0 || t.reason() > kRejectReasonMax) return bad("reject reason is unknown");
     m.reason = static_cast<RejectReason>(t.reason());
+    m.seq = t.seq();
     if (!take_text(t.detail(), 0, kTextBytesMax, m.detail))
       return bad("reject detail is not 0 .. 256 bytes of text");
     return m;

@@ -44,7 +44,8 @@ struct BodyBuilder {
     rows.reserve(m.materials.size());
     for (const MaterialInfo& row : m.materials.rows()) {
       const auto& c = row.colour;
-      const std::uint32_t rgba = c[0] | c[1] << 8 | c[2] << 16 | static_cast<std::uint32_t>(c[3]) << 24;
+      std::uint32_t rgba = 0;
+      for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);
       const auto name = b.CreateString(row.name);
       rows.push_back(wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
     }
@@ -97,7 +98,7 @@ struct BodyBuilder {
     return wire::CreateCommit(b, m.epoch, m.first, b.CreateVector(edits));
   }
   Offset<wire::Reject> operator()(const Reject& m) {
-    return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail));
+    return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail), m.seq);
   }
   Offset<wire::Durable> operator()(const Durable& m) { return wire::CreateDurable(b, m.epoch, m.seq); }
   Offset<wire::Audit> operator()(const Audit& m) {

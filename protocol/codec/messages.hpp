@@ -135,6 +135,7 @@ struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
+  Sequence seq = 0;  // already_decided: if the edit was applied, its sequence is at most this; else 0
   friend bool operator==(const Reject&, const Reject&) = default;
 };
 struct Durable {
