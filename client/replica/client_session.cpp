@@ -189,7 +189,7 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
   // whether it was decided, so asking twice does no harm.
   if (waiting_.empty()) {
     for (const auto& [seq, own] : replica_.own_edits().all()) {
-      if (own.decided) continue;
+      if (own.decided && !own.asked) continue;
       if (own.sent_us == OwnEdit::kNever || now_us - own.sent_us < kAnswerUsMax) break;
       waiting_.push_back(seq);
     }
@@ -199,7 +199,7 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
   if (!clock_.known() && now_us - opened_us_ < kOffsetWaitUsMax) return;
   for (const ClientSequence seq : std::exchange(waiting_, {})) {
     const auto it = replica_.own_edits().all().find(seq);
-    if (it == replica_.own_edits().all().end() || it->second.decided) continue;
+    if (it == replica_.own_edits().all().end() || (it->second.decided && !it->second.asked)) continue;
     outgoing_.push_back(
         EditRequest{seq, clock_.to_server(it->second.submitted_us).value_or(0), it->second.edit});
     replica_.mark_sent(seq, now_us);

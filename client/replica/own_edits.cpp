@@ -18,11 +18,12 @@ OwnEdit* OwnEdits::find(ClientSequence seq) {
   return it == edits_.end() ? nullptr : &it->second;
 }
 
-std::vector<ClientSequence> OwnEdits::take_durable(Sequence durable) {
-  std::vector<ClientSequence> out;
+OwnEdits::Settled OwnEdits::take_durable(Sequence durable) {
+  Settled out;
   for (auto it = edits_.begin(); it != edits_.end();) {
-    if (it->second.decided && it->second.version.seq <= durable) {
-      out.push_back(it->first);
+    const OwnEdit& own = it->second;
+    if (own.decided && !own.asked && own.version.seq <= durable) {
+      (own.unseen ? out.unseen : out.durable).push_back(it->first);
       it = edits_.erase(it);
     } else {
       ++it;
@@ -31,20 +32,28 @@ std::vector<ClientSequence> OwnEdits::take_durable(Sequence durable) {
   return out;
 }
 
-std::vector<ClientSequence> OwnEdits::resume(ClientSequence decided, Version head) {
+std::vector<ClientSequence> OwnEdits::resume(ClientSequence decided) {
   std::vector<ClientSequence> offers;
   for (auto& [seq, own] : edits_) {
     if (seq > decided) {
-      own.decided = false;
+      own.decided = own.asked = own.unseen = false;
       own.version = {};
       own.sent_us = OwnEdit::kNever;
       offers.push_back(seq);
     } else if (!own.decided) {
-      own.decided = true;
-      own.version = head;
+      own.decided = own.asked = true;
+      own.sent_us = OwnEdit::kNever;
     }
   }
   return offers;
+}
+
+std::vector<ClientSequence> OwnEdits::unanswered() const {
+  std::vector<ClientSequence> out;
+  for (const auto& [seq, own] : edits_) {
+    if (!own.decided || own.asked) out.push_back(seq);
+  }
+  return out;
 }
 
 std::size_t OwnEdits::undecided() const {

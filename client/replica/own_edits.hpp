@@ -23,7 +23,9 @@ struct OwnEdit {
   TimeUs sent_us = kNever;       // last put on the wire
   std::vector<ChunkKey> chunks;  // touched, in touched_chunks() order
   bool decided = false;
-  Version version;  // once decided; an upper bound when the commit itself was missed
+  Version version;      // once decided; an upper bound when the commit itself was missed
+  bool asked = false;   // decided, says the server's mark, but not how: it is sent again to ask
+  bool unseen = false;  // its commit never reached us
   static constexpr TimeUs kNever = INT64_MIN;
 };
 
@@ -38,13 +40,20 @@ class OwnEdits {
   void erase(ClientSequence seq) { edits_.erase(seq); }
   void clear() { edits_.clear(); }
 
-  /// Removes decided edits at or below the watermark and returns their sequences, ascending.
-  std::vector<ClientSequence> take_durable(Sequence durable);
+  /// Removes decided edits at or below the watermark; the caller learns their sequences, ascending.
+  struct Settled {
+    std::vector<ClientSequence> durable;  // their commits were seen
+    std::vector<ClientSequence> unseen;   // applied for all we know; the chunks tell
+  };
+  Settled take_durable(Sequence durable);
 
-  /// A new connection: `decided` is what the server knows of this instance. Edits above it are to be offered
-  /// again and count as sent; edits up to it are decided, at `head` or before if their commit was missed.
-  /// Returns those to offer again, ascending.
-  std::vector<ClientSequence> resume(ClientSequence decided, Version head);
+  /// A new connection: `decided` is the highest client sequence the server has decided. Edits above it were
+  /// lost, even if we saw them applied, and are to be offered again: they are returned, ascending. Edits up
+  /// to it whose answer we missed become `asked`.
+  std::vector<ClientSequence> resume(ClientSequence decided);
+
+  /// Edits to be sent (again): undecided ones, and those that ask how they were decided. Ascending.
+  std::vector<ClientSequence> unanswered() const;
 
   const Map& all() const { return edits_; }
   std::size_t undecided() const;

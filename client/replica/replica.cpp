@@ -29,6 +29,9 @@ struct Replica::EditInfo {
 
 std::vector<ClientSequence> Replica::open(const Opening& opening) {
   if (opening_ && opening_->chunk_edge != opening.chunk_edge) reset();
+  // Of what the last server ordered, only what we heard to be durable survived its end for sure: by now the
+  // log may have grown past that again, with other edits.
+  const Sequence kept = std::min(durable_, opening.durable);
   opening_ = opening;
   durable_ = opening.durable;
   newest_ = opening.head;
@@ -41,15 +44,15 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
     entry.awaiting = false;
     if (!entry.confirmed) continue;
     const Version version = entry.confirmed->version;
-    if (version.epoch < opening.epoch && version.seq > opening.durable) {
-      // The server that ordered this is gone and did not keep it. What is on the screen stays until the new
-      // snapshot.
+    if (version.epoch < opening.epoch && version.seq > kept) {
+      // The server that ordered this is gone and may not have kept it. What is on the screen stays until the
+      // new snapshot.
       entry.confirmed = nullptr;
       --confirmed_count_;
       ++counters_.dropped_by_epoch;
     }
   }
-  const auto offers = own_.resume(opening.decided, {opening.epoch, opening.head});
+  const auto offers = own_.resume(opening.decided);
   for (auto& [key, entry] : entries_) {
     for (Pending& pending : entry.pending) {
       const OwnEdit* own = own_.find(pending.seq);
@@ -69,11 +72,8 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
     }
     ++counters_.own_offered_again;
   }
-  for (const ClientSequence seq : own_.take_durable(durable_)) {
-    durable_news_.push_back(seq);
-    ++counters_.own_durable;
-  }
-  return offers;
+  settle_own();
+  return own_.unanswered();
 }
 
 void Replica::reset() {
@@ -243,12 +243,9 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
       if (OwnEdit* held = own_.find(ordered.op.seq)) {
         if (!held->decided) ++counters_.own_confirmed;
         held->decided = true;
+        held->asked = held->unseen = false;
         held->version = version;
-        if (version.seq <= durable_) {
-          own_.erase(ordered.op.seq);
-          durable_news_.push_back(ordered.op.seq);
-          ++counters_.own_durable;
-        }
+        if (version.seq <= durable_) settle_own();
       }
       news_of(*shared_info(), arrival.now_us);
     }
@@ -281,7 +278,7 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
 
 void Replica::receive(const Reject& reject, TimeUs now_us) {
   OwnEdit* own = own_.find(reject.client_seq);
-  if (own == nullptr || own->decided) return;  // applied after all, or taken back before
+  if (own == nullptr || (own->decided && !own->asked)) return;  // applied after all, or taken back before
   const bool decided_unseen = reject.reason == RejectReason::already_decided;
   for (const ChunkKey& key : own->chunks) {
     const auto it = entries_.find(key);
@@ -291,8 +288,9 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
       for (Pending& pending : entry.pending) {
         if (pending.seq == reject.client_seq) pending.until_snapshot = true;
       }
-      // Its commit never reached us, so this copy may lack it.
-      if (entry.confirmed) request(key, entry, now_us);
+      // Its commit never reached us, so this copy may lack it; after a resumption every chunk comes anew
+      // anyway.
+      if (entry.confirmed && !own->asked) request(key, entry, now_us);
       continue;
     }
     const auto removed =
@@ -300,9 +298,10 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
     if (removed != 0 && entry.confirmed) show(key, entry, predict(key, entry), {});
   }
   if (decided_unseen) {
-    own->decided = true;
-    own->version = {opening_->epoch, newest_};
-    return;
+    own->decided = own->unseen = true;
+    own->asked = false;
+    own->version = {opening_->epoch, reject.seq != 0 ? reject.seq : newest_};
+    return settle_own();
   }
   own_.erase(reject.client_seq);
   ++counters_.own_rejected;
@@ -313,10 +312,14 @@ void Replica::receive(const Durable& durable) {
   if (!opening_ || durable.epoch != opening_->epoch) return;
   durable_ = std::max(durable_, durable.seq);
   newest_ = std::max(newest_, durable.seq);
-  for (const ClientSequence seq : own_.take_durable(durable_)) {
-    durable_news_.push_back(seq);
-    ++counters_.own_durable;
-  }
+  settle_own();
+}
+
+void Replica::settle_own() {
+  const auto settled = own_.take_durable(durable_);
+  durable_news_.insert(durable_news_.end(), settled.durable.begin(), settled.durable.end());
+  counters_.own_durable += settled.durable.size();
+  unseen_news_.insert(unseen_news_.end(), settled.unseen.begin(), settled.unseen.end());
 }
 
 void Replica::receive(const Audit& audit, TimeUs now_us) {
@@ -476,6 +479,7 @@ ReplicaNews Replica::take_news() {
   for (auto& edit : edit_news_) news.edits.push_back(std::move(*edit));
   news.rejects = std::exchange(reject_news_, {});
   news.durable = std::exchange(durable_news_, {});
+  news.unseen = std::exchange(unseen_news_, {});
   chunk_news_.clear();
   edit_news_.clear();
   confirmed_news_.clear();

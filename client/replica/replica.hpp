@@ -132,6 +132,7 @@ class Replica {
   void request(const ChunkKey& key, Entry& entry, TimeUs now_us);
   void show(const ChunkKey& key, Entry& entry, ShownPtr next, const std::vector<EditNews*>& cause);
   ShownPtr predict(const ChunkKey& key, const Entry& entry);
+  void settle_own();
   EditNews& news_of(const EditInfo& info, TimeUs now_us);
   ChunkNews& chunk_news(const ChunkKey& key);
   bool is_own(const OperationId& op) const;
@@ -153,7 +154,7 @@ class Replica {
   std::vector<std::unique_ptr<EditNews>> edit_news_;
   std::map<OperationId, EditNews*> confirmed_news_;  // those of edit_news_ that are not predictions
   std::vector<RejectNews> reject_news_;
-  std::vector<ClientSequence> durable_news_;
+  std::vector<ClientSequence> durable_news_, unseen_news_;
   std::vector<ChunkKey> requests_;
 };
 

@@ -61,6 +61,9 @@ struct ReplicaNews {
   std::vector<EditNews> edits;    // in the order applied
   std::vector<RejectNews> rejects;
   std::vector<ClientSequence> durable;  // own edits now known to be on disk
+  /// Own edits that were decided while we could not listen, by a server that no longer knows how: applied and
+  /// durable, or refused. The chunks tell.
+  std::vector<ClientSequence> unseen;
 };
 
 /// Counts since the replica was made. `chunk edits` count an edit once per chunk.

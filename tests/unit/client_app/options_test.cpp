@@ -1,0 +1,60 @@
+#include "client/app/options.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace runstone;
+
+namespace {
+
+ParsedOptions parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "runstone-client");
+  return parse_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+ClientOptions accepted(std::vector<const char*> arguments) {
+  const ParsedOptions parsed = parse(std::move(arguments));
+  REQUIRE(parsed.options.has_value());
+  return *parsed.options;
+}
+
+int refused(std::vector<const char*> arguments) {
+  const ParsedOptions parsed = parse(std::move(arguments));
+  REQUIRE_FALSE(parsed.options.has_value());
+  return parsed.exit_code;
+}
+
+}  // namespace
+
+TEST_CASE("the address is host and port, also in v6 form", "[client_app]") {
+  CHECK(accepted({"--connect", "example.org:4000"}).host == "example.org");
+  CHECK(accepted({"--connect", "example.org:4000"}).port == 4000);
+  CHECK(accepted({"--connect", "[::1]:4000"}).host == "::1");
+  CHECK(refused({"--connect", "example.org"}) == 2);
+  CHECK(refused({"--connect", "example.org:0"}) == 2);
+  CHECK(refused({"--connect", "example.org:65536"}) == 2);
+  CHECK(refused({"--connect", ":4000"}) == 2);
+  CHECK(refused({}) == 2);
+}
+
+TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
+  const ClientOptions options = accepted(
+      {"--connect", "a:1", "--size", "640x360", "--view", "9", "--encoding", "packed", "--headless"});
+  CHECK(options.width == 640);
+  CHECK(options.height == 360);
+  CHECK(options.view_radius == 9);
+  CHECK(options.view_radius_v == 5);
+  CHECK(options.encodings == 2);
+  CHECK(options.headless);
+  CHECK(options.render);
+  CHECK(options.workers >= 1);
+  CHECK(accepted({"--connect", "a:1", "--view", "9", "--view-vertical", "0"}).view_radius_v == 0);
+  CHECK_FALSE(accepted({"--connect", "a:1", "--no-render"}).render);
+  CHECK(refused({"--connect", "a:1", "--size", "640"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--size", "1x1"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--view", "65"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--encoding", "morse"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--script", "/does/not/exist"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--name", "a name of more than thirty-two bytes"}) == 2);
+  CHECK(refused({"--help"}) == 0);
+}

@@ -1,0 +1,72 @@
+#include "client/app/player.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+using namespace runstone;
+
+namespace {
+constexpr double kPi = std::numbers::pi;
+}
+
+TEST_CASE("a pose carries yaw and pitch in the units of the wire", "[client_app]") {
+  Player player;
+  player.move_to({1, 2, 3});
+  player.look(kPi / 2, kPi / 4);
+  CHECK(player.pose().at == WorldPos{1, 2, 3});
+  CHECK(player.pose().yaw == 16384);
+  CHECK(player.pose().pitch == 8192);
+  CHECK(yaw_of(player.pose()) == Approx(kPi / 2));
+  player.look(-kPi / 2, -kPi);  // wrapped, and kept short of straight down
+  CHECK(player.pose().yaw == 49152);
+  CHECK(player.pose().pitch > -16384);
+  CHECK(player.pose().pitch < -16000);
+}
+
+TEST_CASE("forward goes where the player looks, right goes to the right of it", "[client_app]") {
+  Player player;
+  WindowInput input;
+  input.forward = true;
+  player.steer(input, 1, 10);
+  CHECK(player.eye().z > 1);  // yaw 0 looks along +z
+  CHECK(player.eye().x == Approx(0).margin(1e-9));
+  player = Player();
+  input = {};
+  input.right = true;
+  player.steer(input, 1, 10);
+  CHECK(player.eye().x < -1);  // right-handed, y up: to the right of +z lies -x
+  player = Player();
+  input = {};
+  input.look_dx = 100;  // the mouse moves right
+  player.steer(input, 1, 10);
+  CHECK(player.direction().x < 0);
+  input = {};
+  input.look_dy = -100;  // and up
+  player.steer(input, 1, 10);
+  CHECK(player.direction().y > 0);
+}
+
+TEST_CASE("digits and the wheel choose among the materials there are", "[client_app]") {
+  Player player;
+  WindowInput input;
+  input.digit = 4;
+  player.steer(input, 0, 8);
+  CHECK(player.held() == 4);
+  input = {};
+  input.scroll = -10;
+  player.steer(input, 0, 8);
+  CHECK(player.held() == 1);
+  input = {};
+  input.digit = 0;
+  player.steer(input, 0, 8);
+  CHECK(player.held() == 7);
+}
+
+TEST_CASE("the chunk of the eye is found by floor", "[client_app]") {
+  Player player;
+  player.move_to({-0.5, 15.9, 16});
+  CHECK(player.chunk(16) == ChunkCoord{-1, 0, 1});
+  player.move_to({1e300, -1e300, NAN});
+  CHECK(player.chunk(16).x == (kWorldLimit - 1) / 16);
+}

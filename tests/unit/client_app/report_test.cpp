@@ -1,0 +1,53 @@
+#include "client/app/report.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/runs/dense.hpp"
+
+using namespace runstone;
+using nlohmann::json;
+
+namespace {
+
+ClientReport sample() {
+  ClientReport report;
+  report.renderer = "none";
+  auto& remote = report.latency.ways[static_cast<std::size_t>(LatencyWay::remote)];
+  auto& meshed = remote.since_submit[static_cast<std::size_t>(LatencyStage::meshed)];
+  for (int i = 0; i < 9; ++i) meshed.add(100);
+  meshed.add_infinite();
+  remote.edits = 10;
+  report.chunks.mesh_jobs = 30;
+  report.chunks.chunks_meshed = 20;
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  const json out = json::parse(to_json(sample(), session));
+  const json& meshed = out["latency_us"]["remote"]["since_submit"]["meshed"];
+  CHECK(meshed["count"] == 10);
+  CHECK(meshed["infinite"] == 1);
+  CHECK(meshed["p50"] == 100);
+  CHECK(meshed["p90"] == 100);
+  CHECK(meshed["p99"] == "inf");
+  CHECK(meshed["max"] == "inf");
+  CHECK(out["latency_us"]["remote"]["edits"] == 10);
+  CHECK_FALSE(out["latency_us"]["remote"]["since_submit"].contains("presented"));
+  CHECK(out["mesh"]["per_chunk"] == 1.5);
+  CHECK(out["clock"].is_null());
+  CHECK(out["world_id"].is_null());
+  CHECK(out["replica"]["drifted"] == 0);
+}
+
+TEST_CASE("the table names what matters on lines of their own", "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  const std::string table = to_table(sample(), session);
+  CHECK_THAT(table, Catch::Contains("meshes per chunk: 1.50 (30 of 20 chunks)\n"));
+  CHECK_THAT(table, Catch::Contains("dense expansions: " + std::to_string(dense_expansions()) + "\n"));
+  CHECK_THAT(table, Catch::Contains("drift: 0 of 0 audited\n"));
+  CHECK_THAT(table, Catch::Matches("(.|\n)*remote +meshed +10 +0\\.10 +0\\.10 +inf +inf\n(.|\n)*"));
+}

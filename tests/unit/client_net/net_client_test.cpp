@@ -1,0 +1,234 @@
+#include "client/net/net_client.hpp"
+
+#include <asio.hpp>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "client/net/wake_up.hpp"
+
+using namespace runstone;
+using asio::ip::tcp;
+
+namespace {
+
+/// A server that does by hand what one test asks for. Blocking sockets, so the order of things is plain.
+struct Peer {
+  Peer() : acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)), socket(io) {}
+  std::uint16_t port() const { return acceptor.local_endpoint().port(); }
+  void accept() {
+    socket = acceptor.accept();
+    writer = FrameWriter();
+    reader.emplace(Sender::client);
+  }
+  void send(const Message& message) {
+    Bytes out;
+    writer.append(encode_message(message), out);
+    asio::write(socket, asio::buffer(out));
+  }
+  /// The next message; none when the client has closed.
+  std::optional<Message> receive() {
+    std::optional<Message> got;
+    while (!got) {
+      std::uint8_t byte = 0;  // one by one, so that nothing of the next message is read
+      std::error_code error;
+      if (socket.read_some(asio::buffer(&byte, 1), error) == 0) return std::nullopt;
+      const auto fed = reader->feed({&byte, 1}, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+        auto message = decode_message(Sender::client, frame_class, body, 0);
+        REQUIRE(message.has_value());
+        got = std::move(*message);
+        return {};
+      });
+      REQUIRE(fed.has_value());
+    }
+    return got;
+  }
+  asio::io_context io;
+  tcp::acceptor acceptor;
+  tcp::socket socket;
+  FrameWriter writer;
+  std::optional<FrameReader> reader;
+};
+
+struct Fixture {
+  NetConfig config() const {
+    NetConfig out;
+    out.host = "127.0.0.1";
+    out.port = peer.port();
+    out.pause_ms_first = 1;
+    out.pause_ms_max = 10;
+    return out;
+  }
+  void start(NetConfig net) {
+    client = std::make_unique<NetClient>(std::move(net), [this] { wake.notify(); });
+  }
+  /// The next event; fails the test if none comes.
+  NetEvent next() {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (events.empty()) {
+      REQUIRE(std::chrono::steady_clock::now() < until);
+      for (NetEvent& event : client->take_events()) events.push_back(std::move(event));
+      if (events.empty()) wake.wait(std::chrono::milliseconds(50));
+    }
+    NetEvent event = std::move(events.front());
+    events.erase(events.begin());
+    return event;
+  }
+  template <class T>
+  T next_as() {
+    NetEvent event = next();
+    REQUIRE(std::holds_alternative<T>(event));
+    return std::get<T>(std::move(event));
+  }
+  Welcome welcome() const {
+    Welcome out;
+    out.epoch = 1;
+    out.chunk_edge = 16;
+    out.y_max = 16;
+    out.materials = default_material_table();
+    return out;
+  }
+  Peer peer;
+  WakeUp wake;
+  std::vector<NetEvent> events;
+  std::unique_ptr<NetClient> client;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_net]") {
+  start(config());
+  peer.accept();
+  const auto up = next_as<NetConnected>();
+  CHECK(up.connection == 1);
+  Hello hello;
+  hello.name = "ada";
+  client->send(up.connection, encode_message(hello));
+  client->send(up.connection, encode_message(Ping{123}));
+  auto got = peer.receive();
+  REQUIRE(got);
+  CHECK(std::get<Hello>(*got).name == "ada");
+  got = peer.receive();
+  REQUIRE(got);
+  CHECK(std::get<Ping>(*got).sent_us == 123);
+
+  peer.send(welcome());
+  const auto first = next_as<NetReceived>();
+  CHECK(std::get<Welcome>(first.message).chunk_edge == 16);
+  CHECK(first.connection == 1);
+  CHECK(first.received_us <= first.unpacked_us);
+  CHECK(first.bytes > 0);
+
+  // The edge of welcome decides which snapshots are accepted.
+  Bytes out;
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(16), 3);
+  chunk.digest = digest_of(chunk.voxels);
+  peer.writer.append(encode_snapshot({0, {1, 2, 3}}, chunk, ChunkEncoding::packed), out);
+  asio::write(peer.socket, asio::buffer(out.data(), 5));
+  asio::write(peer.socket, asio::buffer(out.data() + 5, out.size() - 5));
+  const auto second = next_as<NetReceived>();
+  CHECK(std::get<ChunkSnapshot>(second.message).key == ChunkKey{0, {1, 2, 3}});
+  CHECK(client->stats().messages_received == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "a connection that breaks is made again, and the old one's messages are dropped",
+                 "[client_net]") {
+  start(config());
+  peer.accept();
+  CHECK(next_as<NetConnected>().connection == 1);
+  peer.socket.close();
+  CHECK(next_as<NetDisconnected>().connection == 1);
+  peer.accept();
+  CHECK(next_as<NetConnected>().connection == 2);
+  client->send(1, encode_message(Ping{1}));
+  client->send(2, encode_message(Ping{2}));
+  const auto got = peer.receive();
+  REQUIRE(got);
+  CHECK(std::get<Ping>(*got).sent_us == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "bytes that are no frames end the connection with a reason", "[client_net]") {
+  start(config());
+  peer.accept();
+  next_as<NetConnected>();
+  const std::string nonsense(64, 'x');
+  asio::write(peer.socket, asio::buffer(nonsense));
+  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
+}
+
+TEST_CASE_METHOD(Fixture, "a snapshot of the wrong size ends the connection", "[client_net]") {
+  start(config());
+  peer.accept();
+  next_as<NetConnected>();
+  peer.send(welcome());
+  next_as<NetReceived>();
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(32), 3);
+  Bytes out;
+  peer.writer.append(encode_snapshot({0, {}}, chunk, ChunkEncoding::raw), out);
+  asio::write(peer.socket, asio::buffer(out));
+  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
+}
+
+TEST_CASE_METHOD(Fixture, "attempts without a server are told and go on", "[client_net]") {
+  NetConfig net = config();
+  peer.acceptor.close();
+  start(net);
+  for (int i = 0; i < 3; ++i) CHECK(next_as<NetDisconnected>().connection == 0);
+  net.host = "name.invalid";
+  start(net);
+  events.clear();
+  CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("cannot resolve"));
+}
+
+TEST_CASE_METHOD(Fixture, "closing sends what is queued first", "[client_net]") {
+  start(config());
+  peer.accept();
+  const auto up = next_as<NetConnected>();
+  client->send(up.connection, encode_message(Goodbye{GoodbyeReason::closing, "bye"}));
+  client->close(up.connection);
+  const auto got = peer.receive();
+  REQUIRE(got);
+  CHECK(std::get<Goodbye>(*got).text == "bye");
+  CHECK_FALSE(peer.receive());
+  CHECK(next_as<NetDisconnected>().connection == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect again", "[client_net]") {
+  start(config());
+  peer.accept();
+  const auto up = next_as<NetConnected>();
+  client->send(up.connection, encode_message(Ping{9}));
+  client->stop(5'000);
+  const auto got = peer.receive();
+  REQUIRE(got);
+  CHECK(std::get<Ping>(*got).sent_us == 9);
+  CHECK_FALSE(peer.receive());
+  CHECK(client->stats().connections == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "while events are not taken reading stops, and nothing is lost", "[client_net]") {
+  NetConfig net = config();
+  net.events_max = 16;
+  start(net);
+  peer.accept();
+  next_as<NetConnected>();
+  constexpr TimeUs kMessages = 40'000;
+  std::thread sender([&] {
+    for (TimeUs i = 0; i < kMessages; ++i) peer.send(Pong{i, i});
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  for (NetEvent& event : client->take_events()) events.push_back(std::move(event));
+  // One read may overshoot the bound, by the messages that 64 KiB hold.
+  CHECK(events.size() < 5'000);
+  bool in_order = true;
+  for (TimeUs i = 0; i < kMessages; ++i) {
+    const NetEvent event = next();
+    const auto* received = std::get_if<NetReceived>(&event);
+    in_order = in_order && received != nullptr && std::get<Pong>(received->message).sent_us == i;
+  }
+  sender.join();
+  CHECK(in_order);
+}
