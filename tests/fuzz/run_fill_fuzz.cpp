@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const bool changed = fill(chunk, first, count, material, &area);
     demand(changed == oracle.fill(order, first, count, material), "verdict differs", step);
     demand(validate(chunk).has_value(), "chunk is invalid", step);
-    demand(test::DenseChunk::of(chunk) == oracle, "voxels differ", step);
+    if (step % 8 == 0) demand(test::DenseChunk::of(chunk) == oracle, "voxels differ", step);
     demand(changed || chunk == before, "runs moved though nothing changed", step);
     if (!changed) continue;
     // The digest follows through the edit area alone, as the edit sweep has it follow.
@@ -59,6 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     demand(digest == digest_of(chunk), "digest does not follow", step);
   }
+  demand(test::DenseChunk::of(chunk) == oracle, "voxels differ at the end", -1);
   demand(digest == oracle.digest(), "digest is not the oracle's", -1);
   const auto counts = runs_per_order(chunk);
   for (const AxisOrder other : kAxisOrders) {
