@@ -28,7 +28,8 @@ struct ReplayDifference {
 struct ReplayReport {
   Sequence seq = 0;  // where the replay ended
   std::uint64_t edits = 0;
-  std::uint64_t voxels_changed = 0;
+  std::uint64_t voxels_changed =
+      0;  // summed over sweeps: what one edit of a sweep sets and another resets is none
   std::uint64_t snapshots_compared = 0;
   std::uint64_t listed_compared = 0;
   std::uint64_t not_compared =

@@ -87,7 +87,9 @@ void write_until_cut(const std::string& folder, const SqliteOptions& options, Po
       const Version version = promise.tried[promise.durable - 1].version;
       for (std::uint32_t i = rng.below(30); i > 0; --i) {
         const ChunkKey key{0, {rng.between(-3, 3), 0, rng.between(-3, 3)}};
-        chunks.emplace_back(key, sample_chunk(rng, version));
+        // As in a real world, key and version decide the voxels: a job that was cut may be there or not.
+        SplitMix64 voxels(mix64(version.seq) ^ static_cast<std::uint64_t>(16 * key.at.x + key.at.z));
+        chunks.emplace_back(key, sample_chunk(voxels, version));
       }
       if (!store.save_snapshots(chunks, promise.durable)) continue;
       for (const auto& [key, chunk] : chunks) promise.snapshots[key] = chunk;
