@@ -28,8 +28,8 @@ struct ReplayDifference {
 struct ReplayReport {
   Sequence seq = 0;  // where the replay ended
   std::uint64_t edits = 0;
-  std::uint64_t voxels_changed =
-      0;  // summed over sweeps: what one edit of a sweep sets and another resets is none
+  /// Summed over sweeps: what one edit of a sweep sets and a later one resets is not in it.
+  std::uint64_t voxels_changed = 0;
   std::uint64_t snapshots_compared = 0;
   std::uint64_t listed_compared = 0;
   std::uint64_t not_compared =
