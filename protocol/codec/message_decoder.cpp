@@ -202,6 +202,7 @@ struct BodyReader {
     if (t.reason() == 0 || t.reason() > kRejectReasonMax) return bad("reject reason is unknown");
     m.reason = static_cast<RejectReason>(t.reason());
     m.seq = t.seq();
+    if (m.seq != 0 && m.reason != RejectReason::already_decided) return bad("reject names a sequence");
     if (!take_text(t.detail(), 0, kTextBytesMax, m.detail))
       return bad("reject detail is not 0 .. 256 bytes of text");
     return m;
@@ -294,12 +295,12 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::EditRequest:
       return Route{true, false, FrameClass::edits};
     case wire::Body::Welcome:
-    case wire::Body::Ready:
     case wire::Body::Audit:
     case wire::Body::PlayerPoses:
     case wire::Body::Roster:
     case wire::Body::Pong:
       return Route{false, true, FrameClass::control};
+    case wire::Body::Ready:
     case wire::Body::Commit:
     case wire::Body::Reject:
     case wire::Body::Durable:

@@ -9,7 +9,8 @@ FrameClass frame_class_of(const Message& message) {
   return std::visit(
       []<class T>(const T&) {
         constexpr bool kOrder = std::is_same_v<T, EditRequest> || std::is_same_v<T, Commit> ||
-                                std::is_same_v<T, Reject> || std::is_same_v<T, Durable>;
+                                std::is_same_v<T, Reject> || std::is_same_v<T, Durable> ||
+                                std::is_same_v<T, Ready>;
         if constexpr (kOrder) return FrameClass::edits;
         return std::is_same_v<T, ChunkSnapshot> ? FrameClass::chunks : FrameClass::control;
       },

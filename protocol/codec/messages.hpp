@@ -216,8 +216,9 @@ inline bool digest_holds(const ChunkSnapshot& snapshot) {
   return digest_of(snapshot.chunk.voxels) == snapshot.chunk.digest;
 }
 
-/// The class every message of this kind travels in: edit requests, commits, rejects and durable in `edits`
-/// (so durable stays behind the commits it speaks of), snapshots in `chunks`, the rest in `control`.
+/// The class every message of this kind travels in: edit requests, commits, rejects, durable and ready in
+/// `edits`, snapshots in `chunks`, the rest in `control`. So durable stays behind the commits it speaks of,
+/// and neither can overtake the ready that opens their session.
 FrameClass frame_class_of(const Message& message);
 
 /// Serialises a message: FlatBuffers of protocol/schema/runstone.fbs, chunk snapshots as `raw` (see

@@ -163,6 +163,15 @@ Commit any_commit(SplitMix64& rng) {
   return m;
 }
 
+Reject any_reject(SplitMix64& rng) {
+  Reject m;
+  m.client_seq = 1 + (any64(rng) >> 1);
+  m.reason = static_cast<RejectReason>(1 + rng.below(kRejectReasonMax));
+  m.detail = any_text(rng, 0, kTextBytesMax);
+  if (m.reason == RejectReason::already_decided) m.seq = any64(rng);
+  return m;
+}
+
 Audit any_audit(SplitMix64& rng) {
   Audit m;
   m.entries.resize(rng.below(20));
@@ -207,8 +216,7 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 8:
       return any_commit(rng);
     case 9:
-      return Reject{1 + (any64(rng) >> 1), static_cast<RejectReason>(1 + rng.below(kRejectReasonMax)),
-                    any_text(rng, 0, kTextBytesMax)};
+      return any_reject(rng);
     case 10:
       return Durable{1 + rng.below(1000), any64(rng)};
     case 11:
