@@ -16,7 +16,9 @@ pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)
 add_library(runstone_asio INTERFACE)
 target_include_directories(runstone_asio SYSTEM INTERFACE ${ASIO_INCLUDE_DIR})
-target_compile_definitions(runstone_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+# ASIO_HAS_STD_ALIGNED_ALLOC: left alone, Asio decides by whether a standard header came before it, so translation units
+# disagree on how the memory of an operation is freed.
+target_compile_definitions(runstone_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED ASIO_HAS_STD_ALIGNED_ALLOC=1)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   target_compile_definitions(runstone_asio INTERFACE ASIO_HAS_CO_AWAIT=1 ASIO_HAS_STD_COROUTINE=1)
 endif()
