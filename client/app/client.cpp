@@ -431,7 +431,8 @@ bool Client::loaded() const {
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.
-  return session_.loaded() && session_.pongs() >= mark + 2 && session_.replica().own_edits().undecided() == 0;
+  return session_.loaded() && session_.pongs() >= mark + 2 &&
+         session_.replica().own_edits().unanswered().empty();
 }
 
 bool Client::screenshot(const std::string& file) {

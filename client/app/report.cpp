@@ -124,6 +124,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   }
   latency["own_durable"] = histogram_json(report.latency.durable);
   latency["own_rejected"] = report.latency.rejected;
+  latency["own_unseen"] = report.latency.unseen;
   out["latency_us"] = std::move(latency);
   const ChunkStats& chunks = report.chunks;
   const char* encoding = "none";

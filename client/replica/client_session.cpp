@@ -39,6 +39,7 @@ void ClientSession::disconnected() {
   view_sent_.reset();
   pose_sent_.reset();
   others_.clear();
+  early_.clear();
   wants_close_ = false;
 }
 
@@ -68,6 +69,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, Ready>) {
           if (state_ == SessionState::proving) return on_ready(m, arrival.now_us);
           fail_with(GoodbyeReason::unexpected_message, "ready out of turn", false);
+        } else if (state_ == SessionState::proving && early_.size() < kEarlyMessagesMax) {
+          early_.emplace_back(std::move(m), arrival);
         } else if (state_ != SessionState::open) {
           fail_with(GoodbyeReason::unexpected_message, "message before ready", false);
         } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
@@ -136,6 +139,7 @@ void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
                             .decided = ready.decided});
   send_view();
   tick(now_us);
+  for (auto& [message, arrival] : std::exchange(early_, {})) receive(std::move(message), arrival);
 }
 
 void ClientSession::on_goodbye(const Goodbye& goodbye) {

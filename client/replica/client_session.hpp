@@ -29,6 +29,8 @@ inline constexpr TimeUs kServerSilenceUsMax = 15'000'000;  // with a ping a seco
 inline constexpr TimeUs kMoveEveryUs = 50'000;             // poses sent at most
 inline constexpr TimeUs kOffsetWaitUsMax =
     1'000'000;  // edits wait this long for the first pong, then go without
+/// Ready travels with the edits; messages of the other classes may overtake it. So many are held back for it.
+inline constexpr std::size_t kEarlyMessagesMax = 4096;
 inline constexpr TimeUs kAnswerUsMax = 10'000'000;  // an edit not answered by then is offered again
 
 struct SessionConfig {
@@ -118,6 +120,7 @@ class ClientSession {
   Replica replica_;
   ClockOffset clock_;
   std::vector<Message> outgoing_;
+  std::vector<std::pair<Message, Arrival>> early_;  // came before ready
   bool wants_close_ = false;
   std::optional<SessionEnd> end_;
   Hello hello_;

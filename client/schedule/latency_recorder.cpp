@@ -51,6 +51,11 @@ void LatencyRecorder::take(const ReplicaNews& news, const ClockOffset& clock, Ti
     own_.erase(reject.seq);
     unconfirmed_.erase(reject.seq);
   }
+  for (const ClientSequence seq : news.unseen) {
+    ++done_.unseen;
+    own_.erase(seq);
+    unconfirmed_.erase(seq);
+  }
   for (const ClientSequence seq : news.durable) {
     const auto own = own_.find(seq);
     if (own == own_.end()) continue;

@@ -49,6 +49,7 @@ struct LatencyReport {
   std::array<WayReport, kLatencyWayCount> ways;
   Histogram durable;           // own edits: submit -> known to be on disk
   std::uint64_t rejected = 0;  // own edits the server refused; in none of the above
+  std::uint64_t unseen = 0;  // own edits decided while we could not listen; not in own_confirmed and durable
   const WayReport& operator[](LatencyWay way) const { return ways[static_cast<std::size_t>(way)]; }
 };
 

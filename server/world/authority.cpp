@@ -31,12 +31,13 @@ void Authority::restack(const EditRecord& record) {
 }
 
 std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
-  if (decided_.knows(offer.op)) return RejectReason::already_decided;
-  if (const auto refusal = check_edit(offer.edit, limits_)) {
-    decided_.raise(offer.op);
+  if (decided_.knows(offer.op)) return decided_.answer_to(offer.op);
+  auto refusal = check_edit(offer.edit, limits_);
+  if (!refusal && !log_has_room) refusal = RejectReason::busy;
+  if (refusal) {
+    decided_.refuse(offer.op, *refusal);
     return refusal;
   }
-  if (!log_has_room) return RejectReason::busy;
   decided_.raise(offer.op);
   queue_.push_back(offer);
   return std::nullopt;

@@ -55,13 +55,12 @@ class Authority {
   void restack(const EditRecord& record);
 
   // ---- edits
-  /// Nothing: queued, and its client sequence is decided. Else why not:
-  ///   already_decided, busy (only if `log_has_room` is false), or what check_edit() says.
-  /// Final refusals decide the client sequence too; `busy` does not, so the client may offer it again before
-  /// it offers a later one.
+  /// Nothing: queued, and its client sequence is decided. Else why not, which decides it too: busy (if
+  /// `log_has_room` is false) or what check_edit() says. An edit decided before is answered as it was then:
+  /// with its refusal, or already_decided.
   std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
   /// Decides a client sequence without an edit: it was refused for a reason outside the authority's sight.
-  void refuse(const OperationId& op) { decided_.raise(op); }
+  void refuse(const OperationId& op, RejectReason reason) { decided_.refuse(op, reason); }
 
   std::size_t queued() const { return queue_.size(); }
   /// Orders as many queued edits as one commit message may carry; nothing if none is queued. Call again until
@@ -69,6 +68,8 @@ class Authority {
   std::optional<OrderedBatch> commit(const Now& now);
 
   Epoch epoch() const { return epoch_; }
+  /// The sequence that an edit which was ever accepted has at most.
+  Sequence sequence_bound() const { return head_ + queue_.size(); }
   /// Last sequence ordered.
   Sequence head() const { return head_; }
 

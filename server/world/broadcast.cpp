@@ -41,10 +41,12 @@ void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& b
   mark_stale(world, session, batch.touched, now);
   const WorldSession& mine = *world.find(session);
   const OperationId own{mine.author, mine.instance, 0};
-  for (const OrderedEdit& edit : batch.commit.edits) {
+  for (std::size_t i = 0; i < batch.commit.edits.size(); ++i) {
+    const OrderedEdit& edit = batch.commit.edits[i];
     if (edit.op.author != own.author || edit.op.instance != own.instance) continue;
     answer(world, session,
-           {edit.op.seq, RejectReason::already_decided, "applied; its commit did not fit the queue"});
+           {edit.op.seq, RejectReason::already_decided, "applied; its commit did not fit the queue",
+            batch.commit.first + i});
   }
 }
 

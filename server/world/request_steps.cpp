@@ -29,19 +29,22 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const double reach = world.config.reach_max;
   std::optional<RejectReason> refusal;
   if (world.authority.decided().knows(op)) {
-    refusal = RejectReason::already_decided;
+    refusal = world.authority.decided().answer_to(op);
   } else if (!mine.edits.take(1, now.steady_us)) {
-    refusal = RejectReason::rate_limited;  // like busy: not final, the client may offer it again
+    refusal = RejectReason::rate_limited;
+    world.authority.refuse(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
     refusal = RejectReason::out_of_reach;
-    world.authority.refuse(op);
+    world.authority.refuse(op, *refusal);
   } else {
     const bool has_room = world.accepts_edits && world.ports.log_has_room(world.authority.queued() + 1);
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit}, has_room);
   }
   if (!refusal) return;
   ++world.counters.edits_rejected;
-  answer(world, session, {request.client_seq, *refusal, ""});
+  const bool maybe_applied = *refusal == RejectReason::already_decided;
+  answer(world, session,
+         {request.client_seq, *refusal, "", maybe_applied ? world.authority.sequence_bound() : 0});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

@@ -68,8 +68,9 @@ struct Peer {
   // Server side.
   View view;
   std::set<ChunkCoord> subscribed;
-  std::set<ChunkCoord> stale;  // commits were dropped for it: a snapshot is owed
-  ClientSequence decided = 0;  // high-water mark
+  std::set<ChunkCoord> stale;        // commits were dropped for it: a snapshot is owed
+  ClientSequence decided = 0;        // high-water mark
+  std::set<ClientSequence> refused;  // until a crash
 };
 
 class Simulation {
@@ -180,27 +181,28 @@ class Simulation {
 
   void submit(Peer& peer) {
     const auto seq = peer.replica.submit(random_edit(rng_), now_, now_);
-    if (seq) offer(peer, *seq);
+    if (!seq) return;
+    owed_.insert({peer.author, 1, *seq});
+    offer(peer, *seq);
   }
 
   void offer(Peer& peer, ClientSequence seq) {
     const EditDescriptor edit = peer.replica.own_edits().all().at(seq).edit;
-    owed_.insert({peer.author, 1, seq});
     peer.upstream.push_back([this, &peer, seq, edit] { order(peer, seq, edit); });
   }
 
   void order(Peer& peer, ClientSequence seq, const EditDescriptor& edit) {
-    if (seq <= peer.decided) {
-      peer.control.push_back(
-          [this, &peer, seq] { peer.replica.receive(Reject{seq, RejectReason::already_decided, ""}, now_); });
-      return;
-    }
+    const auto answer = [&](RejectReason reason, Sequence bound) {
+      const Reject reject{seq, reason, "", bound};
+      peer.control.push_back([this, &peer, reject] { peer.replica.receive(reject, now_); });
+    };
+    if (peer.refused.contains(seq)) return answer(RejectReason::rate_limited, 0);
+    if (seq <= peer.decided) return answer(RejectReason::already_decided, world_.head());
     peer.decided = seq;
     if (rng_.below(8) == 0) {
       owed_.erase({peer.author, 1, seq});
-      peer.control.push_back(
-          [this, &peer, seq] { peer.replica.receive(Reject{seq, RejectReason::rate_limited, ""}, now_); });
-      return;
+      peer.refused.insert(seq);
+      return answer(RejectReason::rate_limited, 0);
     }
     const OperationId op{peer.author, 1, seq};
     log_.emplace_back(op, edit);
@@ -306,6 +308,7 @@ class Simulation {
     log_.resize(durable_);
     for (Peer& peer : peers_) {
       peer.decided = 0;
+      peer.refused.clear();
       for (const auto& [op, edit] : log_) {
         if (op.author == peer.author) peer.decided = std::max(peer.decided, op.seq);
       }

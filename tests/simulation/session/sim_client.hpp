@@ -35,6 +35,7 @@ class SimClient {
   const std::map<ClientSequence, EditDescriptor>& submitted() const { return submitted_; }
   const std::map<ClientSequence, RejectReason>& rejected() const { return rejected_; }
   const std::set<ClientSequence>& durable() const { return durable_; }
+  const std::set<ClientSequence>& unseen() const { return unseen_; }
   bool settled() {
     return session_.is_open() && session_.loaded() && replica().own_edits().all().empty() &&
            replica().awaiting_count() == 0;
@@ -70,6 +71,7 @@ class SimClient {
   ReplicaNews take_news() {
     ReplicaNews news = replica().take_news();
     durable_.insert(news.durable.begin(), news.durable.end());
+    unseen_.insert(news.unseen.begin(), news.unseen.end());
     return news;
   }
 
@@ -111,7 +113,7 @@ class SimClient {
   TimeUs retry_at_ = 0;
   std::map<ClientSequence, EditDescriptor> submitted_;
   std::map<ClientSequence, RejectReason> rejected_;
-  std::set<ClientSequence> durable_;
+  std::set<ClientSequence> durable_, unseen_;
 };
 
 }  // namespace runstone::test

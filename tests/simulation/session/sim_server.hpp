@@ -121,8 +121,7 @@ class SimServer final : public WorldPorts {
   Now now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
 
   // Faults, in occurrences per 1000.
-  std::uint32_t drop_commits =
-      0;  // a send that says "queued" and loses a commit: a bug no queue would have
+  std::uint32_t drop_commits = 0;  // a send that says "queued" and loses a commit: a bug no queue would have
   std::size_t server_queue_bytes = 200'000;
   bool log_full = false;
   std::uint64_t dropped = 0;

@@ -363,23 +363,34 @@ TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is no
   const ClientSequence seq = submit(fill);
   static_cast<void>(world.commit(mine(seq), fill));  // applied, but the connection broke before we heard
   static_cast<void>(world.commit(other(1), set({5, 4, 4}, kEmpty)));
-  CHECK(replica.open(opening(seq)).empty());
+  CHECK(replica.open(opening(seq)) == std::vector{seq});  // to ask how it was decided
+  CHECK(replica.counters().own_offered_again == 0);
   CHECK(replica.shown_at({5, 4, 4}) == Material{3});  // until the snapshot
   CHECK(replica.own_edits().all().size() == 1);       // and it is kept until durable
+  replica.receive(Reject{seq, RejectReason::already_decided, "", world.head()}, 2000);
+  CHECK(replica.take_news().rejects.empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({5, 4, 4}) == kEmpty);
   require_in_step(kHere);
+  replica.receive(Durable{world.epoch(), world.head() - 1});
+  CHECK(replica.own_edits().all().size() == 1);
   replica.receive(Durable{world.epoch(), world.head()});
   CHECK(replica.own_edits().all().empty());
+  const ReplicaNews news = replica.take_news();
+  CHECK(news.unseen == std::vector{seq});
+  CHECK(news.durable.empty());
 }
 
 TEST_CASE_METHOD(Fixture, "a prediction that was rejected while we were away goes with an equal snapshot",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  CHECK(replica.open(opening(seq)).empty());
+  CHECK(replica.open(opening(seq)) == std::vector{seq});
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
+  replica.receive(Reject{seq, RejectReason::rate_limited, "", 0}, 2000);  // the answer, heard at last
+  CHECK(replica.take_news().rejects.size() == 1);
+  CHECK(replica.own_edits().all().empty());
 }
 
 TEST_CASE_METHOD(Fixture, "already decided means: the commit was missed, so ask for the chunk", "[replica]") {
@@ -448,7 +459,7 @@ TEST_CASE_METHOD(Fixture, "a stale snapshot after a resumption still settles wha
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  CHECK(replica.open(opening(seq)).empty());  // rejected, unheard
+  static_cast<void>(replica.open(opening(seq)));  // rejected, unheard
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
   replica.receive(overtaken, kNow);
@@ -460,12 +471,26 @@ TEST_CASE_METHOD(Fixture, "a prediction whose edit is gone does not survive a cr
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  CHECK(replica.open(opening(seq)).empty());  // rejected, unheard; at once durable by the bound
+  static_cast<void>(replica.open(opening(seq)));
+  replica.receive(Reject{seq, RejectReason::already_decided, "", 0}, 2000);  // nobody knows how any more
   CHECK(replica.own_edits().all().empty());
   world.restart({});
   CHECK(replica.open(opening(0)).empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
+}
+
+TEST_CASE_METHOD(Fixture, "a log that grew past its old end with other edits does not vouch for ours",
+                 "[replica]") {
+  load(kHere);
+  take(world.commit(other(1), set({3, 4, 5}, 2)));  // sequence 1, seen, lost in the crash
+  world.restart({});
+  static_cast<void>(world.commit(other(2), set({30, 4, 5}, 2)));  // sequence 1 again, elsewhere, and durable
+  static_cast<void>(replica.open(opening(0, 1)));
+  CHECK(replica.confirmed(kHere) == nullptr);
+  replica.receive(world.snapshot(kHere.at), kNow);
+  CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
+  require_in_step(kHere);
 }
 
 TEST_CASE_METHOD(Fixture,

@@ -169,6 +169,18 @@ TEST_CASE("a rejected edit is counted as rejected and as nothing else but its pr
   CHECK(report.durable.count() == 0);
 }
 
+TEST_CASE("an own edit whose commit was missed is counted as unseen, not as late", "[schedule]") {
+  LatencyRecorder recorder;
+  recorder.submitted(1, 1000);
+  ReplicaNews all = news({}, {own(true, {}, 1100)});
+  all.unseen = {1};
+  recorder.take(all, clock_ahead(), 1100);
+  const LatencyReport report = recorder.report();
+  CHECK(report.unseen == 1);
+  CHECK(report[LatencyWay::own_confirmed].edits == 0);
+  CHECK(report.durable.count() == 0);
+}
+
 TEST_CASE("edits without effect and edits that left the view are told apart", "[schedule]") {
   LatencyRecorder recorder;
   recorder.take(news({}, {remote({})}), clock_ahead(), 350);

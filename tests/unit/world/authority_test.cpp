@@ -100,7 +100,7 @@ TEST_CASE("a client sequence is decided once, by applying or by a final refusal"
         RejectReason::already_decided);  // not yet committed
   CHECK(authority.submit(offer(15, box(0, 1), 1), true) == RejectReason::already_decided);
   CHECK(authority.submit(offer(21, box(0, 1), 99), true) == RejectReason::unknown_material);
-  CHECK(authority.submit(offer(21, box(0, 1), 1), true) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(21, box(0, 1), 1), true) == RejectReason::unknown_material);  // as it was told
   // Another instance of the same author, and another author, count for themselves.
   EditOffer other = offer(1, box(0, 1), 1);
   other.op.instance = 78;
@@ -109,15 +109,27 @@ TEST_CASE("a client sequence is decided once, by applying or by a final refusal"
   CHECK(authority.commit(kNow)->records.size() == 3);
 }
 
-TEST_CASE("busy is not final: the same client sequence may be offered again", "[world]") {
+TEST_CASE("every refusal is final, busy too, and is told again to whoever asks again", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   CHECK(authority.submit(offer(1, box(0, 1), 1), false) == RejectReason::busy);
-  CHECK(authority.decided().of(1, 77) == 0);
+  CHECK(authority.decided().of(1, 77) == 1);
   CHECK(authority.queued() == 0);
-  CHECK_FALSE(authority.submit(offer(1, box(0, 1), 1), true).has_value());
+  CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
+  CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1), true).has_value());
+  CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
   // What is decided or wrong is told even while the log is full.
-  CHECK(authority.submit(offer(1, box(0, 1), 1), false) == RejectReason::already_decided);
-  CHECK(authority.submit(offer(2, box(0, 1), 99), false) == RejectReason::unknown_material);
+  CHECK(authority.submit(offer(2, box(0, 1), 1), false) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(3, box(0, 1), 99), false) == RejectReason::unknown_material);
+}
+
+TEST_CASE("an instance's oldest refusals are forgotten beyond the bound", "[world]") {
+  DecidedMarks marks;
+  for (ClientSequence seq = 1; seq <= DecidedMarks::kRefusalsMax + 1; ++seq) {
+    marks.refuse({1, 7, seq}, RejectReason::busy);
+  }
+  CHECK(marks.answer_to({1, 7, 1}) == RejectReason::already_decided);
+  CHECK(marks.answer_to({1, 7, 2}) == RejectReason::busy);
+  CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_decided);
 }
 
 TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {

@@ -331,12 +331,13 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(rejects[3].reason == RejectReason::busy);
   CHECK(rejects[3].client_seq == 4);
   bench.ports.log_room = true;
-  bench.edit(1, 4, kAtOrigin);
+  bench.edit(1, 4, kAtOrigin);  // refused for good, and told so again
+  bench.edit(1, 5, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.ports.records.size() == 2);
 }
 
-TEST_CASE("a session that edits too fast is told so and loses nothing", "[world]") {
+TEST_CASE("a session that edits too fast is told so, and goes on later", "[world]") {
   WorldConfig c = config();
   c.edits_per_second = 10;
   c.edit_burst = 2;
@@ -348,7 +349,7 @@ TEST_CASE("a session that edits too fast is told so and loses nothing", "[world]
   CHECK(rejects[0].client_seq == 3);
   CHECK(rejects[0].reason == RejectReason::rate_limited);
   bench.tick(100'000);
-  bench.edit(1, 3, kAtOrigin);
+  bench.edit(1, 4, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.server.head() == 3);
 }
