@@ -117,9 +117,10 @@ struct Commit {
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 
-/// Values are on the wire.
+/// Values are on the wire. Every reason but already_decided uses up the client sequence: another attempt
+/// takes a new one.
 enum class RejectReason : std::uint8_t {
-  busy = 1,             // the log is full: try again later
+  busy = 1,             // the log is full
   already_decided = 2,  // this client sequence was applied or rejected before: see the chunks
   unknown_material = 3,
   too_large = 4,  // volume or touched chunks over the limit
