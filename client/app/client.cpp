@@ -84,7 +84,6 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
 }
 
 // ---- network
-// ---------------------------------------------------------------------------------------------------
 
 void Client::take_events() {
   const TimeUs start_us = steady_now_us();
@@ -160,7 +159,6 @@ void Client::flush() {
 }
 
 // ---- player
-// ----------------------------------------------------------------------------------------------------
 
 void Client::take_input(TimeUs now_us) {
   if (!screen_ || screen_->window() == nullptr) return;
@@ -196,7 +194,6 @@ void Client::follow_player() {
 }
 
 // ---- meshes
-// ----------------------------------------------------------------------------------------------------
 
 void Client::take_news() {
   const ReplicaNews news = session_.replica().take_news();
@@ -240,7 +237,6 @@ bool Client::meshing_idle() const {
 }
 
 // ---- frames
-// ----------------------------------------------------------------------------------------------------
 
 std::vector<Marker> Client::markers() const {
   std::vector<Marker> out;
@@ -308,7 +304,6 @@ std::string Client::screenshot_path(const std::string& file) const {
 }
 
 // ---- end
-// -------------------------------------------------------------------------------------------------------
 
 std::optional<int> Client::exit_code(TimeUs now_us) {
   const auto& end = session_.end();
@@ -374,7 +369,6 @@ void Client::finish(int code) {
 }
 
 // ---- what a script may do
-// --------------------------------------------------------------------------------------
 
 void Client::move_to(const WorldPos& eye) {
   player_.move_to(eye);

@@ -67,7 +67,6 @@ void ScriptRunner::start() {
 }
 
 // ---- words to values
-// -------------------------------------------------------------------------------------------
 
 std::optional<WorldPos> ScriptRunner::resolve(const ScriptPosition& position) {
   using Base = ScriptCoordinate::Base;
@@ -119,7 +118,6 @@ ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
 }
 
 // ---- moving
-// ----------------------------------------------------------------------------------------------------
 
 ScriptRunner::Progress ScriptRunner::run(const script::Move& c) {
   const auto to = resolve(c.to);
@@ -167,7 +165,6 @@ ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
 }
 
 // ---- edits
-// -----------------------------------------------------------------------------------------------------
 
 ScriptRunner::Progress ScriptRunner::run(const script::Set& c) {
   const auto at = resolve_voxel(c.at);
@@ -243,7 +240,6 @@ ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
 }
 
 // ---- waiting, looking
-// ------------------------------------------------------------------------------------------
 
 ScriptRunner::Progress ScriptRunner::run(const script::Wait& c) {
   start();
@@ -313,7 +309,6 @@ ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
 }
 
 // ---- flow
-// ------------------------------------------------------------------------------------------------------
 
 ScriptRunner::Progress ScriptRunner::run(const script::Repeat& c) {
   if (c.times == 0) {

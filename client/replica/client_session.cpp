@@ -16,7 +16,6 @@ bool is_final(GoodbyeReason reason) {
 ClientSession::ClientSession(SessionConfig config) : config_(std::move(config)) {}
 
 // ---- the connection
-// --------------------------------------------------------------------------------------------
 
 void ClientSession::connected(const Nonce& nonce, TimeUs now_us) {
   disconnected();
@@ -97,7 +96,6 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
 }
 
 // ---- handshake
-// -------------------------------------------------------------------------------------------------
 
 void ClientSession::on_welcome(Welcome welcome) {
   if (welcome.protocol != kProtocolVersion) {
@@ -148,7 +146,6 @@ void ClientSession::on_goodbye(const Goodbye& goodbye) {
 }
 
 // ---- while open
-// ------------------------------------------------------------------------------------------------
 
 void ClientSession::tick(TimeUs now_us) {
   if (state_ == SessionState::offline || wants_close_) return;

@@ -21,18 +21,19 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "client/replica/news_book.hpp"
 #include "client/replica/own_edits.hpp"
 #include "client/replica/replica_news.hpp"
+#include "client/replica/tracked_chunk.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/edit_stack.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
-
-using ShownPtr = std::shared_ptr<const RunChunk>;
 
 inline constexpr std::size_t kInboxEditsMax = 1024;   // edits held back per chunk
 inline constexpr TimeUs kRequestAgainUs = 2'000'000;  // a chunk asked for is asked for again after this
@@ -76,7 +77,7 @@ class Replica {
   void tick(TimeUs now_us);
 
   /// What changed since the last call.
-  ReplicaNews take_news();
+  ReplicaNews take_news() { return news_.take(); }
   /// Chunks to ask the server for, ascending.
   std::vector<ChunkKey> take_requests();
 
@@ -102,45 +103,20 @@ class Replica {
   const ReplicaCounters& counters() const { return counters_; }
 
  private:
-  struct EditInfo;
-  /// An edit that waits to be applied to one chunk.
-  struct Inbound {
-    std::shared_ptr<const EditInfo> info;
-    Sequence previous = 0;
-  };
-  /// An own edit that confirmed does not contain yet.
-  struct Pending {
-    ClientSequence seq = 0;
-    EditDescriptor edit;
-    Sequence decided_at = 0;      // 0: not answered yet
-    bool until_snapshot = false;  // answered while we could not listen: the next snapshot settles it
-  };
-  struct Entry {
-    ChunkPtr confirmed;  // null until the first snapshot, and after a restart that distrusts it
-    ShownPtr shown;      // null until the first snapshot
-    std::uint64_t serial = 0;
-    std::vector<Pending> pending;  // ascending by seq
-    std::vector<Inbound> inbox;    // ascending by sequence
-    Sequence latest = 0;           // newest edit of this chunk seen on this connection
-    bool current = false;          // a snapshot of it came on this connection
-    bool awaiting = false;         // asked for a snapshot: nothing else is taken
-    std::optional<TimeUs> requested_us;
-  };
-
-  Entry& entry_for(const ChunkKey& key);
-  void settle(const ChunkKey& key, Entry& entry, bool from_snapshot, TimeUs now_us);
-  void request(const ChunkKey& key, Entry& entry, TimeUs now_us);
-  void show(const ChunkKey& key, Entry& entry, ShownPtr next, const std::vector<EditNews*>& cause);
-  ShownPtr predict(const ChunkKey& key, const Entry& entry);
+  TrackedChunk& track(const ChunkKey& key);
+  TrackedChunk* find(const ChunkKey& key);
+  const TrackedChunk* find(const ChunkKey& key) const;
+  void settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapshot, TimeUs now_us);
   void settle_own();
-  EditNews& news_of(const EditInfo& info, TimeUs now_us);
-  ChunkNews& chunk_news(const ChunkKey& key);
+  void request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
+  void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next, std::span<EditNews* const> cause);
+  void show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause);
   bool is_own(const OperationId& op) const;
   VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }
 
   std::optional<Opening> opening_;
   std::optional<View> view_;
-  std::map<ChunkKey, Entry> entries_;
+  std::map<ChunkKey, TrackedChunk> chunks_;
   std::size_t confirmed_count_ = 0;
   std::size_t current_count_ = 0;
   OwnEdits own_;
@@ -150,11 +126,7 @@ class Replica {
   ApplyScratch scratch_;
   ReplicaCounters counters_;
 
-  std::map<ChunkKey, ChunkNews> chunk_news_;
-  std::vector<std::unique_ptr<EditNews>> edit_news_;
-  std::map<OperationId, EditNews*> confirmed_news_;  // those of edit_news_ that are not predictions
-  std::vector<RejectNews> reject_news_;
-  std::vector<ClientSequence> durable_news_, unseen_news_;
+  NewsBook news_;
   std::vector<ChunkKey> requests_;
 };
 
