@@ -38,8 +38,7 @@ NetLimits net_limits(const ServerConfig& config) {
 
 ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config,
                        Store& store, const Generator& generator, std::function<void()> on_failure)
-    : io_(io),
-      workers_(workers),
+    : workers_(workers),
       config_(config),
       store_(store),
       generator_(generator),
@@ -292,6 +291,7 @@ void ServerCore::on_disconnected(SessionId session) {
 // --------------------------------------------------------------------------------------------------
 
 NetSession* ServerCore::find(SessionId session) {
+  RUNSTONE_ASSERT(strand_.running_in_this_thread());
   const auto found = sessions_.find(session);
   return found == sessions_.end() ? nullptr : found->second.get();
 }
@@ -329,6 +329,7 @@ void ServerCore::log_append(std::vector<NewPlayer> players, std::vector<EditReco
 }
 
 void ServerCore::load_chunk(const ChunkKey& key) {
+  RUNSTONE_ASSERT(strand_.running_in_this_thread());
   asio::post(workers_, [this, key] {
     auto loaded = chunks_->load(key);
     asio::post(strand_, [this, key, loaded = std::move(loaded)]() mutable {

@@ -75,7 +75,6 @@ class ServerCore final : public WorldPorts, public NetEvents {
   void check_settled();
   NetSession* find(SessionId session);
 
-  asio::io_context& io_;
   asio::thread_pool& workers_;
   const ServerConfig& config_;
   Store& store_;
