@@ -13,17 +13,21 @@
 
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
-#include "common/mesh/visibility.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr TimeUs kFrameUs = 16'000;               // between two frames that only show movement
-constexpr TimeUs kLoadingFrameUs = 100'000;       // off screen, between frames that only show new terrain
-constexpr TimeUs kRestUs = 10'000;                // longest pause of the loop: session ticks
-constexpr TimeUs kScreenshotWaitUs = 10'000'000;  // a picture waits this long for meshes under way
+constexpr TimeUs kRestUs = 10'000;  // longest pause of the loop: session ticks
+constexpr TimeUs kTitleUs = 500'000;
 constexpr TimeUs kEventsUs = 8'000;         // messages taken per turn before meshes and frames get theirs
 constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
+
+/// Null where nothing is to be drawn.
+std::unique_ptr<Screen> make_screen(const ClientOptions& options) {
+  if (!options.render) return nullptr;
+  return options.headless ? Screen::headless(options.width, options.height)
+                          : Screen::window(options.width, options.height, "Runstone");
+}
 
 SessionConfig session_config(const ClientOptions& options) {
   SessionConfig config;
@@ -42,13 +46,8 @@ Client::Client(ClientOptions options, const Script* script)
     : options_(std::move(options)),
       session_(session_config(options_)),
       pins_known_(session_.pinned().size()),
-      recorder_(options_.render ? LatencyStage::presented : LatencyStage::meshed),
-      planner_(session_.replica()) {
-  if (options_.render) {
-    screen_ = options_.headless ? Screen::headless(options_.width, options_.height)
-                                : Screen::window(options_.width, options_.height, "Runstone");
-    spdlog::info("renderer={}", screen_->name());
-  }
+      picture_(session_.replica(), make_screen(options_), options_.workers, [this] { wake_.notify(); }) {
+  spdlog::info("renderer={}", picture_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, static_cast<ScriptHost&>(*this));
   started_us_ = steady_now_us();
   lost_us_ = started_us_;
@@ -72,8 +71,7 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
     session_.tick(now_us);
     flush();
     take_news();
-    take_meshes();
-    push_jobs();
+    picture_.mesh();
     draw(now_us);
     if (stop != 0) wish_to_end_ = kExitOk;
     code = exit_code(steady_now_us());
@@ -94,8 +92,7 @@ void Client::take_events() {
     if (auto* received = std::get_if<NetReceived>(&event)) on_received(*received);
     if (steady_now_us() - start_us > kEventsUs) {
       take_news();
-      take_meshes();
-      push_jobs();
+      picture_.mesh();
     }
   }
 }
@@ -140,13 +137,7 @@ void Client::world_opened() {
   spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(), welcome.epoch,
                welcome.head, welcome.durable, welcome.chunk_edge);
   if (openings_seen_ == 1) player_.move_to(welcome.spawn);
-  if (!pool_ || materials_ != welcome.materials) {
-    materials_ = welcome.materials;
-    if (screen_) screen_->renderer().set_materials(materials_);
-    pool_.reset();
-    pool_ = std::make_unique<MeshPool>(VisibilityTable(materials_), options_.workers, steady_now_ns,
-                                       [this] { wake_.notify(); });
-  }
+  picture_.set_materials(welcome.materials);
   if (!options_.key_file.empty() && session_.pinned().size() != pins_known_) {
     save_pinned_servers(options_.key_file, session_.pinned());
     pins_known_ = session_.pinned().size();
@@ -161,17 +152,18 @@ void Client::flush() {
 // ---- player
 
 void Client::take_input(TimeUs now_us) {
-  if (!screen_ || screen_->window() == nullptr) return;
-  const WindowInput input = screen_->window()->poll();
+  Screen* const screen = picture_.screen();
+  if (screen == nullptr || screen->window() == nullptr) return;
+  const WindowInput input = screen->window()->poll();
   const double seconds = static_cast<double>(now_us - input_us_) / 1e6;
   input_us_ = now_us;
   if (input.close || input.escape) wish_to_end_ = kExitOk;
   if (runner_) return;  // the script steers
-  player_.steer(input, std::min(seconds, 0.1), materials_.size());
+  player_.steer(input, std::min(seconds, 0.1), picture_.materials().size());
   for (int i = 0; i < input.remove_clicks; ++i) click(false, now_us);
   for (int i = 0; i < input.place_clicks; ++i) click(true, now_us);
   if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
-  picture_changed_ = true;
+  picture_.moved();
 }
 
 void Client::click(bool place, TimeUs now_us) {
@@ -188,55 +180,20 @@ void Client::follow_player() {
   const View wished{centre, options_.view_radius, options_.view_radius_v};
   if (session_.view().centre != centre) {
     session_.set_view(wished);
-    planner_.view_changed();
+    picture_.view_changed();
   }
-  planner_.set_eye(centre);
+  picture_.set_eye(centre);
 }
 
-// ---- meshes
+// ---- picture
 
 void Client::take_news() {
   const ReplicaNews news = session_.replica().take_news();
-  recorder_.take(news, session_.clock(), steady_now_us());
-  planner_.take(news.chunks);
-  for (const ChunkNews& chunk : news.chunks) {
-    if (!chunk.removed || !screen_) continue;
-    screen_->renderer().remove(chunk.key);
-    picture_changed_ = true;
-  }
+  picture_.take(news, session_.clock(), steady_now_us());
   for (const RejectNews& reject : news.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
   }
 }
-
-void Client::take_meshes() {
-  if (!pool_) return;
-  for (const MeshResult& result : pool_->take_results()) {
-    chunk_stats_.mesh_ns.add(result.mesh_ns);
-    if (!planner_.accept(result.key, result.number)) continue;
-    recorder_.meshed(result.key, result.serial, result.meshed_us);
-    if (!screen_) continue;
-    screen_->renderer().upload(result.key, result.edge, result.mesh);
-    recorder_.uploaded(result.key, result.serial, steady_now_us());
-    picture_changed_ = true;
-    edits_uploaded_ = edits_uploaded_ || recorder_.open_edits() != 0;
-  }
-}
-
-void Client::push_jobs() {
-  if (!pool_) return;
-  while (pool_->in_flight() < pool_->capacity()) {
-    auto job = planner_.next();
-    if (!job) return;
-    pool_->push(std::move(*job));
-  }
-}
-
-bool Client::meshing_idle() const {
-  return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0);
-}
-
-// ---- frames
 
 std::vector<Marker> Client::markers() const {
   std::vector<Marker> out;
@@ -250,7 +207,7 @@ std::vector<Marker> Client::markers() const {
     body.b = static_cast<std::uint8_t>(96 + mix64(author + 2) % 160);
     out.push_back(body);
   }
-  if (!screen_ || screen_->window() == nullptr) return out;
+  if (options_.headless) return out;
   if (const auto hit = pick()) {
     const auto at = [](std::int32_t v) { return v - 0.002; };
     out.push_back(
@@ -266,37 +223,25 @@ std::vector<Marker> Client::markers() const {
 }
 
 void Client::draw(TimeUs now_us) {
-  if (!screen_) return;
-  const bool on_screen = screen_->window() != nullptr;
-  const bool screenshot_due =
-      !screenshots_.empty() && (meshing_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
-  const TimeUs pause = on_screen ? kFrameUs : kLoadingFrameUs;
-  const bool due = picture_changed_ && now_us - drawn_us_ >= pause;
-  if (!due && !screenshot_due && !edits_uploaded_) return;
   const double edge = std::max(16, session_.replica().chunk_edge());
-  screen_->draw(player_.camera((options_.view_radius + 1.5) * edge), markers());
-  const TimeUs done_us = steady_now_us();
-  recorder_.presented(done_us);
-  drawn_us_ = done_us;
-  picture_changed_ = false;
-  edits_uploaded_ = false;
+  const Camera camera = player_.camera((options_.view_radius + 1.5) * edge);
+  if (!picture_.draw(now_us, camera, [this] { return markers(); })) return;
   ++frames_;
-  if (screenshot_due) {
-    const Image image = screen_->renderer().read_image();
-    for (const std::string& file : std::exchange(screenshots_, {})) {
-      if (!write_png(screenshot_path(file), image)) spdlog::error("cannot write {}", screenshot_path(file));
-    }
-  }
-  if (on_screen && done_us - title_us_ > 500'000) {
-    const WorldPos at = player_.eye();
-    const Material held = player_.held();
-    screen_->window()->set_title(fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
-                                             frames_ * 1e6 / static_cast<double>(done_us - title_us_),
-                                             materials_.knows(held) ? materials_[held].name : "", at.x, at.y,
-                                             at.z, lost_us_ ? "  (connecting)" : ""));
-    title_us_ = done_us;
-    frames_ = 0;
-  }
+  show_title(now_us);
+}
+
+void Client::show_title(TimeUs now_us) {
+  Window* const window = picture_.screen()->window();
+  if (window == nullptr || now_us - title_us_ < kTitleUs) return;
+  const WorldPos at = player_.eye();
+  const Material held = player_.held();
+  const MaterialTable& materials = picture_.materials();
+  window->set_title(fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
+                                frames_ * 1e6 / static_cast<double>(now_us - title_us_),
+                                materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
+                                lost_us_ ? "  (connecting)" : ""));
+  title_us_ = now_us;
+  frames_ = 0;
 }
 
 std::string Client::screenshot_path(const std::string& file) const {
@@ -311,7 +256,7 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
     std::fprintf(stderr, "runstone-client: %s\n", end->text.c_str());
     return kExitNoStart;
   }
-  if (runner_ && runner_->finished() && screenshots_.empty()) {
+  if (runner_ && runner_->finished() && picture_.screenshots_done()) {
     return runner_->failures().empty() && !drift_found() ? kExitOk : kExitFailed;
   }
   if (wish_to_end_) return drift_found() ? kExitFailed : *wish_to_end_;
@@ -326,19 +271,18 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
 
 void Client::rest(TimeUs now_us) {
   TimeUs pause = kRestUs;
-  if (screen_ && screen_->window() != nullptr) pause = 1'000;  // the swap paces the loop
+  if (options_.render && !options_.headless) pause = 1'000;  // the swap paces the loop
   if (runner_ && runner_->due_us()) pause = std::min(pause, *runner_->due_us() - now_us);
   if (pause > 0) wake_.wait(std::chrono::microseconds(pause));
 }
 
 ClientReport Client::report() const {
   ClientReport out;
-  out.renderer = screen_ ? screen_->name() : "none";
+  out.renderer = picture_.renderer_name();
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
-  out.latency = recorder_.report();
+  out.latency = picture_.recorder().report();
   out.chunks = chunk_stats_;
-  out.chunks.mesh_jobs = planner_.jobs();
-  out.chunks.chunks_meshed = planner_.chunks_meshed();
+  picture_.report(out.chunks);
   const NetStats& net = net_->stats();
   out.net.bytes_received = net.bytes_received;
   out.net.bytes_sent = net.bytes_sent;
@@ -372,22 +316,22 @@ void Client::finish(int code) {
 
 void Client::move_to(const WorldPos& eye) {
   player_.move_to(eye);
-  picture_changed_ = true;
+  picture_.moved();
 }
 
 void Client::look(double yaw, double pitch) {
   player_.look(yaw, pitch);
-  picture_changed_ = true;
+  picture_.moved();
 }
 
 std::optional<Material> Client::material(std::string_view name) const {
   unsigned id = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
   if (error == std::errc{} && end == name.data() + name.size()) {
-    if (id >= materials_.size()) return std::nullopt;
+    if (id >= picture_.materials().size()) return std::nullopt;
     return static_cast<Material>(id);
   }
-  return materials_.find(name);
+  return picture_.materials().find(name);
 }
 
 std::optional<RayHit> Client::pick() const {
@@ -411,17 +355,15 @@ std::optional<std::int32_t> Client::surface(std::int32_t x, std::int32_t z) cons
 bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
   const auto seq = session_.submit(edit, due_us, now_us);
   if (!seq) {
-    recorder_.not_submitted();
+    picture_.recorder().not_submitted();
     spdlog::warn("edit not taken: {}", seq.error().what);
     return false;
   }
-  recorder_.submitted(*seq, due_us);
+  picture_.recorder().submitted(*seq, due_us);
   return true;
 }
 
-bool Client::loaded() const {
-  return session_.loaded() && planner_.dirty_count() == 0 && meshing_idle() && !edits_uploaded_;
-}
+bool Client::loaded() const { return session_.loaded() && picture_.is_settled(); }
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.
@@ -430,9 +372,8 @@ bool Client::synced(std::uint64_t mark) const {
 }
 
 bool Client::screenshot(const std::string& file) {
-  if (!screen_) return false;
-  screenshots_.push_back(file);
-  screenshot_since_us_ = steady_now_us();
+  if (picture_.screen() == nullptr) return false;
+  picture_.request_screenshot(screenshot_path(file), steady_now_us());
   return true;
 }
 

@@ -1,7 +1,7 @@
-// Client: the main thread of runstone-client. It owns the session, the planner, the screen and the script,
-// and passes between them what the network thread and the mesh workers hand over. Nothing here waits for a
-// peer: a turn takes what is there, and the next one comes when there is more (WakeUp), a frame is due, or
-// the script wants to go on.
+// Client: the main thread of runstone-client. It owns the session, the picture and the script, and passes
+// between them what the network thread and the mesh workers hand over. Nothing here waits for a peer: a turn
+// takes what is there, and the next one comes when there is more (WakeUp), a frame is due, or the script
+// wants to go on.
 #pragma once
 #include <csignal>
 #include <cstdint>
@@ -11,17 +11,14 @@
 #include <vector>
 
 #include "client/app/options.hpp"
+#include "client/app/picture.hpp"
 #include "client/app/player.hpp"
 #include "client/app/report.hpp"
-#include "client/app/screen.hpp"
 #include "client/bots/script_host.hpp"
 #include "client/bots/script_runner.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/replica/client_session.hpp"
-#include "client/schedule/latency_recorder.hpp"
-#include "client/schedule/mesh_planner.hpp"
-#include "client/schedule/mesh_pool.hpp"
 
 namespace runstone {
 
@@ -51,14 +48,12 @@ class Client final : private ScriptHost {
   void follow_player();
   void flush();
   void take_news();
-  void take_meshes();
-  void push_jobs();
   void draw(TimeUs now_us);
+  void show_title(TimeUs now_us);
   std::optional<int> exit_code(TimeUs now_us);
   void rest(TimeUs now_us);
   void finish(int code);
 
-  bool meshing_idle() const;
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
   std::vector<Marker> markers() const;
   ClientReport report() const;
@@ -80,18 +75,14 @@ class Client final : private ScriptHost {
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
   bool screenshot(const std::string& file) override;
-  bool screenshot_done() const override { return screenshots_.empty(); }
+  bool screenshot_done() const override { return picture_.screenshots_done(); }
   bool digests(const std::string& file) override { return write_digests(file, session_); }
 
   const ClientOptions options_;
   WakeUp wake_;
   ClientSession session_;
   std::size_t pins_known_ = 0;
-  LatencyRecorder recorder_;
-  MeshPlanner planner_;
-  std::unique_ptr<Screen> screen_;  // null: nothing is drawn
-  std::unique_ptr<MeshPool> pool_;  // once the materials are known
-  MaterialTable materials_;
+  Picture picture_;
   std::optional<ScriptRunner> runner_;
   Player player_;
   ChunkStats chunk_stats_;
@@ -103,12 +94,8 @@ class Client final : private ScriptHost {
   std::string last_failure_;        // why the last attempt to connect failed
   std::optional<int> wish_to_end_;  // the user or the server ends the program
 
-  bool picture_changed_ = true;  // since the last frame
-  bool edits_uploaded_ = false;  // a mesh with edits is on the GPU and not on the screen
-  TimeUs drawn_us_ = 0, input_us_ = 0, title_us_ = 0;
-  std::uint32_t frames_ = 0;
-  std::vector<std::string> screenshots_;  // to take
-  TimeUs screenshot_since_us_ = 0;
+  TimeUs input_us_ = 0, title_us_ = 0;
+  std::uint32_t frames_ = 0;  // since the title was set
 
   std::unique_ptr<NetClient> net_;  // last: its thread wakes what is above
 };
