@@ -1,6 +1,7 @@
 #include "client/app/report.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <fstream>
 #include <iterator>
@@ -167,8 +168,17 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
                    static_cast<double>(session.clock().error_us()) / 1000);
   }
   const ChunkStats& chunks = report.chunks;
-  fmt::format_to(into, "snapshots: {} ({} bytes on the wire, {} raw)\n", chunks.snapshots, chunks.wire_bytes,
-                 chunks.raw_bytes);
+  const auto each = [&chunks](std::uint64_t total) {
+    return chunks.snapshots == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(chunks.snapshots);
+  };
+  const Extent extent = Extent::cube(static_cast<unsigned>(std::max(session.replica().chunk_edge(), 0)));
+  fmt::format_to(
+      into,
+      "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as raw runs, {} as a "
+      "dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
+      chunks.snapshots, chunks.runs.mean().value_or(0), each(chunks.wire_bytes), each(chunks.raw_bytes),
+      extent.volume() * sizeof(Material), chunks.unpack_ns.mean().value_or(0) / 1000,
+      chunks.mesh_ns.mean().value_or(0) / 1000);
   fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks), chunks.mesh_jobs,
                  chunks.chunks_meshed);
   fmt::format_to(into, "drift: {} of {} audited\n", session.replica().counters().drifted,
