@@ -13,6 +13,9 @@ using TimeUs = std::int64_t;  // microseconds; each use says of which clock
 using LogId = std::uint32_t;     // 0 today; one per shard later
 using Epoch = std::uint32_t;     // raised by each server start; 0 means "before the first start"
 using Sequence = std::uint64_t;  // place in the log, from 1, without gaps; 0 means "base"
+/// Largest sequence and client sequence. Databases have signed integers: beyond it, a mark would be the
+/// smallest number instead of the largest.
+inline constexpr Sequence kSequenceMax = 0x7fff'ffff'ffff'ffff;
 
 /// Version of a chunk: the last edit that touched it by geometry, even if no voxel changed.
 /// (0, 0) is the base (imported or generated, never edited). Compared lexicographically.
@@ -24,7 +27,7 @@ struct Version {
 
 using AuthorId = std::uint32_t;        // row in `player`; 0 is the server itself
 using ClientInstance = std::uint64_t;  // random, drawn once per client process
-using ClientSequence = std::uint64_t;  // counts a client instance's edits, from 1
+using ClientSequence = std::uint64_t;  // counts a client instance's edits, 1 .. kSequenceMax
 
 /// Names one edit as its author sent it, before the world ordered it: an edit offered twice is applied once.
 struct OperationId {

@@ -139,6 +139,8 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
       tag > static_cast<std::uint8_t>(EditKind::fill_sphere)) {
     r.reject(ErrorCode::unknown_kind, "unknown edit kind");
   }
+  // The bound of these kinds; a record has room for more.
+  if (in.size() > kDescriptorBytesMax) r.reject(ErrorCode::limit_exceeded, "descriptor too long");
   const std::uint8_t mask = r.u8();
   if (mask > static_cast<std::uint8_t>(MaskKind::only_material)) {
     r.reject(ErrorCode::unknown_kind, "unknown mask kind");

@@ -8,12 +8,22 @@
 
 namespace runstone {
 
+Result<void> validate_numbers(const EditRecord& record) {
+  const Sequence seq = record.version.seq;
+  if (seq == 0) return fail(ErrorCode::bad_value, "sequence 0 is the base, not an edit");
+  if (seq > kSequenceMax) return fail(ErrorCode::bad_value, "sequence exceeds 63 bits");
+  if (record.op.seq > kSequenceMax) return fail(ErrorCode::bad_value, "client sequence exceeds 63 bits");
+  if (record.subject >= seq) return fail(ErrorCode::bad_value, "subject is not an earlier edit");
+  return {};
+}
+
 Bytes encode_record(const EditRecord& record) {
-  RUNSTONE_ASSERT(record.version.seq >= 1);
+  RUNSTONE_ASSERT(validate_numbers(record).has_value());
   RUNSTONE_ASSERT(static_cast<std::uint8_t>(record.cause) <= kCauseMax);
   Bytes out;
   ByteWriter w(out);
   w.u8(kEditRecordVersion);
+  w.varint(record.log);
   w.varint(record.version.epoch);
   w.varint(record.version.seq);
   w.varint(record.op.author);
@@ -21,6 +31,7 @@ Bytes encode_record(const EditRecord& record) {
   w.varint(record.op.seq);
   w.svarint(record.time_us);
   w.u8(static_cast<std::uint8_t>(record.cause));
+  w.varint(record.subject);
   const VoxelBox box = bounding_box(record.edit);
   w.svarint(box.min.x);
   w.svarint(box.min.y);
@@ -39,9 +50,9 @@ Result<EditRecord> decode_record(ByteView in) {
   ByteReader r(in);
   EditRecord record;
   if (r.u8() != kEditRecordVersion) r.reject(ErrorCode::bad_version, "unknown edit record version");
+  record.log = static_cast<LogId>(r.varint_max(kU32Max, "log id exceeds 32 bits"));
   record.version.epoch = static_cast<Epoch>(r.varint_max(kU32Max, "epoch exceeds 32 bits"));
   record.version.seq = r.varint();
-  if (record.version.seq == 0) r.reject(ErrorCode::bad_value, "sequence 0 is the base, not an edit");
   record.op.author = static_cast<AuthorId>(r.varint_max(kU32Max, "author exceeds 32 bits"));
   record.op.instance = r.u64();
   record.op.seq = r.varint();
@@ -49,11 +60,19 @@ Result<EditRecord> decode_record(ByteView in) {
   const std::uint8_t cause = r.u8();
   if (cause > kCauseMax) r.reject(ErrorCode::bad_value, "unknown cause");
   record.cause = static_cast<Cause>(cause <= kCauseMax ? cause : 0);
+  record.subject = r.varint();
+  if (r.ok()) {
+    if (const auto numbers = validate_numbers(record); !numbers) {
+      r.reject(numbers.error().code, numbers.error().what);
+    }
+  }
   const auto coordinate = [&r] {
     return static_cast<std::int32_t>(r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
   };
+  // How long a side may be belongs to the kind. Below, the box must be the descriptor's.
   const auto side = [&r] {
-    return static_cast<std::int32_t>(r.varint_max(kEditBoxSideMax, "box side too long"));
+    return static_cast<std::int32_t>(
+        r.varint_max(2 * std::uint64_t{kWorldLimit}, "box larger than the world"));
   };
   VoxelBox box;
   box.min.x = coordinate();
@@ -62,7 +81,7 @@ Result<EditRecord> decode_record(ByteView in) {
   box.max.x = box.min.x + side();
   box.max.y = box.min.y + side();
   box.max.z = box.min.z + side();
-  const auto length = r.varint_max(kDescriptorBytesMax, "descriptor too long");
+  const auto length = r.varint_max(kRecordDescriptorBytesMax, "descriptor too long");
   const std::uint64_t at = r.offset();
   const ByteView bytes = r.bytes(static_cast<std::size_t>(length));
   if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};

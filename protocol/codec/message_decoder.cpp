@@ -135,6 +135,7 @@ struct BodyReader {
     m.client_seq = t.client_seq();
     m.submitted_us = t.submitted_us();
     if (m.client_seq == 0) return bad("client sequences start at 1");
+    if (m.client_seq > kSequenceMax) return bad("client sequence exceeds 63 bits");
     auto edit = decode_descriptor(view_of(t.edit()));
     if (!edit) return Unexpected<Error>{edit.error()};
     m.edit = *edit;

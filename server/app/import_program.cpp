@@ -48,7 +48,7 @@ Result<void, std::string> fill(const ImportRequest& request, const LuantiImportR
                                const std::string& folder) {
   WorldMeta meta;
   meta.chunk_edge = request.edge;
-  meta.generator = "empty";
+  meta.generator.name = "empty";
   meta.materials = survey.materials;
   meta.spawn = {survey.spawn.x + 0.5, static_cast<double>(survey.spawn.y), survey.spawn.z + 0.5};
   draw_identity(meta);

@@ -165,9 +165,14 @@ StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expecte
 }
 
 StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
-  const auto last = store_.last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
-  report_.seq = std::min(at, *last);
+  const auto range = store_.log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  report_.seq = std::min(at, range->last.version.seq);
+  if (report_.seq + 1 < range->first) {
+    return Unexpected<StoreError>{{StoreError::Kind::bad_request, store_.file(), "edit_log",
+                                   "begins at seq=" + std::to_string(range->first) +
+                                       ": what lies before is in the base and cannot be taken apart"}};
+  }
   if (const auto expected = expect_snapshots(); !expected) return Unexpected<StoreError>{expected.error()};
 
   StoreResult<void> replayed;

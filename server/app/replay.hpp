@@ -51,8 +51,9 @@ class Replayer {
 
   /// Called now and then with the sequence reached and the last one.
   using Progress = std::function<void(Sequence, Sequence)>;
-  /// Replays edits 1 .. min(at, last). Call once. Memory: all edited chunks as runs. Fails with what the
-  /// store says about rows that cannot be read.
+  /// Replays the edits of the log up to min(at, last). Call once. Memory: all edited chunks as runs. Fails
+  /// with what the store says about rows that cannot be read, and (bad_request) if the log begins behind
+  /// `at`.
   StoreResult<ReplayReport> run(Sequence at, const Progress& progress = {});
 
  private:

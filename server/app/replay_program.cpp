@@ -68,7 +68,8 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   };
   out << std::fixed;
   row("world") << to_hex(meta.world_id) << "  " << store.file() << '\n';
-  row("base") << meta.generator << " version " << meta.generator_version << ", seed " << meta.seed << '\n';
+  row("base") << meta.generator.name << " version " << meta.generator.version << ", seed "
+              << meta.generator.seed << '\n';
   row("edits") << report.edits << ", up to sequence " << report.seq << '\n';
   row("chunks") << report.digests.size() << " edited\n";
   row("voxels") << report.voxels_changed << " changed\n";
@@ -113,12 +114,11 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
   if (!opened) return cannot_read(err, opened.error().message());
   Store& store = **opened;
   const WorldMeta& meta = store.meta();
-  const auto generator = make_generator(
-      {meta.generator, meta.generator_version, meta.seed, meta.generator_parameters}, meta.materials);
+  const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {
     return cannot_read(err, store.file() + ": this program cannot make the base of generator " +
-                                meta.generator + " version " + std::to_string(meta.generator_version) + ": " +
-                                generator.error().what);
+                                meta.generator.name + " version " + std::to_string(meta.generator.version) +
+                                ": " + generator.error().what);
   }
   Replayer replayer(store, **generator);
   for (const std::string& file : options.against) {

@@ -20,13 +20,12 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   if (!materials) return failure(materials.error());
   WorldMeta meta;
   meta.chunk_edge = creation.edge;
-  meta.generator = creation.generator;
-  meta.seed = creation.seed;
-  meta.generator_parameters = creation.generator_parameters;
+  meta.generator.name = creation.generator;
+  meta.generator.seed = creation.seed;
+  meta.generator.parameters = creation.generator_parameters;
   meta.materials = *std::move(materials);
-  const auto generator = make_generator(
-      {meta.generator, meta.generator_version, meta.seed, meta.generator_parameters}, meta.materials);
-  if (!generator) return failure("--generator " + meta.generator + ": " + generator.error().what);
+  const auto generator = make_generator(meta.generator, meta.materials);
+  if (!generator) return failure("--generator " + meta.generator.name + ": " + generator.error().what);
   meta.spawn = {0.5, static_cast<double>((*generator)->surface_y(0, 0)) + 2.0, 0.5};
   draw_identity(meta);
   return meta;
@@ -56,11 +55,10 @@ void draw_identity(WorldMeta& meta) {
 
 Result<std::unique_ptr<Generator>, std::string> generator_of(const Store& store) {
   const WorldMeta& meta = store.meta();
-  auto generator = make_generator(
-      {meta.generator, meta.generator_version, meta.seed, meta.generator_parameters}, meta.materials);
+  auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {
-    return failure(store.file() + ": meta generator=" + meta.generator +
-                   " version=" + std::to_string(meta.generator_version) + ": " + generator.error().what);
+    return failure(store.file() + ": meta generator=" + meta.generator.name +
+                   " version=" + std::to_string(meta.generator.version) + ": " + generator.error().what);
   }
   return *std::move(generator);
 }

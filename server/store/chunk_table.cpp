@@ -59,27 +59,22 @@ std::string name_of(const ChunkKey& key) {
 }
 
 StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
-  const bool versioned = kind == Kind::snapshot;
-  const std::string table = versioned ? "snapshot" : "base";
-  const std::string columns = versioned ? "epoch, seq" : "0, 0";
+  const std::string table = kind == Kind::snapshot ? "snapshot" : "base";
   const std::string where = " FROM " + table + " WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
-  auto load = database.prepare("SELECT " + columns + ", digest0, digest1, checksum, data" + where);
+  auto load = database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data" + where);
   if (!load) return Unexpected<StoreError>{load.error()};
-  auto keys =
-      database.prepare("SELECT lod, x, y, z, " + columns + " FROM " + table + " ORDER BY lod, x, y, z");
+  auto keys = database.prepare("SELECT lod, x, y, z, epoch, seq FROM " + table + " ORDER BY lod, x, y, z");
   if (!keys) return Unexpected<StoreError>{keys.error()};
-  auto version = database.prepare("SELECT " + columns + where);
+  auto version = database.prepare("SELECT epoch, seq" + where);
   if (!version) return Unexpected<StoreError>{version.error()};
-  // An import that names a chunk twice is refused by the key of `base`.
   auto save = database.prepare(
-      versioned ? "INSERT INTO snapshot(lod, x, y, z, digest0, digest1, checksum, data, epoch, seq) "
-                  "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) DO UPDATE SET "
-                  "digest0 = excluded.digest0, digest1 = excluded.digest1, checksum = excluded.checksum, "
-                  "data = excluded.data, epoch = excluded.epoch, seq = excluded.seq"
-                : "INSERT INTO base(lod, x, y, z, digest0, digest1, checksum, data) "
-                  "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
+      "INSERT INTO " + table +
+      "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
+      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) DO UPDATE SET "
+      "epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, digest1 = excluded.digest1, "
+      "checksum = excluded.checksum, data = excluded.data");
   if (!save) return Unexpected<StoreError>{save.error()};
-  return ChunkTable(database.file(), table, *std::move(load), *std::move(keys), *std::move(version),
+  return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(keys), *std::move(version),
                     *std::move(save));
 }
 
@@ -156,18 +151,20 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk, std:
     if (!found) return Unexpected<StoreError>{found.error()};
     if (*found) stored = version_of(version_, 0);
   }
+  if (stored && kind_ == Kind::base && chunk.version == *stored) {
+    return failure(StoreError::Kind::bad_request, key, "is there already");  // an import named it twice
+  }
   if (stored && chunk.version < *stored) {
     return failure(StoreError::Kind::bad_request, key, "is older than the stored version");
   }
   const Bytes data = encode_chunk(chunk.voxels, ChunkEncoding::packed);
   bind_key(save_, key);
-  save_.bind(5, static_cast<std::int64_t>(chunk.digest.lane[0]))
-      .bind(6, static_cast<std::int64_t>(chunk.digest.lane[1]))
-      .bind(7, checksum_of(table_, key, chunk.version, chunk.digest, data))
-      .bind(8, ByteView(data));
-  if (table_ == "snapshot") {
-    save_.bind(9, std::int64_t{chunk.version.epoch}).bind(10, static_cast<std::int64_t>(chunk.version.seq));
-  }
+  save_.bind(5, std::int64_t{chunk.version.epoch})
+      .bind(6, static_cast<std::int64_t>(chunk.version.seq))
+      .bind(7, static_cast<std::int64_t>(chunk.digest.lane[0]))
+      .bind(8, static_cast<std::int64_t>(chunk.digest.lane[1]))
+      .bind(9, checksum_of(table_, key, chunk.version, chunk.digest, data))
+      .bind(10, ByteView(data));
   if (auto saved = save_.run(); !saved) return saved;
   if (stored) fold.sum -= fold_term(key, *stored);
   fold.count += stored ? 0 : 1;

@@ -24,16 +24,19 @@ class ChunkTable {
   /// Keys and versions of all rows, ascending. Fails if their fold is not `expected`.
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys(const RowFold& expected);
   /// Inserts or replaces one row in the caller's transaction and moves the fold with it. Refuses
-  /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, and a version older
-  /// than the stored one.
+  /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, a version older than
+  /// the stored one, and in `base` also the stored one again.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge, RowFold& fold);
+  /// "base" or "snapshot".
+  const std::string& name() const { return table_; }
   /// Meta key of this table's fold.
   const std::string& fold_key() const { return fold_key_; }
 
  private:
-  ChunkTable(std::string file, std::string table, sql::Statement load, sql::Statement keys,
+  ChunkTable(std::string file, Kind kind, std::string table, sql::Statement load, sql::Statement keys,
              sql::Statement version, sql::Statement save)
-      : file_(std::move(file)),
+      : kind_(kind),
+        file_(std::move(file)),
         table_(std::move(table)),
         fold_key_(table_ + "_fold"),
         load_(std::move(load)),
@@ -42,6 +45,7 @@ class ChunkTable {
         save_(std::move(save)) {}
   Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key, std::string what) const;
 
+  Kind kind_;
   std::string file_, table_, fold_key_;
   sql::Statement load_, keys_, version_, save_;
 };

@@ -11,11 +11,9 @@ namespace runstone {
 namespace {
 
 constexpr const char* kSelect =
-    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, min_x, min_y, min_z, max_x, max_y, "
-    "max_z, "
-    "descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER BY seq";
-
-constexpr auto kSequenceMax = static_cast<Sequence>(std::numeric_limits<std::int64_t>::max());
+    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, min_z, "
+    "max_x, max_y, max_z, descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER "
+    "BY seq";
 
 bool in_range(std::int64_t value, std::uint64_t max) {
   return value >= 0 && static_cast<std::uint64_t>(value) <= max;
@@ -23,11 +21,16 @@ bool in_range(std::int64_t value, std::uint64_t max) {
 
 /// The record of the current row; nothing if a column does not decode or the checksum is wrong.
 std::optional<EditRecord> record_of(const sql::Statement& row) {
+  const std::int64_t seq = row.integer(0);
   const std::int64_t epoch = row.integer(1);
   const std::int64_t author = row.integer(2);
+  const std::int64_t client_seq = row.integer(4);
   const std::int64_t cause = row.integer(6);
-  auto edit = decode_descriptor(row.blob(13));
-  if (!in_range(epoch, std::numeric_limits<Epoch>::max()) ||
+  const std::int64_t subject = row.integer(7);
+  auto edit = decode_descriptor(row.blob(14));
+  // What the record's bytes cannot say is refused here: they are made for the checksum.
+  if (!in_range(client_seq, kSequenceMax) || !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
+      !in_range(epoch, std::numeric_limits<Epoch>::max()) ||
       !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) || !edit) {
     return std::nullopt;
   }
@@ -35,15 +38,17 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
   const std::array<std::int64_t, 6> sides = {box.min.x, box.min.y, box.min.z,
                                              box.max.x, box.max.y, box.max.z};
   for (int i = 0; i < 6; ++i) {
-    if (row.integer(7 + i) != sides[static_cast<std::size_t>(i)]) return std::nullopt;
+    if (row.integer(8 + i) != sides[static_cast<std::size_t>(i)]) return std::nullopt;
   }
-  EditRecord record{{static_cast<Epoch>(epoch), static_cast<Sequence>(row.integer(0))},
+  EditRecord record{{static_cast<Epoch>(epoch), static_cast<Sequence>(seq)},
                     {static_cast<AuthorId>(author), static_cast<ClientInstance>(row.integer(3)),
-                     static_cast<ClientSequence>(row.integer(4))},
+                     static_cast<ClientSequence>(client_seq)},
                     row.integer(5),
                     static_cast<Cause>(cause),
-                    *std::move(edit)};
-  if (static_cast<std::uint64_t>(row.integer(14)) != record_checksum(record)) return std::nullopt;
+                    *std::move(edit),
+                    static_cast<Sequence>(subject),
+                    LogId{0}};
+  if (static_cast<std::uint64_t>(row.integer(15)) != record_checksum(record)) return std::nullopt;
   return record;
 }
 
@@ -58,15 +63,17 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
     return Unexpected<StoreError>{
         {StoreError::Kind::corrupt, database.file(), "edit_log", "holds rows of a log other than 0"}};
   }
-  auto last = database.prepare("SELECT epoch, seq FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
+  auto first = database.prepare("SELECT seq FROM edit_log WHERE log = 0 ORDER BY seq LIMIT 1");
+  if (!first) return Unexpected<StoreError>{first.error()};
+  auto last =
+      database.prepare("SELECT seq, epoch, time_us FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
   if (!last) return Unexpected<StoreError>{last.error()};
   auto insert = database.prepare(
-      "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, min_x, min_y, "
-      "min_z, max_x, "
-      "max_y, max_z, descriptor, checksum) VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
-      "?14, ?15)");
+      "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, subject, "
+      "min_x, min_y, min_z, max_x, max_y, max_z, descriptor, checksum) "
+      "VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)");
   if (!insert) return Unexpected<StoreError>{insert.error()};
-  return LogTable(database, *std::move(last), *std::move(insert));
+  return LogTable(database, *std::move(first), *std::move(last), *std::move(insert));
 }
 
 Unexpected<StoreError> LogTable::corrupt(Sequence seq, std::string what) const {
@@ -74,16 +81,27 @@ Unexpected<StoreError> LogTable::corrupt(Sequence seq, std::string what) const {
       {StoreError::Kind::corrupt, database_->file(), "edit_log seq=" + std::to_string(seq), std::move(what)}};
 }
 
-StoreResult<std::optional<Version>> LogTable::last() {
-  const sql::ResetAtEnd reset_at_end(last_);
-  const auto found = last_.step();
+StoreResult<LogRange> LogTable::range(const LogEnd& head) {
+  const LogRange compacted{head.version.seq + 1, head};
+  const sql::ResetAtEnd reset_first_at_end(first_);
+  auto found = first_.step();
   if (!found) return Unexpected<StoreError>{found.error()};
-  if (!*found) return std::optional<Version>();
-  const std::int64_t seq = last_.integer(1);
-  if (!in_range(last_.integer(0), std::numeric_limits<Epoch>::max()) || seq < 1) {
-    return corrupt(static_cast<Sequence>(seq), "has an impossible version");
+  if (!*found) return compacted;
+  const std::int64_t first = first_.integer(0);
+  if (first < 1 || static_cast<Sequence>(first) < compacted.first) {
+    return corrupt(static_cast<Sequence>(first),
+                   "is there, but the log begins at " + std::to_string(compacted.first));
   }
-  return std::optional<Version>({static_cast<Epoch>(last_.integer(0)), static_cast<Sequence>(seq)});
+  if (static_cast<Sequence>(first) > compacted.first) return corrupt(compacted.first, "is missing");
+  const sql::ResetAtEnd reset_last_at_end(last_);
+  found = last_.step();
+  if (!found) return Unexpected<StoreError>{found.error()};
+  const auto last = static_cast<Sequence>(last_.integer(0));
+  const std::int64_t epoch = last_.integer(1);
+  if (!*found || !in_range(epoch, std::numeric_limits<Epoch>::max())) {
+    return corrupt(last, "has an impossible epoch");
+  }
+  return LogRange{compacted.first, {{static_cast<Epoch>(epoch), last}, last_.integer(2)}};
 }
 
 StoreResult<void> LogTable::insert(const EditRecord& record) {
@@ -96,27 +114,25 @@ StoreResult<void> LogTable::insert(const EditRecord& record) {
       .bind(5, static_cast<std::int64_t>(record.op.seq))
       .bind(6, record.time_us)
       .bind(7, static_cast<std::int64_t>(record.cause))
-      .bind(8, std::int64_t{box.min.x})
-      .bind(9, std::int64_t{box.min.y})
-      .bind(10, std::int64_t{box.min.z})
-      .bind(11, std::int64_t{box.max.x})
-      .bind(12, std::int64_t{box.max.y})
-      .bind(13, std::int64_t{box.max.z})
-      .bind(14, ByteView(descriptor))
-      .bind(15, static_cast<std::int64_t>(record_checksum(record)))
+      .bind(8, static_cast<std::int64_t>(record.subject))
+      .bind(9, std::int64_t{box.min.x})
+      .bind(10, std::int64_t{box.min.y})
+      .bind(11, std::int64_t{box.min.z})
+      .bind(12, std::int64_t{box.max.x})
+      .bind(13, std::int64_t{box.max.y})
+      .bind(14, std::int64_t{box.max.z})
+      .bind(15, ByteView(descriptor))
+      .bind(16, static_cast<std::int64_t>(record_checksum(record)))
       .run();
 }
 
-StoreResult<void> LogTable::read(Sequence first, Sequence last_wanted,
+StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence last_wanted,
                                  const std::function<bool(const EditRecord&)>& each) {
-  const auto end = last();
-  if (!end) return Unexpected<StoreError>{end.error()};
-  const Sequence last_there = end->has_value() ? (*end)->seq : 0;
-  const Sequence until = std::min({last_wanted, last_there, kSequenceMax});
+  const Sequence until = std::min(last_wanted, range.last.version.seq);
   // A statement of its own: `each` may read the log too.
   auto rows = database_->prepare(kSelect);
   if (!rows) return Unexpected<StoreError>{rows.error()};
-  Sequence next = std::max<Sequence>(first, 1);
+  Sequence next = std::max(first, range.first);
   Epoch epoch = 0;
   if (next <= until) rows->bind(1, static_cast<std::int64_t>(next)).bind(2, static_cast<std::int64_t>(until));
   for (; next <= until; ++next) {

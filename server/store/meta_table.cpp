@@ -86,10 +86,10 @@ MetaRows rows_of(const WorldMeta& meta) {
   }
   return {{"world_id", bytes_of(meta.world_id)},
           {"chunk_edge", std::int64_t{meta.chunk_edge}},
-          {"generator", meta.generator},
-          {"generator_version", std::int64_t{meta.generator_version}},
-          {"seed", static_cast<std::int64_t>(meta.seed)},
-          {"generator_parameters", meta.generator_parameters},
+          {"generator", meta.generator.name},
+          {"generator_version", std::int64_t{meta.generator.version}},
+          {"seed", static_cast<std::int64_t>(meta.generator.seed)},
+          {"generator_parameters", meta.generator.parameters},
           {"materials", to_toml(meta.materials)},
           {"server_key_seed", bytes_of(meta.server_key_seed)},
           {"spawn", std::move(spawn)}};
@@ -101,10 +101,10 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
   meta.world_id = in.bytes<kWorldIdBytes>("world_id");
   meta.chunk_edge = static_cast<std::uint16_t>(in.integer("chunk_edge", 16, kSideMax));
   if (!std::has_single_bit(meta.chunk_edge)) in.reject("chunk_edge");
-  meta.generator = in.text("generator");
-  meta.generator_version = static_cast<std::uint32_t>(in.integer("generator_version", 0, 0xffffffff));
-  meta.seed = static_cast<std::uint64_t>(in.integer("seed", kIntegerMin, kIntegerMax));
-  meta.generator_parameters = in.text("generator_parameters");
+  meta.generator.name = in.text("generator");
+  meta.generator.version = static_cast<std::uint32_t>(in.integer("generator_version", 0, 0xffffffff));
+  meta.generator.seed = static_cast<std::uint64_t>(in.integer("seed", kIntegerMin, kIntegerMax));
+  meta.generator.parameters = in.text("generator_parameters");
   auto materials = parse_material_table(in.text("materials"), "meta");
   if (materials) {
     meta.materials = *std::move(materials);
@@ -212,6 +212,30 @@ StoreResult<void> MetaTable::put_fold(const std::string& key, const RowFold& fol
   writer.u64(fold.count);
   writer.u64(fold.sum);
   return put(key, bytes);
+}
+
+StoreResult<LogEnd> MetaTable::log_head() {
+  const std::string key = "log_head";
+  const auto value = get(key);
+  if (!value) return Unexpected<StoreError>{value.error()};
+  const auto* bytes = std::get_if<Bytes>(&*value);
+  if (bytes == nullptr || bytes->size() != 20) return corrupt(key, "is no place in a log");
+  ByteReader reader(*bytes);
+  LogEnd head;
+  head.version.epoch = reader.u32();
+  head.version.seq = reader.u64();
+  head.time_us = static_cast<TimeUs>(reader.u64());
+  if (head.version.seq > kSequenceMax) return corrupt(key, "is no place in a log");
+  return head;
+}
+
+StoreResult<void> MetaTable::put_log_head(const LogEnd& head) {
+  Bytes bytes;
+  ByteWriter writer(bytes);
+  writer.u32(head.version.epoch);
+  writer.u64(head.version.seq);
+  writer.u64(static_cast<std::uint64_t>(head.time_us));
+  return put("log_head", bytes);
 }
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// MetaTable: what the world is (pinned at creation) and the few counters that move: epoch, checkpoint and the
-// folds of the chunk tables. Belongs to the thread that owns the store.
+// MetaTable: what the world is (pinned at creation) and the few values that move: epoch, checkpoint, the head
+// of the compacted log and the folds of the chunk tables. Belongs to the thread that owns the store.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -38,6 +38,9 @@ class MetaTable {
   StoreResult<std::uint64_t> counter(const std::string& key);
   StoreResult<RowFold> fold(const std::string& key);
   StoreResult<void> put_fold(const std::string& key, const RowFold& fold);
+  /// Row `log_head`: version and time of the last edit that compaction took out of the log; zero if none.
+  StoreResult<LogEnd> log_head();
+  StoreResult<void> put_log_head(const LogEnd& head);
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)

@@ -14,8 +14,14 @@ std::int64_t checksum_of(std::int64_t author, ByteView key, std::string_view nam
   return RowChecksum("player").integer(author).blob(key).text(name).value();
 }
 
-std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_t decided) {
-  return RowChecksum("player_instance").integer(author).integer(instance).integer(decided).value();
+std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_t decided,
+                         std::int64_t last_us) {
+  return RowChecksum("player_instance")
+      .integer(author)
+      .integer(instance)
+      .integer(decided)
+      .integer(last_us)
+      .value();
 }
 
 }  // namespace
@@ -23,21 +29,23 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
 StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
   auto players = database.prepare("SELECT author, key, name, checksum FROM player ORDER BY author");
   if (!players) return Unexpected<StoreError>{players.error()};
-  auto marks = database.prepare(
-      "SELECT author, instance, decided, checksum FROM player_instance ORDER BY author, instance");
+  const std::string mark_row = "SELECT author, instance, decided, last_us, checksum FROM player_instance";
+  auto marks = database.prepare(mark_row + " ORDER BY author, instance");
   if (!marks) return Unexpected<StoreError>{marks.error()};
+  auto mark = database.prepare(mark_row + " WHERE author = ?1 AND instance = ?2");
+  if (!mark) return Unexpected<StoreError>{mark.error()};
   auto put = database.prepare(
       "INSERT INTO player(author, key, name, checksum) VALUES(?1, ?2, ?3, ?4) "
       "ON CONFLICT(author) DO UPDATE SET key = excluded.key, name = excluded.name, checksum = "
       "excluded.checksum");
   if (!put) return Unexpected<StoreError>{put.error()};
   auto raise = database.prepare(
-      "INSERT INTO player_instance(author, instance, decided, checksum) VALUES(?1, ?2, ?3, ?4) "
-      "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, checksum = excluded.checksum "
-      "WHERE excluded.decided > decided");
+      "INSERT INTO player_instance(author, instance, decided, last_us, checksum) VALUES(?1, ?2, ?3, ?4, ?5) "
+      "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, last_us = excluded.last_us, "
+      "checksum = excluded.checksum");
   if (!raise) return Unexpected<StoreError>{raise.error()};
-  return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(put),
-                     *std::move(raise));
+  return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(mark),
+                     *std::move(put), *std::move(raise));
 }
 
 StoreResult<std::vector<PlayerRow>> PlayerTable::players() {
@@ -69,19 +77,26 @@ StoreResult<std::vector<HighWater>> PlayerTable::high_waters() {
     const auto more = marks_.step();
     if (!more) return Unexpected<StoreError>{more.error()};
     if (!*more) return rows;
-    const std::int64_t author = marks_.integer(0);
-    const std::int64_t instance = marks_.integer(1);
-    const std::int64_t decided = marks_.integer(2);
-    if (marks_.integer(3) != checksum_of(author, instance, decided) || author < 0 ||
-        author > std::numeric_limits<AuthorId>::max()) {
-      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
-                                     "player_instance author=" + std::to_string(author) +
-                                         " instance=" + std::to_string(static_cast<ClientInstance>(instance)),
-                                     "checksum is wrong"}};
-    }
-    rows.push_back({static_cast<AuthorId>(author), static_cast<ClientInstance>(instance),
-                    static_cast<ClientSequence>(decided)});
+    const auto mark = mark_of(marks_);
+    if (!mark) return Unexpected<StoreError>{mark.error()};
+    rows.push_back(*mark);
   }
+}
+
+StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {
+  const std::int64_t author = row.integer(0);
+  const std::int64_t instance = row.integer(1);
+  const std::int64_t decided = row.integer(2);
+  const std::int64_t last_us = row.integer(3);
+  if (row.integer(4) != checksum_of(author, instance, decided, last_us) || author < 0 ||
+      author > std::numeric_limits<AuthorId>::max() || decided < 0) {
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
+                                   "player_instance author=" + std::to_string(author) +
+                                       " instance=" + std::to_string(static_cast<ClientInstance>(instance)),
+                                   "checksum is wrong"}};
+  }
+  return HighWater{static_cast<AuthorId>(author), static_cast<ClientInstance>(instance),
+                   static_cast<ClientSequence>(decided), last_us};
 }
 
 StoreResult<void> PlayerTable::put(const PlayerRow& player) {
@@ -92,13 +107,25 @@ StoreResult<void> PlayerTable::put(const PlayerRow& player) {
       .run();
 }
 
-StoreResult<void> PlayerTable::raise(const HighWater& mark) {
+StoreResult<void> PlayerTable::raise(HighWater mark) {
   const auto instance = static_cast<std::int64_t>(mark.instance);
+  {
+    const sql::ResetAtEnd reset_at_end(mark_);
+    const auto found = mark_.bind(1, std::int64_t{mark.author}).bind(2, instance).step();
+    if (!found) return Unexpected<StoreError>{found.error()};
+    if (*found) {
+      const auto stored = mark_of(mark_);
+      if (!stored) return Unexpected<StoreError>{stored.error()};
+      mark.decided = std::max(mark.decided, stored->decided);
+      mark.last_us = std::max(mark.last_us, stored->last_us);
+    }
+  }
   const auto decided = static_cast<std::int64_t>(mark.decided);
   return raise_.bind(1, std::int64_t{mark.author})
       .bind(2, instance)
       .bind(3, decided)
-      .bind(4, checksum_of(mark.author, instance, decided))
+      .bind(4, mark.last_us)
+      .bind(5, checksum_of(mark.author, instance, decided, mark.last_us))
       .run();
 }
 

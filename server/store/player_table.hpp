@@ -20,20 +20,23 @@ class PlayerTable {
 
   /// A new author, or the new name of a known one. In the caller's transaction, as raise().
   StoreResult<void> put(const PlayerRow& player);
-  /// Moves a mark up; never down.
-  StoreResult<void> raise(const HighWater& mark);
+  /// Moves a mark and its time up; never down. A damaged row is an error and stays as it is.
+  StoreResult<void> raise(HighWater mark);
 
  private:
-  PlayerTable(std::string file, sql::Statement players, sql::Statement marks, sql::Statement put,
-              sql::Statement raise)
+  PlayerTable(std::string file, sql::Statement players, sql::Statement marks, sql::Statement mark,
+              sql::Statement put, sql::Statement raise)
       : file_(std::move(file)),
         players_(std::move(players)),
         marks_(std::move(marks)),
+        mark_(std::move(mark)),
         put_(std::move(put)),
         raise_(std::move(raise)) {}
 
+  StoreResult<HighWater> mark_of(const sql::Statement& row) const;
+
   std::string file_;
-  sql::Statement players_, marks_, put_, raise_;
+  sql::Statement players_, marks_, mark_, put_, raise_;
 };
 
 }  // namespace runstone

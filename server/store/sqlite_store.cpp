@@ -46,23 +46,43 @@ StoreResult<Epoch> SqliteStore::raise_epoch() {
   return epoch_;
 }
 
+template <class T>
+StoreResult<T> SqliteStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
+  if (const auto begun = database_->run("SAVEPOINT moment"); !begun) {
+    return Unexpected<StoreError>{begun.error()};
+  }
+  auto result = body();
+  if (const auto ended = database_->run("RELEASE moment"); !ended && result) {
+    return Unexpected<StoreError>{ended.error()};
+  }
+  return result;
+}
+
+StoreResult<LogRange> SqliteStore::log_range() {
+  return at_one_moment<LogRange>([&]() -> StoreResult<LogRange> {
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    return log_.range(*head);
+  });
+}
+
 StoreResult<Sequence> SqliteStore::last_sequence() {
-  const auto last = log_.last();
-  if (!last) return Unexpected<StoreError>{last.error()};
-  return last->has_value() ? (*last)->seq : Sequence{0};
+  const auto range = log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  return range->last.version.seq;
 }
 
 StoreResult<Sequence> SqliteStore::checkpoint() {
   const auto checkpoint = meta_table_.counter("checkpoint");
   if (!checkpoint) return checkpoint;
-  const auto last = last_sequence();
-  if (!last) return last;
-  if (*checkpoint > *last) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "edit_log",
-                                   "ends at seq=" + std::to_string(*last) +
-                                       ", before the checkpoint seq=" + std::to_string(*checkpoint)}};
-  }
-  return checkpoint;
+  const auto range = log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  const Sequence last = range->last.version.seq;
+  if (*checkpoint <= last && *checkpoint + 1 >= range->first) return checkpoint;
+  const std::string log = *checkpoint > last ? "ends at seq=" + std::to_string(last) + ", before"
+                                             : "begins at seq=" + std::to_string(range->first) + ", behind";
+  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "edit_log",
+                                 log + " the checkpoint seq=" + std::to_string(*checkpoint)}};
 }
 
 StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table_.players(); }
@@ -79,6 +99,8 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
     if (record.version.seq != expected)
       return refuse(where, "the log continues at " + std::to_string(expected));
     if (record.version.epoch != epoch_) return refuse(where, "the epoch is " + std::to_string(epoch_));
+    if (record.log != 0) return refuse(where, "belongs to another log");
+    if (const auto numbers = validate_numbers(record); !numbers) return refuse(where, numbers.error().what);
   }
   return {};
 }
@@ -91,14 +113,18 @@ StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
       if (player.author == 0) return refuse("player author=0", "is the server itself");
       if (auto put = player_table_.put(player); !put) return put;
     }
-    std::map<std::pair<AuthorId, ClientInstance>, ClientSequence> marks;
+    std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
     for (const EditRecord& record : records) {
       if (auto inserted = log_.insert(record); !inserted) return inserted;
-      ClientSequence& mark = marks[{record.op.author, record.op.instance}];
-      mark = std::max(mark, record.op.seq);
+      const auto [author, instance, seq] = record.op;
+      HighWater& mark =
+          marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
+              .first->second;
+      mark.decided = std::max(mark.decided, seq);
+      mark.last_us = std::max(mark.last_us, record.time_us);
     }
-    for (const auto& [client, decided] : marks) {
-      if (auto raised = player_table_.raise({client.first, client.second, decided}); !raised) return raised;
+    for (const auto& [client, mark] : marks) {
+      if (auto raised = player_table_.raise(mark); !raised) return raised;
     }
     return {};
   });
@@ -118,9 +144,9 @@ StoreResult<void> SqliteStore::save_chunks(ChunkTable& table,
 StoreResult<void> SqliteStore::save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                               std::optional<Sequence> checkpoint) {
   return write([&]() -> StoreResult<void> {
-    const auto last = log_.last();
-    if (!last) return Unexpected<StoreError>{last.error()};
-    const Version durable = last->value_or(Version{});
+    const auto range = log_range();
+    if (!range) return Unexpected<StoreError>{range.error()};
+    const Version durable = range->last.version;
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version > durable) {
         return refuse("snapshot chunk=" + name_of(key), "its version is not durable yet");
@@ -159,20 +185,18 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_base(const ChunkKey& key) {
 
 StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last,
                                         const std::function<bool(const EditRecord&)>& each) {
-  return log_.read(first, last, each);
+  const auto range = log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  return log_.read(*range, first, last, each);
 }
 
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::keys_of(ChunkTable& table) {
-  // Rows and their fold must be read at one moment, while another process may be writing.
-  if (const auto begun = database_->run("SAVEPOINT keys"); !begun) {
-    return Unexpected<StoreError>{begun.error()};
-  }
-  auto fold = meta_table_.fold(table.fold_key());
-  auto keys = fold ? table.keys(*fold) : Unexpected<StoreError>{fold.error()};
-  if (const auto ended = database_->run("RELEASE keys"); !ended && keys) {
-    return Unexpected<StoreError>{ended.error()};
-  }
-  return keys;
+  using Keys = std::vector<std::pair<ChunkKey, Version>>;
+  return at_one_moment<Keys>([&]() -> StoreResult<Keys> {
+    const auto fold = meta_table_.fold(table.fold_key());
+    if (!fold) return Unexpected<StoreError>{fold.error()};
+    return table.keys(*fold);
+  });
 }
 
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {

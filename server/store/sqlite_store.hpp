@@ -35,6 +35,7 @@ class SqliteStore final : public Store {
   const std::string& file() const override { return database_->file(); }
   StoreResult<Epoch> raise_epoch() override;
   Epoch epoch() const override { return epoch_; }
+  StoreResult<LogRange> log_range() override;
   StoreResult<Sequence> last_sequence() override;
   StoreResult<Sequence> checkpoint() override;
   StoreResult<std::vector<PlayerRow>> players() override;
@@ -58,6 +59,9 @@ class SqliteStore final : public Store {
   /// Calls `body` in one transaction and commits. After a commit that failed nobody knows what is on disk, so
   /// every later write is refused.
   StoreResult<void> write(const std::function<StoreResult<void>()>& body);
+  /// Calls `body` while another process's commits stay out of sight: what it reads belongs together.
+  template <class T>
+  StoreResult<T> at_one_moment(const std::function<StoreResult<T>()>& body);
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys_of(ChunkTable& table);
   StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
   StoreResult<void> check_continues(std::span<const EditRecord> records);

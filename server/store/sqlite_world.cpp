@@ -85,6 +85,7 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
   for (const char* key : {"base_fold", "snapshot_fold"}) {
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
+  if (auto put = table->put_log_head({}); !put) return put;
   return transaction->commit();
 }
 

@@ -21,6 +21,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/edit_record.hpp"
+#include "common/generate/generator.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
@@ -44,10 +45,7 @@ using StoreResult = Result<T, StoreError>;
 struct WorldMeta {
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;
-  std::string generator;  // name
-  std::uint32_t generator_version = 1;
-  std::uint64_t seed = 0;
-  std::string generator_parameters;
+  GeneratorPin generator;
   MaterialTable materials;
   std::array<std::uint8_t, 32> server_key_seed{};  // Ed25519 identity of this world's server
   WorldPos spawn;
@@ -64,6 +62,22 @@ struct HighWater {
   AuthorId author = 0;
   ClientInstance instance = 0;
   ClientSequence decided = 0;
+  TimeUs last_us = 0;  // UTC, of the instance's last record: old instances may be forgotten one day
+};
+
+/// A place in the log: (0, 0) and 0 before the first edit.
+struct LogEnd {
+  Version version;
+  TimeUs time_us = 0;  // UTC, of that edit
+  friend bool operator==(const LogEnd&, const LogEnd&) = default;
+};
+
+/// What the log holds: edits first .. last.version.seq, none if `first` lies behind it. Edits before `first`
+/// were compacted: they are in the base alone.
+struct LogRange {
+  Sequence first = 1;
+  LogEnd last;  // the last edit ever ordered, compacted or not
+  friend bool operator==(const LogRange&, const LogRange&) = default;
 };
 
 class Store {
@@ -79,7 +93,9 @@ class Store {
   virtual StoreResult<Epoch> raise_epoch() = 0;
   /// Epoch of the last start (0: never started).
   virtual Epoch epoch() const = 0;
-  /// Last sequence in the log (0: none). All of it is durable.
+  /// What the log holds and where it ends. All of it is durable.
+  virtual StoreResult<LogRange> log_range() = 0;
+  /// Last sequence ever logged (0: none), compacted or not.
   virtual StoreResult<Sequence> last_sequence() = 0;
   /// Every edit up to here is contained in a snapshot of each chunk it touched (0: none).
   virtual StoreResult<Sequence> checkpoint() = 0;
@@ -89,20 +105,22 @@ class Store {
   // ---- writing
   // -----------------------------------------------------------------------------------------------
   /// One transaction: new players, then records, then the high-water marks they imply. Durable on return.
-  /// Records must continue the log without a gap; nothing is written otherwise.
+  /// Records must continue the log without a gap, and their numbers must be those of a record
+  /// (validate_numbers()); nothing is written otherwise (bad_request).
   virtual StoreResult<void> append(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint, in one transaction.
   virtual StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                            std::optional<Sequence> checkpoint) = 0;
-  /// Import only, while the log is empty: base chunks at version (0, 0).
+  /// Import only, while nothing was ever logged: base chunks at version (0, 0).
   virtual StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) = 0;
 
   // ---- reading
   // -----------------------------------------------------------------------------------------------
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
-  /// Calls `each` for records first..last (both included) in order; stops early when it returns false.
+  /// Calls `each` for records first..last (both included) in order; stops early when it returns false. What
+  /// lies outside log_range() is left out.
   /// Each record's checksum is verified and the sequence checked to be without gaps.
   virtual StoreResult<void> read_log(Sequence first, Sequence last,
                                      const std::function<bool(const EditRecord&)>& each) = 0;

@@ -24,10 +24,8 @@ inline WorldMeta sample_meta() {
     meta.server_key_seed[i] = static_cast<std::uint8_t>(200 - i);
   }
   meta.chunk_edge = kSampleEdge;
-  meta.generator = "empty";
-  meta.generator_version = 1;
-  meta.seed = 0x9000000000000001ULL;  // beyond the signed range of a database integer
-  meta.generator_parameters = "";
+  // The seed is beyond the signed range of a database integer.
+  meta.generator = {"empty", 1, 0x9000000000000001ULL, ""};
   meta.materials = default_material_table();
   meta.spawn = {0.5, 70.25, -3.0};
   return meta;
@@ -72,6 +70,9 @@ inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
   record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
   record.edit = sample_edit(rng);
+  if (record.cause == Cause::rollback || record.cause == Cause::undo || record.cause == Cause::redo) {
+    record.subject = seq / 2;
+  }
   return record;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/store/sqlite_store.hpp"
+#include "tests/support/compact_by_hand.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -28,12 +29,11 @@ std::string make_world(const TempFolder& folder) {
   REQUIRE(store->save_base(base).has_value());
   REQUIRE(store->raise_epoch().has_value());
   const PlayerRow player = sample_player(1);
-  const EditRecord record{{1, 1},
-                          {1, 0x8000000000000002ULL, 3},
-                          1'700'000'000'000'000,
-                          Cause::undo,
-                          {FillBox{{{-4, 5, 6}, {7, 8, 9}}}, {MaskKind::only_material, 2}, 3}};
-  REQUIRE(store->append({&player, 1}, {&record, 1}).has_value());
+  const EditDescriptor edit{FillBox{{{-4, 5, 6}, {7, 8, 9}}}, {MaskKind::only_material, 2}, 3};
+  const std::vector<EditRecord> records = {
+      {{1, 1}, {1, 0x8000000000000002ULL, 3}, 1'700'000'000'000'000, Cause::player, edit},
+      {{1, 2}, {1, 0x8000000000000002ULL, 4}, 1'700'000'000'000'001, Cause::undo, edit, 1}};
+  REQUIRE(store->append({&player, 1}, records).has_value());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {{{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
   REQUIRE(store->save_snapshots(snapshots, 1).has_value());
   return store->file();
@@ -59,23 +59,25 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
   CHECK(columns(file, "base") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, digest0 INTEGER0, digest1 INTEGER0, checksum "
-        "INTEGER0, data BLOB0");
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
+        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "edit_log") ==
         "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, client_seq "
-        "INTEGER0, time_us INTEGER0, cause INTEGER0, min_x INTEGER0, min_y INTEGER0, min_z INTEGER0, max_x "
+        "INTEGER0, time_us INTEGER0, cause INTEGER0, subject INTEGER0, min_x INTEGER0, min_y INTEGER0, min_z "
+        "INTEGER0, max_x "
         "INTEGER0, max_y INTEGER0, max_z INTEGER0, descriptor BLOB0, checksum INTEGER0");
   CHECK(columns(file, "snapshot") ==
         "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
         "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
   CHECK(columns(file, "player_instance") ==
-        "author INTEGER1, instance INTEGER2, decided INTEGER0, checksum INTEGER0");
+        "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
   CHECK(raw_sql(file,
                 "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
                 "ORDER BY name)") == "base edit_log meta player player_instance snapshot");
   CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
-        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version materials "
+        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version log_head "
+        "materials "
         "seed server_key_seed snapshot_fold spawn world_id");
 }
 
@@ -85,25 +87,40 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   const auto value = [&](const std::string& column, const std::string& from) {
     return raw_sql(file, "SELECT " + column + " FROM " + from);
   };
-  CHECK(value("checksum", "edit_log") == "1704138919162627537");
-  CHECK(value("hex(descriptor)", "edit_log") == "02030203070A0C0A0202");
+  const std::string undo = "edit_log WHERE seq = 2";
+  CHECK(value("checksum", undo) == "-9055125786412931878");
+  CHECK(value("hex(descriptor)", undo) == "02030203070A0C0A0202");
   CHECK(value("seq || ' ' || epoch || ' ' || author || ' ' || instance || ' ' || client_seq || ' ' || "
               "time_us || ' ' || "
-              "cause || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x || ' ' || max_y || ' ' "
+              "cause || ' ' || subject || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x || ' "
+              "' || max_y || ' ' "
               "|| max_z",
-              "edit_log") == "1 1 1 -9223372036854775806 3 1700000000000000 3 -4 5 6 7 8 9");
+              undo) == "2 1 1 -9223372036854775806 4 1700000000000001 3 1 -4 5 6 7 8 9");
   CHECK(value("hex(data)", "base") == "0201011010100101010100");
   CHECK(value("digest0 || ' ' || digest1", "base") == "31824059738278227 938747246342400335");
   CHECK(value("checksum", "base") == "2279636502801835223");
   CHECK(value("hex(data)", "snapshot") == "0201011010100101020100");
   CHECK(value("checksum", "snapshot") == "526761025094432557");
   CHECK(value("checksum", "player") == "-8523557106004048105");
-  CHECK(value("checksum", "player_instance") == "-331194737533928893");
+  CHECK(value("epoch || ' ' || seq", "base") == "0 0");
+  CHECK(value("epoch || ' ' || seq", "snapshot") == "1 1");
+  CHECK(value("decided || ' ' || last_us", "player_instance") == "4 1700000000000001");
+  CHECK(value("checksum", "player_instance") == "4364206919407918968");
   CHECK(value("checksum", "meta WHERE key = 'seed'") == "1688236515335772665");
   CHECK(value("checksum", "meta WHERE key = 'world_id'") == "308304262276956158");
   CHECK(value("checksum", "meta WHERE key = 'generator'") == "-5376564082402544169");
   CHECK(value("hex(value)", "meta WHERE key = 'spawn'") ==
         "000000000000E03F000000000090514000000000000008C0");
+  CHECK(value("hex(value)", "meta WHERE key = 'log_head'") == "0000000000000000000000000000000000000000");
   CHECK(value("hex(value)", "meta WHERE key = 'base_fold'") == "0100000000000000BED44F992268158D");
   CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") == "0100000000000000D2455B47B79BD394");
+}
+
+TEST_CASE("the head of a compacted log has the bytes of format 1", "[store][golden]") {
+  const TempFolder folder;
+  const std::string file = make_world(folder);
+  compact_by_hand(file, {{1, 2}, 1'700'000'000'000'001}, {});
+  // u32 epoch, u64 sequence, u64 time
+  CHECK(raw_sql(file, "SELECT hex(value) FROM meta WHERE key = 'log_head'") ==
+        "01000000020000000000000001401E18240A0600");
 }

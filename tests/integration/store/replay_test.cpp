@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "server/app/replay_program.hpp"
+#include "tests/support/compact_by_hand.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/sample_world.hpp"
@@ -322,6 +323,35 @@ TEST_CASE("replay reads a world while its server goes on writing", "[store][repl
   CHECK(report->differences == 0);
 }
 
+TEST_CASE("a world whose log was compacted replays from its newer base", "[store][replay]") {
+  LiveWorld world(15);
+  SplitMix64 rng(15);
+  world.edit(rng, 60);
+  std::vector<std::pair<ChunkKey, ChunkPtr>> base;
+  for (const ChunkKey& key : world.edited) {
+    base.emplace_back(key, std::make_shared<const Chunk>(world.live.at(key)));
+  }
+  REQUIRE(world.store->save_snapshots(base, 60).has_value());
+  const LogEnd head = world.store->log_range()->last;
+  world.edit(rng, 40);
+  const DigestList list = world.list_at(100);
+  world.store.reset();
+  compact_by_hand(world.folder / "world.sqlite", head, base);
+  world.store = *open_world(world.folder.path(), StoreAccess::read_write);
+  CHECK(world.store->check().has_value());
+
+  const ReplayReport report = world.replay(kAll, &list);
+  if (report.first) FAIL(report.first->message());
+  CHECK(report.edits == 40);
+  CHECK(report.seq == 100);
+  CHECK(report.listed_compared == list.chunks.size());  // also chunks that only the base has
+  CHECK(report.snapshots_compared == base.size());
+  CHECK(world.replay(60).edits == 0);
+  const auto before = Replayer(*world.store, world.generator).run(59);
+  REQUIRE_FALSE(before.has_value());
+  CHECK(before.error().kind == StoreError::Kind::bad_request);
+}
+
 TEST_CASE("a damaged log row stops the replay with its name", "[store][replay]") {
   LiveWorld world(13);
   SplitMix64 rng(13);
@@ -390,7 +420,7 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
 TEST_CASE("a world whose generator this program lacks is not replayed", "[store][replay]") {
   const TempFolder folder;
   WorldMeta meta = sample_meta();
-  meta.generator = "atlantis";
+  meta.generator.name = "atlantis";
   REQUIRE(create_world(folder.path(), meta).has_value());
   const Outcome run = run_program({"--world", folder.path()});
   CHECK(run.code == 2);

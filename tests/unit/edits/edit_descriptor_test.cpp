@@ -23,10 +23,13 @@ ErrorCode decode_error(const Bytes& bytes) {
 
 EditRecord random_record(SplitMix64& rng) {
   EditRecord record;
-  record.version = {static_cast<Epoch>(rng.next() >> rng.below(64)), (rng.next() >> rng.below(64)) | 1};
-  record.op = {static_cast<AuthorId>(rng.next() >> rng.below(64)), rng.next(), rng.next() >> rng.below(64)};
+  const auto any = [&rng](std::uint64_t max) { return (rng.next() >> rng.below(64)) & max; };
+  record.version = {static_cast<Epoch>(any(~0U)), any(kSequenceMax) | 1};
+  record.op = {static_cast<AuthorId>(any(~0U)), rng.next(), any(kSequenceMax)};
   record.time_us = static_cast<TimeUs>(rng.next() >> rng.below(64));
   record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
+  if (rng.below(2) == 0) record.subject = any(kSequenceMax) % record.version.seq;
+  if (rng.below(2) == 0) record.log = static_cast<LogId>(any(~0U));
   record.edit = random_edit_anywhere(rng);
   return record;
 }
@@ -166,11 +169,96 @@ TEST_CASE("flipped record bytes are rejected or mean exactly their own bytes, an
   CHECK(survivors > 0);
 }
 
+TEST_CASE("descriptors of these kinds have at most 64 bytes, wherever they lie", "[edits]") {
+  Bytes bytes = encode(kVoxel);
+  bytes.resize(kDescriptorBytesMax, 0);
+  CHECK(decode_error(bytes) == ErrorCode::trailing_bytes);
+  bytes.push_back(0);
+  CHECK(decode_error(bytes) == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("a record has room for descriptors of later kinds, up to its own bound", "[edits]") {
+  const EditRecord record = {{1, 1}, {1, 2, 3}, 4, Cause::player, kVoxel};
+  const Bytes descriptor = encode(kVoxel);
+  const auto with_descriptor_of = [&](std::size_t size, std::uint8_t kind) {
+    Bytes bytes = encode_record(record);
+    bytes.resize(bytes.size() - descriptor.size() - 1);
+    ByteWriter w(bytes);
+    w.varint(size);
+    w.u8(kind);
+    bytes.resize(bytes.size() + size - 1, 0);
+    const auto decoded = decode_record(bytes);
+    REQUIRE_FALSE(decoded.has_value());
+    return decoded.error();
+  };
+  constexpr std::uint8_t kPaste = 6;
+  CHECK(with_descriptor_of(65, 1).code == ErrorCode::limit_exceeded);  // the kind's bound
+  // The length passes; the kind is what this build lacks.
+  CHECK(with_descriptor_of(65, kPaste).code == ErrorCode::unknown_kind);
+  CHECK(with_descriptor_of(kRecordDescriptorBytesMax, kPaste).code == ErrorCode::unknown_kind);
+  const Error error = with_descriptor_of(kRecordDescriptorBytesMax + 1, kPaste);
+  CHECK(error.code == ErrorCode::bad_value);
+  CHECK(error.what == std::string("descriptor too long"));
+}
+
+TEST_CASE("a record's numbers stay within 63 bits and its subject before itself", "[edits]") {
+  EditRecord record = {
+      {1, kSequenceMax}, {1, 2, kSequenceMax}, 4, Cause::undo, kVoxel, kSequenceMax - 1, ~0U};
+  const auto good = decode_record(encode_record(record));
+  REQUIRE(good.has_value());
+  CHECK(*good == record);
+  const auto broken = [](EditRecord bad, const char* what) {
+    const auto numbers = validate_numbers(bad);
+    return !numbers && numbers.error().what == std::string(what);
+  };
+  record.subject = record.version.seq;
+  CHECK(broken(record, "subject is not an earlier edit"));
+  record.subject = 0;
+  record.op.seq = kSequenceMax + 1;
+  CHECK(broken(record, "client sequence exceeds 63 bits"));
+  record.op.seq = 0;
+  record.version.seq = kSequenceMax + 1;
+  CHECK(broken(record, "sequence exceeds 63 bits"));
+  record.version.seq = 0;
+  CHECK(broken(record, "sequence 0 is the base, not an edit"));
+
+  // In bytes: the version byte, then log, epoch, sequence, author, instance, client sequence, time, cause,
+  // subject.
+  const auto decoded = [](std::uint64_t seq, std::uint64_t client_seq, std::uint64_t subject) {
+    Bytes bytes;
+    ByteWriter w(bytes);
+    w.u8(kEditRecordVersion);
+    w.varint(0);
+    w.varint(1);
+    w.varint(seq);
+    w.varint(1);
+    w.u64(2);
+    w.varint(client_seq);
+    w.svarint(4);
+    w.u8(static_cast<std::uint8_t>(Cause::undo));
+    w.varint(subject);
+    for (const std::int64_t c : {1, 2, 3}) w.svarint(c);
+    for (int axis = 0; axis < 3; ++axis) w.varint(1);
+    const Bytes descriptor = encode(kVoxel);
+    w.varint(descriptor.size());
+    w.bytes(descriptor);
+    const auto back = decode_record(bytes);
+    return back ? std::string("good") : back.error().what;
+  };
+  CHECK(decoded(9, 3, 8) == "good");
+  CHECK(decoded(kSequenceMax, kSequenceMax, 0) == "good");
+  CHECK(decoded(9, 3, 9) == "subject is not an earlier edit");
+  CHECK(decoded(9, 3, ~std::uint64_t{0}) == "subject is not an earlier edit");
+  CHECK(decoded(9, kSequenceMax + 1, 0) == "client sequence exceeds 63 bits");
+  CHECK(decoded(kSequenceMax + 1, 3, 0) == "sequence exceeds 63 bits");
+}
+
 TEST_CASE("a record's version, sequence, cause and box are checked", "[edits]") {
   const EditRecord record = {{1, 1}, {1, 2, 3}, 4, Cause::player, kVoxel};
   const Bytes good = encode_record(record);
   REQUIRE(decode_record(good).has_value());
-  // version 0, epoch 1, seq 2, author 3, instance 4 .. 11, client seq 12, time 13, cause 14, box 15 .. 20
+  // version 0, log 1, epoch 2, seq 3, author 4, instance 5 .. 12, client seq 13, time 14, cause 15,
+  // subject 16, box 17 .. 22
   const auto error_with = [&good](std::size_t at, std::uint8_t byte) {
     Bytes bad = good;
     bad[at] = byte;
@@ -180,12 +268,13 @@ TEST_CASE("a record's version, sequence, cause and box are checked", "[edits]") 
   };
   CHECK(error_with(0, 2) == ErrorCode::bad_version);
   CHECK(error_with(0, 0) == ErrorCode::bad_version);
-  CHECK(error_with(2, 0) == ErrorCode::bad_value);
-  CHECK(error_with(14, 6) == ErrorCode::bad_value);
-  CHECK(error_with(15, 4) == ErrorCode::bad_value);  // box one voxel off
-  CHECK(error_with(18, 2) == ErrorCode::bad_value);  // box one voxel longer
-  CHECK(error_with(21, 5) == ErrorCode::trailing_bytes);
-  CHECK(error_with(22, 9) == ErrorCode::unknown_kind);
+  CHECK(error_with(3, 0) == ErrorCode::bad_value);
+  CHECK(error_with(15, 6) == ErrorCode::bad_value);
+  CHECK(error_with(16, 1) == ErrorCode::bad_value);  // edit 1 answers itself
+  CHECK(error_with(17, 4) == ErrorCode::bad_value);  // box one voxel off
+  CHECK(error_with(20, 2) == ErrorCode::bad_value);  // box one voxel longer
+  CHECK(error_with(23, 5) == ErrorCode::trailing_bytes);
+  CHECK(error_with(24, 9) == ErrorCode::unknown_kind);
 }
 
 }  // namespace runstone::test

@@ -290,6 +290,8 @@ TEST_CASE("an edit request needs a sequence and one whole descriptor", "[protoco
   };
   const Bytes edit = encode(kEdit);
   CHECK(request(1, edit));
+  CHECK(request(kSequenceMax, edit));
+  CHECK_FALSE(request(kSequenceMax + 1, edit));  // a store could not keep it
   CHECK_FALSE(request(0, edit));
   CHECK_FALSE(request(1, {}));
   CHECK_FALSE(request(1, Bytes(edit.begin(), edit.end() - 1)));

@@ -49,6 +49,7 @@ class FakeStore final : public Store {
   const std::string& file() const override { return file_; }
   StoreResult<Epoch> raise_epoch() override { return Epoch{1}; }
   Epoch epoch() const override { return 1; }
+  StoreResult<LogRange> log_range() override { return LogRange{1, {{1, last()}, 0}}; }
   StoreResult<Sequence> last_sequence() override { return last(); }
   StoreResult<Sequence> checkpoint() override { return Sequence{0}; }
   StoreResult<std::vector<PlayerRow>> players() override { return std::vector<PlayerRow>(); }

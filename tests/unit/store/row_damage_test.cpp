@@ -69,6 +69,12 @@ TEST_CASE("a changed column of the edit log is named", "[store][damage]") {
         std::string("UPDATE edit_log SET ") + column + " = " + column + " + 1 WHERE seq = 7";
     CHECK(damage(folder, set) == "edit_log seq=7");
   }
+  for (const char* subject : {"1 - subject", "7", "-1", "99"}) {  // 7 would answer itself
+    CAPTURE(subject);
+    CHECK(damage(folder, std::string("UPDATE edit_log SET subject = ") + subject + " WHERE seq = 7") ==
+          "edit_log seq=7");
+  }
+  CHECK(damage(folder, "UPDATE edit_log SET client_seq = -client_seq WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET cause = cause | 64 WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET cause = (cause + 1) % 6 WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET descriptor = CAST(descriptor || x'00' AS BLOB) WHERE seq = 7") ==
@@ -135,6 +141,8 @@ TEST_CASE("a changed column of a snapshot or base chunk is named", "[store][dama
     }
     CHECK(damage(folder, "DELETE FROM " + table.name + table.where) == table.name);
   }
+  CHECK(damage(folder, "UPDATE base SET seq = 1 WHERE x = 2") == "base");
+  CHECK(damage(folder, "UPDATE base SET epoch = 1 WHERE x = 2") == "base");
   CHECK(damage(folder, "UPDATE snapshot SET seq = seq - 1 WHERE x = 1") == "snapshot");
   CHECK(damage(folder, "UPDATE snapshot SET epoch = 0 WHERE x = 1") == "snapshot");
 }
@@ -163,19 +171,33 @@ TEST_CASE("a changed column of a player is named", "[store][damage]") {
   const std::string name = "player_instance author=2 instance=" + std::to_string(0xf000000000000001ULL);
   CHECK(damage(folder, "UPDATE player_instance SET decided = decided + 1" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET decided = 0" + last) == name);
+  CHECK(damage(folder, "UPDATE player_instance SET decided = -decided" + last) == name);
+  CHECK(damage(folder, "UPDATE player_instance SET last_us = last_us - 1" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET checksum = 0" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET author = 5" + last) ==
         "player_instance author=5 instance=" + std::to_string(0xf000000000000001ULL));
   CHECK(damage(folder, "DELETE FROM player_instance" + last) == name);  // the log knows better
 }
 
+TEST_CASE("a damaged mark is not overwritten by the next edit of its client", "[store][damage]") {
+  const TempFolder folder;
+  make_world(folder.path());
+  REQUIRE(raw_sql(folder / "world.sqlite", "UPDATE player_instance SET decided = 1").empty());
+  SplitMix64 rng(78);
+  auto store = *open_world(folder.path(), StoreAccess::read_write);
+  const auto appended = store->append({}, sample_records(rng, 1, 21, 5));
+  REQUIRE_FALSE(appended.has_value());
+  CHECK(appended.error().kind == StoreError::Kind::corrupt);
+  CHECK(*store->last_sequence() == 20);
+}
+
 TEST_CASE("a changed, missing or retyped row of meta is named and the world does not open",
           "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
-  for (const char* key :
-       {"world_id", "chunk_edge", "generator", "generator_version", "seed", "generator_parameters",
-        "materials", "server_key_seed", "spawn", "epoch", "checkpoint", "base_fold", "snapshot_fold"}) {
+  for (const char* key : {"world_id", "chunk_edge", "generator", "generator_version", "seed",
+                          "generator_parameters", "materials", "server_key_seed", "spawn", "epoch",
+                          "checkpoint", "log_head", "base_fold", "snapshot_fold"}) {
     CAPTURE(key);
     const std::string where = std::string(" WHERE key = '") + key + "'";
     const std::string place = std::string("meta key=") + key;

@@ -1,0 +1,37 @@
+// compact_by_hand: what a compaction leaves on disk: a newer base, a log that begins behind it, and the head
+// of what is gone.
+#pragma once
+#include <catch2/catch.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/chunk_table.hpp"
+#include "server/store/meta_table.hpp"
+#include "server/store/sql.hpp"
+
+namespace runstone::test {
+
+/// Takes edits 1 .. head.version.seq out of the log of a closed world and makes `chunks` base chunks.
+inline void compact_by_hand(const std::string& file, const LogEnd& head,
+                            const std::vector<std::pair<ChunkKey, ChunkPtr>>& chunks) {
+  auto database = sql::Database::open(file, sql::Database::Mode::write, "");
+  REQUIRE(database.has_value());
+  auto meta = MetaTable::open(*database);
+  auto base = ChunkTable::open(*database, ChunkTable::Kind::base);
+  REQUIRE((meta.has_value() && base.has_value()));
+  auto transaction = sql::Transaction::begin(*database);
+  REQUIRE(transaction.has_value());
+  auto fold = meta->fold(base->fold_key());
+  REQUIRE(fold.has_value());
+  for (const auto& [key, chunk] : chunks) {
+    REQUIRE(base->save(key, *chunk, chunk->voxels.extent.x, *fold).has_value());
+  }
+  REQUIRE(meta->put_fold(base->fold_key(), *fold).has_value());
+  REQUIRE(meta->put_log_head(head).has_value());
+  const std::string cut = "DELETE FROM edit_log WHERE seq <= " + std::to_string(head.version.seq);
+  REQUIRE(database->run(cut.c_str()).has_value());
+  REQUIRE(transaction->commit().has_value());
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,148 @@
+// A log whose beginning was compacted into the base goes on where it was, and base and log never overlap.
+#include <catch2/catch.hpp>
+
+#include "server/store/sqlite_store.hpp"
+#include "tests/support/compact_by_hand.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+constexpr ChunkKey kKey{0, {1, 0, -3}};
+
+/// A closed world of `count` edits with an imported chunk at kKey; returns the last edit.
+EditRecord make_world(const std::string& folder, SplitMix64& rng, std::size_t count) {
+  auto store = *create_world(folder, sample_meta());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{kKey, sample_chunk(rng, {})}};
+  REQUIRE(store->save_base(base).has_value());
+  REQUIRE(store->raise_epoch().has_value());
+  const auto records = sample_records(rng, 1, 1, count);
+  REQUIRE(store->append({}, records).has_value());
+  REQUIRE(store->save_snapshots({}, count).has_value());
+  return records.back();
+}
+
+LogEnd end_of(const EditRecord& record) { return {record.version, record.time_us}; }
+
+std::unique_ptr<Store> opened(const std::string& folder) {
+  auto store = open_world(folder, StoreAccess::read_write);
+  if (!store) FAIL(store.error().message());
+  return *std::move(store);
+}
+
+}  // namespace
+
+TEST_CASE("the range of a log that was never compacted begins at 1", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(1);
+  CHECK(*(*create_world(folder / "new", sample_meta()))->log_range() == LogRange{});
+  const EditRecord last = make_world(folder / "old", rng, 7);
+  CHECK(*opened(folder / "old")->log_range() == LogRange{1, {{1, 7}, last.time_us}});
+}
+
+TEST_CASE("a log that was compacted to its end does not begin at 1 again", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(2);
+  const LogEnd head = end_of(make_world(folder.path(), rng, 7));
+  compact_by_hand(folder / "world.sqlite", head, {{kKey, sample_chunk(rng, {1, 5})}});
+  auto store = opened(folder.path());
+  CHECK(*store->log_range() == LogRange{8, head});
+  CHECK(*store->last_sequence() == 7);
+  CHECK(*store->checkpoint() == 7);
+  std::size_t read = 0;
+  REQUIRE(store->read_log(1, kSequenceMax, [&](const EditRecord&) { return ++read > 0; }).has_value());
+  CHECK(read == 0);
+  REQUIRE(*store->raise_epoch() == 2);
+  CHECK(store->append({}, sample_records(rng, 2, 1, 1)).error().kind == StoreError::Kind::bad_request);
+  const auto more = sample_records(rng, 2, 8, 3);
+  REQUIRE(store->append({}, more).has_value());
+  CHECK(*store->log_range() == LogRange{8, end_of(more.back())});
+  REQUIRE(store->read_log(1, kSequenceMax, [&](const EditRecord& record) { return record == more[read++]; })
+              .has_value());
+  CHECK(read == 3);
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> late = {{{0, {8, 8, 8}}, sample_chunk(rng, {})}};
+  CHECK(store->save_base(late).error().kind == StoreError::Kind::bad_request);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a base chunk carries the version at which it was completed", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(3);
+  const LogEnd head = end_of(make_world(folder.path(), rng, 7));
+  const ChunkPtr completed = sample_chunk(rng, {1, 5});
+  compact_by_hand(folder / "world.sqlite", head, {{kKey, completed}, {{0, {9, 9, 9}}, completed}});
+  auto store = opened(folder.path());
+  const auto loaded = store->load_base(kKey);
+  REQUIRE((loaded.has_value() && loaded->has_value()));
+  CHECK((*loaded)->version == Version{1, 5});
+  CHECK((*loaded)->voxels == completed->voxels);
+  CHECK(store->base_keys()->size() == 2);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("a base chunk is only ever replaced by a newer one", "[store]") {
+  const TempFolder folder;
+  SplitMix64 rng(4);
+  make_world(folder.path(), rng, 7);
+  auto database = sql::Database::open(folder / "world.sqlite", sql::Database::Mode::write, "");
+  REQUIRE(database.has_value());
+  auto base = *ChunkTable::open(*database, ChunkTable::Kind::base);
+  RowFold fold;
+  const auto saved = [&](Version version) {
+    const auto result = base.save(kKey, *sample_chunk(rng, version), kSampleEdge, fold);
+    return result ? std::string("saved") : result.error().what;
+  };
+  CHECK(saved({1, 5}) == "saved");
+  CHECK(saved({1, 5}) == "is there already");
+  CHECK(saved({1, 4}) == "is older than the stored version");
+  CHECK(saved({1, 6}) == "saved");
+}
+
+TEST_CASE("a log that does not fit its head is noticed", "[store][damage]") {
+  SplitMix64 rng(5);
+  /// Where log_range() finds the damage after `sql` was done to a world compacted up to 7 of 12 edits.
+  const auto where = [&](const std::string& sql) {
+    const TempFolder folder;
+    make_world(folder.path(), rng, 7);
+    auto head = LogEnd{};
+    {
+      auto store = opened(folder.path());
+      head = store->log_range()->last;
+      REQUIRE(store->append({}, sample_records(rng, 1, 8, 5)).has_value());
+    }
+    compact_by_hand(folder / "world.sqlite", head, {});
+    REQUIRE(raw_sql(folder / "world.sqlite", sql).empty());
+    auto store = opened(folder.path());
+    const auto range = store->log_range();
+    return range ? store->check() ? "fine" : store->check().error().where : range.error().where;
+  };
+  CHECK(where("SELECT 1 WHERE 0") == "fine");
+  CHECK(where("DELETE FROM edit_log WHERE seq = 8") == "edit_log seq=8");
+  CHECK(where("UPDATE edit_log SET seq = 7 WHERE seq = 8") == "edit_log seq=7");
+  CHECK(where("UPDATE edit_log SET seq = -8 WHERE seq = 8") ==
+        "edit_log seq=" + std::to_string(static_cast<Sequence>(-8)));
+  CHECK(where("UPDATE edit_log SET epoch = -1 WHERE seq = 12") == "edit_log seq=12");
+}
+
+TEST_CASE("base chunks that hold edits of the log, and a head beyond the checkpoint, are noticed",
+          "[store][damage]") {
+  SplitMix64 rng(6);
+  const auto verdict = [&](Version base, const LogEnd& head) {
+    const TempFolder folder;
+    make_world(folder.path(), rng, 7);
+    {
+      auto store = opened(folder.path());
+      REQUIRE(store->append({}, sample_records(rng, 1, 8, 5)).has_value());
+    }
+    compact_by_hand(folder / "world.sqlite", head, {{kKey, sample_chunk(rng, base)}});
+    const auto checked = opened(folder.path())->check();
+    return checked ? "" : checked.error().where + " " + checked.error().what;
+  };
+  CHECK(verdict({1, 7}, {{1, 7}, 5}).empty());
+  CHECK(verdict({1, 8}, {{1, 7}, 5}) == "base chunk=1,0,-3 holds edits that are in the log as well");
+  CHECK(verdict({1, 7}, {{1, 9}, 5}) == "edit_log begins at seq=10, behind the checkpoint seq=7");
+}
