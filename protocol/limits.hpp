@@ -42,6 +42,9 @@ inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;
 inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // a peer that stays silent frees its slot
 
+/// Clock readings, microseconds either way: a difference of two of them cannot overflow at any reader.
+inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
+
 // World.
 inline constexpr std::uint8_t kLodMax = 0;               // levels above full detail are reserved
 inline constexpr std::size_t kViewRadiusMax = 64;        // chunks

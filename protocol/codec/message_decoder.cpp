@@ -8,6 +8,8 @@
 namespace runstone {
 namespace {
 
+bool is_time(TimeUs t) { return t >= -kWireTimeUsMax && t <= kWireTimeUsMax; }
+
 Unexpected<Error> bad(const char* what) { return fail(ErrorCode::bad_value, what); }
 
 using MaterialRows = flatbuffers::Vector<flatbuffers::Offset<wire::MaterialRow>>;
@@ -134,6 +136,7 @@ struct BodyReader {
     EditRequest m;
     m.client_seq = t.client_seq();
     m.submitted_us = t.submitted_us();
+    if (!is_time(m.submitted_us)) return bad("edit request time is out of range");
     if (m.client_seq == 0) return bad("client sequences start at 1");
     if (m.client_seq > kSequenceMax) return bad("client sequence exceeds 63 bits");
     auto edit = decode_descriptor(view_of(t.edit()));
@@ -162,6 +165,7 @@ struct BodyReader {
       out.cause = static_cast<Cause>(e.cause());
       out.submitted_us = e.submitted_us();
       out.ordered_us = e.ordered_us();
+      if (!is_time(out.submitted_us) || !is_time(out.ordered_us)) return bad("commit time is out of range");
       auto edit = decode_descriptor(view_of(e.edit()));
       if (!edit) return Unexpected<Error>{edit.error()};
       out.edit = *edit;
@@ -264,8 +268,14 @@ struct BodyReader {
     return m;
   }
 
-  Result<Message> read(const wire::Ping& t) const { return Ping{t.sent_us()}; }
-  Result<Message> read(const wire::Pong& t) const { return Pong{t.sent_us(), t.server_us()}; }
+  Result<Message> read(const wire::Ping& t) const {
+    if (!is_time(t.sent_us())) return bad("ping time is out of range");
+    return Ping{t.sent_us()};
+  }
+  Result<Message> read(const wire::Pong& t) const {
+    if (!is_time(t.sent_us()) || !is_time(t.server_us())) return bad("pong time is out of range");
+    return Pong{t.sent_us(), t.server_us()};
+  }
 
   Result<Message> read(const wire::Goodbye& t) const {
     Goodbye m;

@@ -11,7 +11,9 @@ namespace {
 
 // Small and large values alike: a shift spreads the draw over all magnitudes.
 std::uint64_t any64(SplitMix64& rng) { return rng.next() >> rng.below(64); }
-std::int64_t any_time(SplitMix64& rng) { return static_cast<std::int64_t>(rng.next()) >> rng.below(63); }
+std::int64_t any_time(SplitMix64& rng) {
+  return static_cast<std::int64_t>(rng.next()) >> (10 + rng.below(53));  // within kWireTimeUsMax
+}
 
 template <std::size_t N>
 void draw(SplitMix64& rng, std::array<std::uint8_t, N>& out) {

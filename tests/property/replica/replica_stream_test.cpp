@@ -292,7 +292,7 @@ class Simulation {
   void advance_durable() {
     durable_ = world_.head();
     for (Peer& peer : peers_) {
-      peer.control.push_back([this, &peer, seq = durable_, epoch = world_.epoch()] {
+      peer.control.push_back([&peer, seq = durable_, epoch = world_.epoch()] {
         peer.replica.receive(Durable{epoch, seq});
       });
       if (!rules_.audits) continue;

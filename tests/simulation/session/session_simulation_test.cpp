@@ -247,7 +247,7 @@ std::string joined(const std::vector<std::string>& lines) {
 }  // namespace
 
 TEST_CASE("three replicas and a server that loses power agree after thousands of steps", "[simulation]") {
-  const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+  const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2, 3, 4));
   CAPTURE(seed);
   Simulation simulation(seed);
   simulation.run(2500, 4);

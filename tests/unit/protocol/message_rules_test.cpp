@@ -334,6 +334,17 @@ TEST_CASE("lists of previous sequences that edits share cannot outgrow the messa
   CHECK(decoded.error().what == std::string("commit shares its lists of previous sequences"));
 }
 
+TEST_CASE("times that could overflow a reader's arithmetic are refused", "[protocol]") {
+  const auto pong = [](TimeUs sent, TimeUs server) {
+    return passes_from_server([&](auto& b) { return wire::CreatePong(b, sent, server); },
+                              FrameClass::control);
+  };
+  CHECK(pong(kWireTimeUsMax, -kWireTimeUsMax));
+  CHECK_FALSE(pong(kWireTimeUsMax + 1, 0));
+  CHECK_FALSE(pong(0, -kWireTimeUsMax - 1));
+  CHECK_FALSE(pong(0, INT64_MIN));
+}
+
 TEST_CASE("answers and texts keep their bounds", "[protocol]") {
   const auto reject = [](std::uint64_t seq, std::uint8_t reason, const std::string& text) {
     return passes_from_server(
