@@ -140,7 +140,7 @@ struct Renderer::State {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
-    glDisable(GL_CULL_FACE);  // water is seen from below, too
+    glDisable(GL_CULL_FACE);                                              // water is seen from below, too
     glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0F);  // overlaps would blend twice
     for (auto v = visible.rbegin(); v != visible.rend(); ++v) {
       if (v->buffers->transparent_count() == 0) continue;

@@ -21,7 +21,7 @@ inline constexpr const char* kQuadVertexShader =
     "uniform vec3 origin;\n"                 // chunk origin minus eye
     "uniform vec3 pattern;\n"                // chunk origin modulo 4096: world-fixed texture coordinates
     "uniform sampler2D palette;\n"
-    "uniform float seam;\n"                 // growth of a quad per unit of distance
+    "uniform float seam;\n"  // growth of a quad per unit of distance
     "out vec3 relative;\n"
     "out vec3 voxel;\n"
     "flat out vec3 normal;\n"

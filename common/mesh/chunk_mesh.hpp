@@ -1,5 +1,5 @@
-// ChunkMesh: the quads of one chunk, in two draw passes, kept per direction and layer, so that an edit replaces
-// the layers it touched and keeps the rest (design: "dirty layers").
+// ChunkMesh: the quads of one chunk, in two draw passes, kept per direction and layer, so that an edit
+// replaces the layers it touched and keeps the rest (design: "dirty layers").
 #pragma once
 #include <array>
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace runstone {
 /// Quads of one pass ordered by direction, then layer; deterministic within a layer.
 struct QuadLayers {
   std::vector<Quad> quads;
-  /// First quad of each (direction, layer): layer l of direction d starts at first[d * kSideMax + l]; the last
-  /// entry is quads.size(). Empty layers repeat their successor's start.
+  /// First quad of each (direction, layer): layer l of direction d starts at first[d * kSideMax + l]; the
+  /// last entry is quads.size(). Empty layers repeat their successor's start.
   std::array<std::uint32_t, kDirectionCount * kSideMax + 1> first{};
 
   std::span<const Quad> layer(Direction d, unsigned l) const {

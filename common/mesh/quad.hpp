@@ -5,7 +5,8 @@
 //   bits 35..37 direction            core/coords.hpp
 //   bits 38..53 material             u16
 //   bits 54..63 zero (reserved: light, occlusion)
-// u x v points along +axis (right-handed), so a positive face winds counter-clockwise over u, v seen from outside.
+// u x v points along +axis (right-handed), so a positive face winds counter-clockwise over u, v seen from
+// outside.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -41,12 +42,9 @@ constexpr Quad pack(const QuadFields& q) {
 
 constexpr QuadFields unpack(Quad quad) {
   const auto field = [bits = quad.bits](int shift, std::uint64_t mask) { return (bits >> shift) & mask; };
-  return {static_cast<std::uint8_t>(field(0, 127)),
-          static_cast<std::uint8_t>(field(7, 127)),
-          static_cast<std::uint8_t>(field(14, 127)),
-          static_cast<std::uint8_t>(field(21, 127) + 1),
-          static_cast<std::uint8_t>(field(28, 127) + 1),
-          static_cast<Direction>(field(35, 7)),
+  return {static_cast<std::uint8_t>(field(0, 127)),      static_cast<std::uint8_t>(field(7, 127)),
+          static_cast<std::uint8_t>(field(14, 127)),     static_cast<std::uint8_t>(field(21, 127) + 1),
+          static_cast<std::uint8_t>(field(28, 127) + 1), static_cast<Direction>(field(35, 7)),
           static_cast<Material>(field(38, 65535))};
 }
 

@@ -292,9 +292,8 @@ class Simulation {
   void advance_durable() {
     durable_ = world_.head();
     for (Peer& peer : peers_) {
-      peer.control.push_back([&peer, seq = durable_, epoch = world_.epoch()] {
-        peer.replica.receive(Durable{epoch, seq});
-      });
+      peer.control.push_back(
+          [&peer, seq = durable_, epoch = world_.epoch()] { peer.replica.receive(Durable{epoch, seq}); });
       if (!rules_.audits) continue;
       Audit audit;
       for (const ChunkCoord at : peer.subscribed) {
