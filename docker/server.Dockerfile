@@ -22,6 +22,6 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
 COPY --from=build /src/build/release/bin/runstone-server /src/build/release/bin/runstone-replay /usr/local/bin/
 USER runstone
 VOLUME /world
-EXPOSE 7777
+EXPOSE 4747
 STOPSIGNAL SIGTERM
-ENTRYPOINT ["runstone-server", "--world", "/world", "--listen", "0.0.0.0:7777"]
+ENTRYPOINT ["runstone-server", "--world", "/world", "--listen", "0.0.0.0:4747"]

@@ -77,8 +77,7 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
     code = exit_code(steady_now_us());
     if (!code) rest(steady_now_us());
   }
-  finish(*code);
-  return *code;
+  return finish(*code);
 }
 
 // ---- network
@@ -294,7 +293,7 @@ ClientReport Client::report() const {
   return out;
 }
 
-void Client::finish(int code) {
+int Client::finish(int code) {
   session_.close(GoodbyeReason::closing, "");
   flush();
   net_->stop(kGoodbyeMs);
@@ -304,12 +303,15 @@ void Client::finish(int code) {
   const ClientReport measured = report();
   if (!options_.report.empty() && !write_text(options_.report, to_json(measured, session_))) {
     std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.report.c_str());
+    code = std::max(code, kExitFailed);
   }
   if (!options_.digests.empty() && !write_digests(options_.digests, session_)) {
     std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.digests.c_str());
+    code = std::max(code, kExitFailed);
   }
-  std::fputs(to_table(measured, session_).c_str(), stdout);
+  if (session_.openings() != 0) std::fputs(to_table(measured, session_).c_str(), stdout);
   spdlog::info("exit code={}", code);
+  return code;
 }
 
 // ---- what a script may do

@@ -52,7 +52,8 @@ class Client final : private ScriptHost {
   void show_title(TimeUs now_us);
   std::optional<int> exit_code(TimeUs now_us);
   void rest(TimeUs now_us);
-  void finish(int code);
+  /// Says goodbye, writes what was asked for, and returns the exit code: a file that cannot be written fails.
+  int finish(int code);
 
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
   std::vector<Marker> markers() const;

@@ -1,5 +1,6 @@
 #include "server/app/logging.hpp"
 
+#include <spdlog/async.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
 #include "common/core/assert.hpp"
@@ -7,11 +8,16 @@
 namespace runstone {
 
 void start_logging(const std::string& level) {
+  // Logging must never hold up the world strand: lines wait in a bounded queue, and the oldest give way when
+  // whoever reads stderr is too slow.
+  constexpr std::size_t kQueuedLinesMax = 8192;
+  if (spdlog::thread_pool() == nullptr) spdlog::init_thread_pool(kQueuedLinesMax, 1);
   const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
   for (const char* module : {"world", "net", "store", "app"}) {
     auto found = spdlog::get(module);
     if (found == nullptr) {
-      found = std::make_shared<spdlog::logger>(module, sink);
+      found = std::make_shared<spdlog::async_logger>(module, sink, spdlog::thread_pool(),
+                                                     spdlog::async_overflow_policy::overrun_oldest);
       found->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
       spdlog::register_logger(found);
     }

@@ -69,6 +69,8 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            const WorldCreation& creation,
                                                            std::function<void()> on_failure) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
+  // A start that cannot serve leaves no trace: neither a new world nor, below, a raised epoch.
+  if (const auto free = can_listen(config.listen); !free) return Unexpected<std::string>{free.error()};
   auto world = open_or_create_world(config.world, creation);
   if (!world) return Unexpected<std::string>{world.error()};
   auto parts = std::make_unique<Parts>();
@@ -77,7 +79,6 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   parts->workers = std::make_unique<asio::thread_pool>(config.worker_threads);
   parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
                                              *parts->world.generator, std::move(on_failure));
-  // The port comes before the epoch: a start that cannot serve leaves no trace in the world.
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(config.world); !recovered) {
@@ -89,6 +90,9 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
     parts->io_threads.emplace_back([&io = parts->io] { io.run(); });
   }
   parts->is_running = true;
+  if (!parts->world.is_new && creation != WorldCreation{}) {
+    logger("app").warn("world={} exists: the flags that say how to make one are ignored", config.world);
+  }
   logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
                      parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));

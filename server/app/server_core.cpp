@@ -359,7 +359,12 @@ void ServerCore::log(WorldLogLevel level, const std::string& line) {
       world.info("{}", line);
       break;
     case WorldLogLevel::warn:
-      world.warn("{}", line);
+      // Peers can cause these: ten a second, the next line says how many were left out.
+      if (!warnings_.take(1, now().steady_us)) {
+        ++warnings_left_out_;
+        break;
+      }
+      world.warn("{} left_out={}", line, std::exchange(warnings_left_out_, 0));
       break;
     case WorldLogLevel::error:
       world.error("{}", line);

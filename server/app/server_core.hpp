@@ -19,6 +19,7 @@
 #include "server/app/world_folder.hpp"
 #include "server/net/listener.hpp"
 #include "server/store/log_writer.hpp"
+#include "server/world/token_bucket.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
@@ -80,6 +81,8 @@ class ServerCore final : public WorldPorts, public NetEvents {
   Store& store_;
   const Generator& generator_;
   std::function<void()> on_failure_;
+  TokenBucket warnings_{10, 10};  // of the world strand
+  std::uint64_t warnings_left_out_ = 0;
   asio::strand<asio::io_context::executor_type> strand_;
   asio::steady_timer tick_;
   std::shared_ptr<Listener> listener_;

@@ -1,5 +1,7 @@
 // runstone-server: runs a world, or imports one. Exit codes: 0 stopped cleanly, 1 failed while running,
 // 2 could not start (docs/server.md).
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
@@ -87,6 +89,11 @@ int run(const Arguments& arguments) {
     return kStopped;
   }
   start_logging(config->log_level);
+  if (!arguments.port_file.empty()) {  // before the world is touched
+    if (const auto written = write_text_file(arguments.port_file, ""); !written) {
+      return cannot_start(written.error().message());
+    }
+  }
   asio::io_context main_loop;
   auto server = Server::start(*config, arguments.creation,
                               [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); });
@@ -125,7 +132,7 @@ int server_program(int argc, char** argv) {
   app.add_flag("--print-config", arguments.print_config, "print all settings as TOML and exit");
   app.add_option("--port-file", arguments.port_file, "write the port here once the server listens");
   app.add_option("--digests", arguments.digests_file, "write the digests of all edited chunks here on stop");
-  app.add_option("--generator", arguments.creation.generator, "new world: empty, flat, terrain or columns");
+  app.add_option("--generator", arguments.creation.generator, "new world: empty, flat or terrain");
   app.add_option("--generator-parameters", arguments.creation.generator_parameters, "new world: TOML text");
   app.add_option("--seed", arguments.creation.seed, "new world: seed of the generator");
   app.add_option("--edge", arguments.creation.edge, "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
@@ -155,7 +162,9 @@ int server_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return runstone::server_program(argc, argv);
+    const int code = runstone::server_program(argc, argv);
+    spdlog::shutdown();  // lines still queued are written
+    return code;
   } catch (const std::exception& error) {
     return runstone::cannot_start(error.what());
   }

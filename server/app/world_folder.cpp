@@ -67,6 +67,12 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
                                                       const WorldCreation& creation) {
   OpenedWorld opened;
   opened.is_new = !has_world(folder);
+  const auto file = std::filesystem::path(folder) / "world.sqlite";
+  std::error_code ignored;
+  if (!opened.is_new && std::filesystem::file_size(file, ignored) == 0) {
+    return failure(file.string() +
+                   ": is empty, as a creation that was cut short leaves it: delete it to begin anew");
+  }
   if (opened.is_new) {
     const auto meta = new_meta(creation);
     if (!meta) return failure(meta.error());

@@ -18,6 +18,7 @@ struct WorldCreation {
   std::uint64_t seed = 1;
   std::uint16_t edge = 32;     // 16, 32, 64 or 128
   std::string materials_file;  // TOML; empty: the built-in table
+  friend bool operator==(const WorldCreation&, const WorldCreation&) = default;
 };
 
 struct OpenedWorld {

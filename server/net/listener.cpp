@@ -35,6 +35,30 @@ Result<HostPort, std::string> parse_address(const std::string& text) {
   return Unexpected<std::string>{"cannot listen on \"" + text + "\": the form is HOST:PORT"};
 }
 
+Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::string& address) {
+  const auto parsed = parse_address(address);
+  if (!parsed) return Unexpected<std::string>{parsed.error()};
+  const auto cannot = [&](const asio::error_code& error) {
+    return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
+  };
+  asio::error_code error;
+  asio::ip::tcp::resolver resolver(acceptor.get_executor());
+  const auto ends =
+      resolver.resolve(parsed->host, std::to_string(parsed->port),
+                       asio::ip::resolver_base::passive | asio::ip::resolver_base::numeric_service, error);
+  if (error) return cannot(error);
+  const asio::ip::tcp::endpoint end = ends.begin()->endpoint();
+  acceptor.open(end.protocol(), error);
+  if (error) return cannot(error);
+  acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (error) return cannot(error);
+  acceptor.bind(end, error);
+  if (error) return cannot(error);
+  acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) return cannot(error);
+  return {};
+}
+
 }  // namespace
 
 Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events)
@@ -46,29 +70,17 @@ Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t 
       acceptor_(strand_),
       pause_(strand_) {}
 
+Result<void, std::string> can_listen(const std::string& address) {
+  asio::io_context io;
+  asio::ip::tcp::acceptor acceptor(io);
+  return bind_to(acceptor, address);
+}
+
 Result<void, std::string> Listener::listen(const std::string& address) {
-  const auto parsed = parse_address(address);
-  if (!parsed) return Unexpected<std::string>{parsed.error()};
-  const auto cannot = [&](const asio::error_code& error) {
-    return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
-  };
+  if (const auto bound = bind_to(acceptor_, address); !bound) return bound;
   asio::error_code error;
-  asio::ip::tcp::resolver resolver(io_);
-  const auto ends =
-      resolver.resolve(parsed->host, std::to_string(parsed->port),
-                       asio::ip::resolver_base::passive | asio::ip::resolver_base::numeric_service, error);
-  if (error) return cannot(error);
-  const asio::ip::tcp::endpoint end = ends.begin()->endpoint();
-  acceptor_.open(end.protocol(), error);
-  if (error) return cannot(error);
-  acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-  if (error) return cannot(error);
-  acceptor_.bind(end, error);
-  if (error) return cannot(error);
-  acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return cannot(error);
   port_ = acceptor_.local_endpoint(error).port();
-  if (error) return cannot(error);
+  if (error) return Unexpected<std::string>{"cannot listen on " + address + ": " + error.message()};
   return {};
 }
 

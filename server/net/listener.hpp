@@ -13,6 +13,9 @@
 
 namespace runstone {
 
+/// Whether Listener::listen() would succeed now: binds and lets go again. The error is the same line.
+Result<void, std::string> can_listen(const std::string& address);
+
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
   /// `events` must outlive the io_context's threads.

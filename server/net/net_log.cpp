@@ -25,8 +25,8 @@ void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason r
   }
   const auto logger = spdlog::get("net");
   if (logger == nullptr) return;
-  logger->warn("session={} peer={} reason={} error=\"{}\" at={} left_out={}", session, peer,
-               to_string(reason), error.what, error.offset, missed);
+  logger->warn("session={} peer={} reason={} ({}) error=\"{}\" at={} left_out={}", session, peer,
+               static_cast<unsigned>(reason), to_string(reason), error.what, error.offset, missed);
 }
 
 }  // namespace runstone

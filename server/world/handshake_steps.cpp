@@ -1,5 +1,6 @@
 #include "server/world/handshake_steps.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "server/world/broadcast.hpp"
@@ -31,6 +32,18 @@ Welcome welcome_of(const WorldState& world) {
   return welcome;
 }
 
+/// Only open sessions count: silent sockets must not keep players out.
+bool close_if_full(WorldState& world, SessionId session) {
+  const auto open =
+      static_cast<std::size_t>(std::count_if(world.sessions.begin(), world.sessions.end(), [](const auto& s) {
+        return s.second.state == SessionState::open;
+      }));
+  if (open < world.config.sessions_max) return false;
+  close_session(world, session, GoodbyeReason::server_full,
+                "the server holds " + std::to_string(world.config.sessions_max) + " sessions at most");
+  return true;
+}
+
 }  // namespace
 
 void on_hello(WorldState& world, SessionId session, const Hello& hello) {
@@ -41,11 +54,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
                       std::to_string(kProtocolVersion));
     return;
   }
-  if (world.sessions.size() > world.config.sessions_max) {
-    close_session(world, session, GoodbyeReason::server_full,
-                  "the server holds " + std::to_string(world.config.sessions_max) + " sessions at most");
-    return;
-  }
+  if (close_if_full(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
   world.random(welcome.challenge);
@@ -71,6 +80,7 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
     close_session(world, other, GoodbyeReason::already_connected, "the same client connected again");
     break;  // there was one at most; the loop's iterators end here
   }
+  if (close_if_full(world, session)) return;
   mine.proof_transcript = {};
   mine.state = SessionState::open;
   mine.author = world.players.enter(mine.key, mine.name);

@@ -42,8 +42,10 @@ void forget_session(WorldState& world, SessionId session) {
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
-  world.ports.log(WorldLogLevel::debug, "session=" + std::to_string(session) +
-                                            " closed reason=" + to_string(reason) + " text=\"" + text + "\"");
+  const auto level = reason == GoodbyeReason::closing ? WorldLogLevel::debug : WorldLogLevel::warn;
+  world.ports.log(level, "session=" + std::to_string(session) +
+                             " closed reason=" + std::to_string(static_cast<unsigned>(reason)) + " (" +
+                             to_string(reason) + ") text=\"" + text + "\"");
   forget_session(world, session);
   world.ports.close(session, reason, text);
 }

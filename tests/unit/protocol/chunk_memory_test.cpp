@@ -27,6 +27,9 @@ std::size_t allocations = 0, allocated_bytes = 0;  // test programs are single-t
 namespace runstone::test {
 namespace {
 
+/// Clang removes allocations that nobody looks at.
+const void* volatile looked_at = nullptr;
+
 struct Cost {
   std::size_t allocations = 0, bytes = 0;
 };
@@ -45,8 +48,12 @@ Cost cost_of_refusing(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("the counter of allocations counts", "[protocol]") {
-  const Cost cost = cost_of([] { Bytes(1000, std::uint8_t{1}).swap(*std::make_unique<Bytes>()); });
-  CHECK(cost.allocations == 2);
+  const Cost cost = cost_of([] {
+    const Bytes bytes(1000, std::uint8_t{1});
+    looked_at = bytes.data();
+  });
+  CHECK(looked_at != nullptr);
+  CHECK(cost.allocations == 1);
   CHECK(cost.bytes >= 1000);
 }
 
