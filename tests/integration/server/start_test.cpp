@@ -57,13 +57,23 @@ TEST_CASE("a busy port is named, and the world keeps its epoch", "[integration]"
   CHECK(client.welcome.epoch == 2);
 }
 
-TEST_CASE("an address that is none is named", "[integration]") {
+TEST_CASE("an address that is none is named, and no world is made for it", "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   for (const char* address : {"localhost", "127.0.0.1:", "127.0.0.1:70000", "127.0.0.1:x"}) {
     config.listen = address;
     CHECK(contains(start_error(config, flat_creation()), address));
   }
+  CHECK(::access((folder / "world").c_str(), F_OK) != 0);
+}
+
+TEST_CASE("an empty world file is named and left alone", "[integration]") {
+  const TempFolder folder;
+  {
+    std::ofstream file(folder / "world.sqlite");
+  }
+  CHECK(contains(start_error(quiet_config(folder.path()), flat_creation()), "world.sqlite: is empty"));
+  CHECK(std::ifstream(folder / "world.sqlite").good());
 }
 
 TEST_CASE("an unknown generator, edge or materials file makes no world", "[integration]") {

@@ -215,6 +215,16 @@ TEST_CASE("one more session than the server holds is turned away", "[world]") {
   bench.join(4, 4);
 }
 
+TEST_CASE("sockets that say nothing keep nobody out", "[world]") {
+  WorldConfig c = config();
+  c.sessions_max = 2;
+  Bench bench(c);
+  for (SessionId silent = 10; silent < 20; ++silent) bench.server.connected(silent, bench.now());
+  bench.join(1, 1);
+  bench.join(2, 2);
+  CHECK(bench.ports.closed.empty());
+}
+
 TEST_CASE("the same key and instance again closes the older session; another instance does not", "[world]") {
   Bench bench;
   const Ready first = bench.join(1, 1, 50);
