@@ -56,9 +56,17 @@ class [[nodiscard]] Result {
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  T& value() & { return check(), *std::get_if<0>(&state_); }
-  const T& value() const& { return check(), *std::get_if<0>(&state_); }
-  T&& value() && { return check(), std::move(*std::get_if<0>(&state_)); }
+  T& value() & {
+    T* held = std::get_if<0>(&state_);
+    RUNSTONE_ASSERT(held != nullptr);
+    return *held;
+  }
+  const T& value() const& {
+    const T* held = std::get_if<0>(&state_);
+    RUNSTONE_ASSERT(held != nullptr);
+    return *held;
+  }
+  T&& value() && { return std::move(value()); }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }
@@ -66,12 +74,12 @@ class [[nodiscard]] Result {
   const T* operator->() const { return &value(); }
 
   const E& error() const {
-    RUNSTONE_ASSERT(!has_value());
-    return *std::get_if<1>(&state_);
+    const E* held = std::get_if<1>(&state_);
+    RUNSTONE_ASSERT(held != nullptr);
+    return *held;
   }
 
  private:
-  void check() const { RUNSTONE_ASSERT(has_value()); }
   std::variant<T, E> state_;
 };
 

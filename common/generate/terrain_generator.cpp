@@ -67,7 +67,7 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
     // The last layer wins everywhere below its lowest surface, unless a cover or a reversed surface cuts in.
     out->solid_below_ =
         rule->reversed ? kHeightMin : ceiling(rule->surface.distance - reach) - 1 - kCoverDepth;
-    out->layers_.push_back(std::move(layer));
+    out->layers_.push_back(layer);
   }
   if (out->layers_.empty())
     return fail(ErrorCode::not_found, "no material of the table has a generation rule");
