@@ -324,6 +324,7 @@ bool ServerCore::log_has_room(std::size_t records) const { return writer_->has_r
 
 void ServerCore::log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) {
   std::vector<PlayerRow> rows;
+  rows.reserve(players.size());
   for (NewPlayer& player : players) rows.push_back({player.author, player.key, std::move(player.name)});
   writer_->append(std::move(rows), std::move(records));
 }
