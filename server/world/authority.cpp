@@ -52,7 +52,7 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
   batch.commit.first = head_ + 1;
   std::size_t bytes = 0;
   while (!queue_.empty() && batch.records.size() < kCommitEditsMax && bytes < kCommitBytesTarget) {
-    const EditOffer offer = std::move(queue_.front());
+    const EditOffer offer = queue_.front();
     queue_.pop_front();
     const Version version{epoch_, ++head_};
     OrderedEdit ordered;
