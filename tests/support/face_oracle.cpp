@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "common/mesh/quad_corners.hpp"
+
 namespace runstone::test {
 namespace {
 
@@ -99,19 +101,51 @@ void for_each_face(const Rectangle& r, F&& visit) {
   }
 }
 
-std::string fault_of_quad(const Rectangle& r, int direction, int layer, Extent extent, Visibility visibility,
-                          bool transparent) {
+// The corners lie on the face's plane, span it, and wind counter-clockwise seen from where the direction
+// points.
+bool winds_outwards(Quad quad, const Rectangle& r) {
+  const std::array<Corner, 4> c = quad_corners(quad);
+  const auto axis = static_cast<std::size_t>(r.direction / 2);
+  const auto edge = [&c](std::size_t from, std::size_t to) {
+    return Corner{c[to][0] - c[from][0], c[to][1] - c[from][1], c[to][2] - c[from][2]};
+  };
+  const std::array<int, 3> low = {r.x, r.y, r.z};
+  for (const Corner& corner : c) {
+    if (corner[axis] != low[axis] + r.direction % 2) return false;
+  }
+  const int sign = r.direction % 2 == 1 ? 1 : -1;
+  for (std::size_t i = 0; i < 4; ++i) {  // each corner turns left, by the area of the whole rectangle
+    const Corner a = edge(i, (i + 1) % 4);
+    const Corner b = edge((i + 1) % 4, (i + 2) % 4);
+    const std::size_t u = (axis + 1) % 3;
+    const std::size_t v = (axis + 2) % 3;
+    if (a[u] * b[v] - a[v] * b[u] != sign * r.width * r.height) return false;
+  }
+  return true;
+}
+
+std::string fault_of_rectangle(Quad quad, const Rectangle& r, Extent extent, Visibility visibility) {
   if (r.reserved != 0) return "reserved bits are set";
-  if (r.direction != direction) return "grouped under another direction";
+  if (r.direction >= static_cast<int>(kDirectionCount)) return "looks in no direction";
   const std::array<int, 3> low = {r.x, r.y, r.z};
   const std::array<int, 3> sides = {extent.x, extent.y, extent.z};
   const auto size = size_of(r);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (low[axis] + size[axis] > sides[axis]) return "leaves the extent";
   }
-  if (low[static_cast<std::size_t>(direction / 2)] != layer) return "grouped under another layer";
   if (visibility == Visibility::empty) return "is of an empty material";
-  if ((visibility == Visibility::transparent) != transparent) return "stands in the wrong pass";
+  if (!winds_outwards(quad, r)) return "winds the wrong way";
+  return {};
+}
+
+std::string fault_of_place(const Rectangle& r, int direction, int layer, Visibility visibility,
+                           bool transparent) {
+  if (r.direction != direction) return "grouped under another direction";
+  const std::array<int, 3> low = {r.x, r.y, r.z};
+  if (low[static_cast<std::size_t>(direction / 2)] != layer) return "grouped under another layer";
+  if (visibility != Visibility::empty && (visibility == Visibility::transparent) != transparent) {
+    return "stands in the wrong pass";
+  }
   return {};
 }
 
@@ -135,8 +169,9 @@ std::optional<std::string> fault_of_pass(const QuadLayers& pass, bool transparen
     for (int layer = 0; layer < static_cast<int>(kSideMax); ++layer) {
       for (const Quad quad : pass.layer(static_cast<Direction>(direction), static_cast<unsigned>(layer))) {
         const Rectangle r = rectangle_of(quad);
-        const std::string fault =
-            fault_of_quad(r, direction, layer, extent, visibility_of(materials, r.material), transparent);
+        const Visibility visibility = visibility_of(materials, r.material);
+        std::string fault = fault_of_rectangle(quad, r, extent, visibility);
+        if (fault.empty()) fault = fault_of_place(r, direction, layer, visibility, transparent);
         if (!fault.empty()) return name + describe(r) + ' ' + fault;
         for_each_face(r, [&](const UnitFace& face) { covered.push_back(face); });
       }
@@ -149,6 +184,26 @@ std::string text_of(const UnitFace& face) {
   std::ostringstream out;
   out << face;
   return out.str();
+}
+
+// Sorts the faces and names one that stands there twice, whatever its material.
+std::optional<std::string> sorted_fault(std::vector<UnitFace>& covered) {
+  std::sort(covered.begin(), covered.end());
+  const auto same_place = [](const UnitFace& a, const UnitFace& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.direction == b.direction;
+  };
+  const auto twice = std::adjacent_find(covered.begin(), covered.end(), same_place);
+  if (twice != covered.end()) return text_of(*twice) + " is covered twice";
+  return std::nullopt;
+}
+
+// Both sorted.
+std::optional<std::string> first_odd_face(const std::vector<UnitFace>& found,
+                                          const std::vector<UnitFace>& expected) {
+  const auto [is, should] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
+  if (is == found.end() && should == expected.end()) return std::nullopt;
+  if (should == expected.end() || (is != found.end() && *is < *should)) return text_of(*is) + " is too many";
+  return text_of(*should) + " is missing";
 }
 
 }  // namespace
@@ -178,6 +233,59 @@ std::vector<UnitFace> exposed_faces(const DenseChunk& chunk, const DenseNeighbou
   return faces;
 }
 
+std::vector<UnitFace> all_faces(const DenseChunk& chunk, const MaterialTable& materials) {
+  std::vector<UnitFace> faces;
+  for (int z = 0; z < chunk.side_z(); ++z) {
+    for (int y = 0; y < chunk.side_y(); ++y) {
+      for (int x = 0; x < chunk.side_x(); ++x) {
+        const Material here = chunk.at(x, y, z);
+        if (visibility_of(materials, here) == Visibility::empty) continue;
+        for (const Step& step : kSteps) faces.push_back({x, y, z, step.direction, here});
+      }
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialTable& materials) {
+  const int line = chunk.side_z();
+  const int layer = line * chunk.side_y();
+  const auto at_index = [&](int i) { return chunk.at(i / layer, i / line % chunk.side_y(), i % line); };
+  const auto same_from = [&](int first, int last, Material material) {  // and within the chunk
+    if (first < 0) return false;
+    for (int i = last; i >= first; --i) {
+      if (at_index(i) != material) return false;
+    }
+    return true;
+  };
+  std::vector<UnitFace> faces;
+  for (int x = 0; x < chunk.side_x(); ++x) {
+    for (int y = 0; y < chunk.side_y(); ++y) {
+      for (int z = 0; z < line;) {
+        const Material here = chunk.at(x, y, z);
+        int end = z + 1;
+        while (end < line && chunk.at(x, y, end) == here) ++end;
+        const int piece = x * layer + y * line + z;
+        const bool hides_y = y > 0 && same_from(piece - line, piece, here);
+        const bool hides_x = same_from(piece - layer, piece, here);
+        const bool drawn = visibility_of(materials, here) != Visibility::empty;
+        for (int at = z; drawn && at < end; ++at) {
+          faces.push_back({x, y, at, Direction::pos_x, here});
+          faces.push_back({x, y, at, Direction::pos_y, here});
+          if (!hides_x) faces.push_back({x, y, at, Direction::neg_x, here});
+          if (!hides_y) faces.push_back({x, y, at, Direction::neg_y, here});
+          if (at == z) faces.push_back({x, y, at, Direction::neg_z, here});
+          if (at + 1 == end) faces.push_back({x, y, at, Direction::pos_z, here});
+        }
+        z = end;
+      }
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
 std::vector<UnitFace> unit_faces(const ChunkMesh& mesh) {
   std::vector<UnitFace> faces;
   for (const QuadLayers* pass : {&mesh.opaque, &mesh.transparent}) {
@@ -193,24 +301,28 @@ std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent, cons
   std::vector<UnitFace> covered;
   if (auto fault = fault_of_pass(mesh.opaque, false, extent, materials, covered)) return fault;
   if (auto fault = fault_of_pass(mesh.transparent, true, extent, materials, covered)) return fault;
-  std::sort(covered.begin(), covered.end());
-  const auto same_place = [](const UnitFace& a, const UnitFace& b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.direction == b.direction;
-  };
-  const auto twice = std::adjacent_find(covered.begin(), covered.end(), same_place);
-  if (twice != covered.end()) return text_of(*twice) + " is covered twice";
-  return std::nullopt;
+  return sorted_fault(covered);
 }
 
 std::optional<std::string> mesh_difference(const ChunkMesh& mesh, Extent extent,
                                            const MaterialTable& materials,
                                            const std::vector<UnitFace>& expected) {
   if (auto fault = mesh_fault(mesh, extent, materials)) return fault;
-  const std::vector<UnitFace> found = unit_faces(mesh);
-  const auto [is, should] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
-  if (is == found.end() && should == expected.end()) return std::nullopt;
-  if (should == expected.end() || (is != found.end() && *is < *should)) return text_of(*is) + " is too many";
-  return text_of(*should) + " is missing";
+  return first_odd_face(unit_faces(mesh), expected);
+}
+
+std::optional<std::string> quads_difference(std::span<const Quad> quads, Extent extent,
+                                            const MaterialTable& materials,
+                                            const std::vector<UnitFace>& expected) {
+  std::vector<UnitFace> covered;
+  for (const Quad quad : quads) {
+    const Rectangle r = rectangle_of(quad);
+    const std::string fault = fault_of_rectangle(quad, r, extent, visibility_of(materials, r.material));
+    if (!fault.empty()) return describe(r) + ' ' + fault;
+    for_each_face(r, [&](const UnitFace& face) { covered.push_back(face); });
+  }
+  if (auto fault = sorted_fault(covered)) return fault;
+  return first_odd_face(covered, expected);
 }
 
 std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {

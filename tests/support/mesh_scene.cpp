@@ -72,6 +72,13 @@ std::vector<UnitFace> expected_faces(const MeshScene& scene) {
   return exposed_faces(DenseChunk::of(scene.chunk), around, mesh_materials());
 }
 
+reference::DenseGrid grid_of(const MeshScene& scene) {
+  std::vector<Material> layer;
+  reference::DenseGrid grid;
+  reference::decode(scene.chunk, scene.pointers(), layer, grid);
+  return grid;
+}
+
 ChunkMesh mesh_of(const MeshScene& scene) {
   RdmScratch scratch;
   ChunkMesh mesh;

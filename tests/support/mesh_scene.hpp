@@ -9,6 +9,7 @@
 #include "common/core/hash.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/reference/dense_grid.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "tests/support/face_oracle.hpp"
 
@@ -33,6 +34,9 @@ MeshScene random_scene(SplitMix64& rng, unsigned side_max);
 
 /// What the oracle says of a scene. Dense.
 std::vector<UnitFace> expected_faces(const MeshScene& scene);
+
+/// The scene as the dense meshers get it.
+reference::DenseGrid grid_of(const MeshScene& scene);
 
 /// mesh_rdm with scratch of its own.
 ChunkMesh mesh_of(const MeshScene& scene);

@@ -1,0 +1,37 @@
+// ScenarioWorld: a scenario the way the thesis ran it, 3 x 3 x 3 chunks with the same model in each and
+// nothing around them, from -edge to 2 edge on every axis.
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "common/core/ids.hpp"
+#include "common/generate/generator.hpp"
+#include "common/generate/scenarios/scenario_model.hpp"
+
+namespace runstone {
+
+/// A model as one chunk of solid `material`. Order yzx, that of its columns. O(edge^2 + runs), Waves and
+/// Random O(edge^3).
+RunChunk scenario_chunk(const ScenarioModel& model, Material material);
+
+class ScenarioWorld final : public Generator {
+ public:
+  ScenarioWorld(const ScenarioModel& model, Material material) : model_(model), material_(material) {}
+
+  /// Any place and extent, not only whole models. Order yzx.
+  RunChunk generate(VoxelPos origin, Extent extent) const override;
+  std::int32_t y_min() const override { return -edge(); }
+  std::int32_t y_max() const override { return 2 * edge(); }
+  std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;
+
+  VoxelBox bounds() const { return {{-edge(), -edge(), -edge()}, {2 * edge(), 2 * edge(), 2 * edge()}}; }
+
+ private:
+  std::int32_t edge() const { return static_cast<std::int32_t>(model_.edge()); }
+  ColumnBits column(std::int32_t x, std::int32_t z) const;
+
+  ScenarioModel model_;
+  Material material_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,189 @@
+// The reference meshers under the one oracle that also judges the product: exposed unit faces with material
+// and direction, each covered once. Meshers that cull less are held to what they do show, face by face.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "common/mesh/reference/binary_greedy.hpp"
+#include "common/mesh/reference/culled_mesher.hpp"
+#include "common/mesh/reference/grid_rdm.hpp"
+#include "common/mesh/reference/material_octree.hpp"
+#include "common/mesh/reference/rle_rdm.hpp"
+#include "common/mesh/reference/simple_mesher.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/support/dense_chunk.hpp"
+#include "tests/support/mesh_scene.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+namespace {
+
+using namespace reference;
+
+/// All dense meshers, with buffers that live as long as the test: what one scene leaves behind would show in
+/// the next.
+class Meshers {
+ public:
+  /// What is wrong with any mesher's mesh of a scene; nothing if all is well. Sides above 64 leave binary
+  /// greedy out.
+  std::string fault(const MeshScene& scene) {
+    decode(scene.chunk, scene.pointers(), layer_, grid_);
+    const std::vector<UnitFace> exposed = expected_faces(scene);
+    const DenseChunk dense = DenseChunk::of(scene.chunk);
+    const Extent extent = scene.chunk.extent;
+    const auto check = [&](const char* mesher, const std::vector<UnitFace>& expected) {
+      auto difference = quads_difference(quads_, extent, mesh_materials(), expected);
+      return difference ? std::string(mesher) + ": " + *difference : std::string();
+    };
+
+    mesh_simple(grid_, mesh_visibility(), quads_);
+    if (auto wrong = check("simple", all_faces(dense, mesh_materials())); !wrong.empty()) return wrong;
+    mesh_culled(grid_, mesh_visibility(), quads_);
+    if (auto wrong = check("culled", exposed); !wrong.empty()) return wrong;
+    culled_quads = quads_.size();
+    mesh_grid_rdm(grid_, mesh_visibility(), grid_rdm_, quads_);
+    if (auto wrong = check("grid RDM", exposed); !wrong.empty()) return wrong;
+    if (quads_.size() > culled_quads) return "grid RDM has more quads than the culled mesher";
+    mesh_rle_rdm(reorder(scene.chunk, AxisOrder::zyx), mesh_visibility(), quads_);
+    if (auto wrong = check("RLE RDM", tail_culled_faces(dense, mesh_materials())); !wrong.empty())
+      return wrong;
+
+    if (std::max({extent.x, extent.y, extent.z}) > kBinarySideMax) return {};
+    mesh_binary_greedy(grid_, mesh_visibility(), binary_, mesh_);
+    if (auto wrong = mesh_difference(mesh_, extent, mesh_materials(), exposed))
+      return "binary greedy: " + *wrong;
+    if (mesh_.quad_count() > culled_quads) return "binary greedy has more quads than the culled mesher";
+    with_transparent += mesh_.transparent.quads.empty() ? 0 : 1;
+    return {};
+  }
+
+  std::size_t culled_quads = 0;
+  int with_transparent = 0;
+
+ private:
+  DenseGrid grid_;
+  std::vector<Material> layer_;
+  std::vector<Quad> quads_;
+  GridRdmScratch grid_rdm_;
+  BinaryScratch binary_;
+  ChunkMesh mesh_;
+};
+
+TEST_CASE("random scenes: every reference mesher covers exactly the faces it owes",
+          "[mesh][property][reference]") {
+  SplitMix64 rng(Catch::rngSeed() + 21);
+  Meshers meshers;
+  std::set<AxisOrder> orders;
+  int missing_neighbours = 0;
+  constexpr int kScenes = 10000;
+  for (int scene_number = 0; scene_number < kScenes; ++scene_number) {
+    const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
+    const MeshScene scene = random_scene(rng, side_max);
+    const std::string fault = meshers.fault(scene);
+    orders.insert(scene.chunk.order);
+    missing_neighbours +=
+        std::count(scene.neighbours.begin(), scene.neighbours.end(), std::nullopt) != 0 ? 1 : 0;
+    if (fault.empty()) continue;
+    CAPTURE(Catch::rngSeed(), scene_number);
+    FAIL(fault);
+  }
+  CHECK(orders.size() == kAxisOrderCount);
+  CHECK(missing_neighbours > kScenes / 2);
+  CHECK(missing_neighbours < kScenes);
+  CHECK(meshers.with_transparent > kScenes / 4);
+}
+
+TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh][property][reference]") {
+  SplitMix64 rng(Catch::rngSeed() + 22);
+  Meshers meshers;
+  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
+                              Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
+    for (const AxisOrder order : kAxisOrders) {
+      MeshScene scene;
+      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
+      for (auto& neighbour : scene.neighbours) {
+        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
+      }
+      CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
+      REQUIRE(meshers.fault(scene) == "");
+    }
+  }
+}
+
+TEST_CASE("shapes with a face on every voxel, and with none: every reference mesher",
+          "[mesh][property][reference]") {
+  SplitMix64 rng(Catch::rngSeed() + 23);
+  Meshers meshers;
+  for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
+    for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
+      for (const AxisOrder order : kAxisOrders) {
+        const Extent extent{33, 40, 31};
+        MeshScene scene{random_chunk(rng, extent, order, materials, shape), {}};
+        for (auto& neighbour : scene.neighbours) {
+          neighbour = random_chunk(rng, extent, random_order(rng), materials, shape);
+        }
+        CAPTURE(Catch::rngSeed(), static_cast<int>(shape), materials, order);
+        REQUIRE(meshers.fault(scene) == "");
+      }
+    }
+  }
+}
+
+TEST_CASE("binary greedy merges as well as the plain greedy count", "[mesh][property][reference]") {
+  // The oracle's count goes widest first along u; words may lie along u or v, so the totals differ a little.
+  SplitMix64 rng(Catch::rngSeed() + 24);
+  std::size_t found = 0;
+  std::size_t counted = 0;
+  BinaryScratch scratch;
+  ChunkMesh mesh;
+  for (int round = 0; round < 200; ++round) {
+    const MeshScene scene = random_scene(rng, 20);
+    mesh_binary_greedy(grid_of(scene), mesh_visibility(), scratch, mesh);
+    found += mesh.quad_count();
+    counted += greedy_quad_count(expected_faces(scene));
+  }
+  CAPTURE(found, counted);
+  CHECK(found * 100 < counted * 102);
+  CHECK(counted * 100 < found * 102);
+}
+
+TEST_CASE("samples from an octree are the voxels around a chunk", "[mesh][property][reference]") {
+  SplitMix64 rng(Catch::rngSeed() + 25);
+  DenseGrid grid;
+  for (int round = 0; round < 40; ++round) {
+    // Eight chunks fill a cube of 64 from some odd place on; a window anywhere near is sampled.
+    const VoxelPos origin{rng.between(-100, 100), rng.between(-100, 100), rng.between(-100, 100)};
+    MaterialOctree octree(origin, 2);
+    std::vector<DenseChunk> chunks;
+    for (int i = 0; i < 8; ++i) {
+      const VoxelPos first{origin.x + 32 * (i & 1), origin.y + 32 * (i >> 1 & 1), origin.z + 32 * (i >> 2)};
+      const RunChunk chunk = random_chunk(rng, Extent::cube(32), random_order(rng), kMeshMaterialCount);
+      octree.insert(first, chunk);
+      chunks.push_back(DenseChunk::of(chunk));
+    }
+    const std::size_t loose_bytes = octree.byte_size();
+    octree.compact();
+    CHECK(octree.byte_size() <= loose_bytes);
+    const auto at = [&](int x, int y, int z) {
+      if (std::min({x, y, z}) < 0 || std::max({x, y, z}) >= 64) return kEmpty;
+      return chunks[static_cast<std::size_t>(x / 32 + 2 * (y / 32) + 4 * (z / 32))].at(x % 32, y % 32,
+                                                                                       z % 32);
+    };
+    const VoxelPos low{rng.between(-20, 60), rng.between(-20, 60), rng.between(-20, 60)};
+    const Extent extent = random_extent(rng, 40);
+    grid.reset(extent, AxisOrder::xyz);
+    octree.sample({origin.x + low.x, origin.y + low.y, origin.z + low.z}, grid);
+    bool same = true;
+    for (int z = -1; z <= extent.z; ++z) {
+      for (int y = -1; y <= extent.y; ++y) {
+        for (int x = -1; x <= extent.x; ++x)
+          same &= grid.line(y, z)[x] == at(low.x + x, low.y + y, low.z + z);
+      }
+    }
+    CAPTURE(Catch::rngSeed(), round);
+    REQUIRE(same);
+  }
+}
+
+}  // namespace
+}  // namespace runstone::test
