@@ -5,14 +5,10 @@
 #include <set>
 
 #include "common/mesh/reference/binary_greedy.hpp"
-#include "common/mesh/reference/culled_mesher.hpp"
-#include "common/mesh/reference/grid_rdm.hpp"
 #include "common/mesh/reference/material_octree.hpp"
-#include "common/mesh/reference/rle_rdm.hpp"
-#include "common/mesh/reference/simple_mesher.hpp"
-#include "common/runs/reorder.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
+#include "tests/support/mesher_jury.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -20,67 +16,20 @@ namespace {
 
 using namespace reference;
 
-/// All dense meshers, with buffers that live as long as the test: what one scene leaves behind would show in
-/// the next.
-class Meshers {
- public:
-  /// What is wrong with any mesher's mesh of a scene; nothing if all is well. Sides above 64 leave binary
-  /// greedy out.
-  std::string fault(const MeshScene& scene) {
-    decode(scene.chunk, scene.pointers(), layer_, grid_);
-    const std::vector<UnitFace> exposed = expected_faces(scene);
-    const DenseChunk dense = DenseChunk::of(scene.chunk);
-    const Extent extent = scene.chunk.extent;
-    const auto check = [&](const char* mesher, const std::vector<UnitFace>& expected) {
-      auto difference = quads_difference(quads_, extent, mesh_materials(), expected);
-      return difference ? std::string(mesher) + ": " + *difference : std::string();
-    };
-
-    mesh_simple(grid_, mesh_visibility(), quads_);
-    if (auto wrong = check("simple", all_faces(dense, mesh_materials())); !wrong.empty()) return wrong;
-    mesh_culled(grid_, mesh_visibility(), quads_);
-    if (auto wrong = check("culled", exposed); !wrong.empty()) return wrong;
-    culled_quads = quads_.size();
-    mesh_grid_rdm(grid_, mesh_visibility(), grid_rdm_, quads_);
-    if (auto wrong = check("grid RDM", exposed); !wrong.empty()) return wrong;
-    if (quads_.size() > culled_quads) return "grid RDM has more quads than the culled mesher";
-    mesh_rle_rdm(reorder(scene.chunk, AxisOrder::zyx), mesh_visibility(), quads_);
-    if (auto wrong = check("RLE RDM", tail_culled_faces(dense, mesh_materials())); !wrong.empty())
-      return wrong;
-
-    if (std::max({extent.x, extent.y, extent.z}) > kBinarySideMax) return {};
-    mesh_binary_greedy(grid_, mesh_visibility(), binary_, mesh_);
-    if (auto wrong = mesh_difference(mesh_, extent, mesh_materials(), exposed))
-      return "binary greedy: " + *wrong;
-    if (mesh_.quad_count() > culled_quads) return "binary greedy has more quads than the culled mesher";
-    with_transparent += mesh_.transparent.quads.empty() ? 0 : 1;
-    return {};
-  }
-
-  std::size_t culled_quads = 0;
-  int with_transparent = 0;
-
- private:
-  DenseGrid grid_;
-  std::vector<Material> layer_;
-  std::vector<Quad> quads_;
-  GridRdmScratch grid_rdm_;
-  BinaryScratch binary_;
-  ChunkMesh mesh_;
-};
-
 TEST_CASE("random scenes: every reference mesher covers exactly the faces it owes",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 21);
-  Meshers meshers;
+  MesherJury jury;
   std::set<AxisOrder> orders;
   int missing_neighbours = 0;
+  int with_transparent = 0;
   constexpr int kScenes = 10000;
   for (int scene_number = 0; scene_number < kScenes; ++scene_number) {
     const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
     const MeshScene scene = random_scene(rng, side_max);
-    const std::string fault = meshers.fault(scene);
+    const std::string fault = jury.fault(scene);
     orders.insert(scene.chunk.order);
+    with_transparent += jury.binary_mesh().transparent.quads.empty() ? 0 : 1;
     missing_neighbours +=
         std::count(scene.neighbours.begin(), scene.neighbours.end(), std::nullopt) != 0 ? 1 : 0;
     if (fault.empty()) continue;
@@ -90,12 +39,12 @@ TEST_CASE("random scenes: every reference mesher covers exactly the faces it owe
   CHECK(orders.size() == kAxisOrderCount);
   CHECK(missing_neighbours > kScenes / 2);
   CHECK(missing_neighbours < kScenes);
-  CHECK(meshers.with_transparent > kScenes / 4);
+  CHECK(with_transparent > kScenes / 4);
 }
 
 TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 22);
-  Meshers meshers;
+  MesherJury jury;
   for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
                               Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders) {
@@ -105,7 +54,7 @@ TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh
         neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
       }
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
-      REQUIRE(meshers.fault(scene) == "");
+      REQUIRE(jury.fault(scene) == "");
     }
   }
 }
@@ -113,7 +62,7 @@ TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh
 TEST_CASE("shapes with a face on every voxel, and with none: every reference mesher",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 23);
-  Meshers meshers;
+  MesherJury jury;
   for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
     for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
       for (const AxisOrder order : kAxisOrders) {
@@ -123,7 +72,7 @@ TEST_CASE("shapes with a face on every voxel, and with none: every reference mes
           neighbour = random_chunk(rng, extent, random_order(rng), materials, shape);
         }
         CAPTURE(Catch::rngSeed(), static_cast<int>(shape), materials, order);
-        REQUIRE(meshers.fault(scene) == "");
+        REQUIRE(jury.fault(scene) == "");
       }
     }
   }

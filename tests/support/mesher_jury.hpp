@@ -1,0 +1,39 @@
+// MesherJury: all reference meshers before the one oracle that also judges the product. Exposed unit faces
+// with material and direction, each covered once by quads that wind outwards; meshers that cull less are held
+// to what they do show, face by face.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/mesh/reference/binary_greedy.hpp"
+#include "common/mesh/reference/grid_rdm.hpp"
+#include "tests/support/mesh_scene.hpp"
+
+namespace runstone::test {
+
+/// Buffers live as long as the jury: what one scene leaves behind would show in the next.
+class MesherJury {
+ public:
+  /// What is wrong with the first wrong mesh of a scene, and whose it is; nothing if all is well. Binary
+  /// greedy is left out where a side is above 64.
+  std::string fault(const MeshScene& scene);
+
+  /// Of the last scene.
+  std::size_t culled_quads() const { return culled_quads_; }
+  const ChunkMesh& binary_mesh() const { return mesh_; }
+
+ private:
+  std::string fault_of_quads(const char* mesher, const MeshScene& scene,
+                             const std::vector<UnitFace>& owed) const;
+
+  reference::DenseGrid grid_;
+  std::vector<Material> layer_;
+  std::vector<Quad> quads_;
+  reference::GridRdmScratch grid_rdm_;
+  reference::BinaryScratch binary_;
+  ChunkMesh mesh_;
+  std::size_t culled_quads_ = 0;
+};
+
+}  // namespace runstone::test

@@ -1,0 +1,68 @@
+#include "common/generate/scenarios/scenario_world.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/dense_chunk.hpp"
+#include "tests/support/random_chunk.hpp"
+#include "tests/support/scenario_oracle.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr Material kSolid = 7;
+
+TEST_CASE("a scenario's world repeats its model three times along each axis, whatever box is asked for",
+          "[generate][scenarios]") {
+  SplitMix64 rng(Catch::rngSeed());
+  for (const unsigned number : {1u, 2u, 8u, 9u, 14u, 17u, 20u, 23u, 30u}) {
+    for (const unsigned edge : {8u, 32u}) {
+      const ScenarioWorld world(*scenario_model(number, edge), kSolid);
+      const DenseChunk model = scenario_dense(number, edge);
+      const int n = static_cast<int>(edge);
+      for (int round = 0; round < 6; ++round) {
+        const Extent extent = random_extent(rng, 40);
+        const VoxelPos origin{rng.between(-n - 30, 2 * n + 10), rng.between(-n - 30, 2 * n + 10),
+                              rng.between(-n - 30, 2 * n + 10)};
+        const RunChunk chunk = world.generate(origin, extent);
+        REQUIRE(validate(chunk).has_value());
+        const DenseChunk dense = DenseChunk::of(chunk);
+        int wrong = 0;
+        for (int z = 0; z < extent.z; ++z) {
+          for (int y = 0; y < extent.y; ++y) {
+            for (int x = 0; x < extent.x; ++x) {
+              const VoxelPos p{origin.x + x, origin.y + y, origin.z + z};
+              const bool solid =
+                  world.bounds().contains(p) && model.at((p.x + n) % n, (p.y + n) % n, (p.z + n) % n) != 0;
+              wrong += dense.at(x, y, z) != (solid ? kSolid : kEmpty) ? 1 : 0;
+            }
+          }
+        }
+        CAPTURE(Catch::rngSeed(), number, edge, round);
+        REQUIRE(wrong == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("a player stands on the highest voxel of a scenario's world", "[generate][scenarios]") {
+  const ScenarioWorld ball(*scenario_model(7, 32), kSolid);  // radius 8 around 16 16 16
+  CHECK(ball.surface_y(16, 16) == 32 + 24);
+  CHECK(ball.surface_y(-16, 48) == 32 + 24);
+  CHECK(ball.surface_y(16, 9) == 32 + 20);  // 7 beside the middle: the last with 3 * 3 + 7 * 7 < 64 above it
+  CHECK(ball.surface_y(0, 0) == ball.y_min());
+  CHECK(ball.surface_y(64, 16) == ball.y_min());
+  const ScenarioWorld full(*scenario_model(1, 128), kSolid);
+  CHECK(full.surface_y(0, 0) == full.y_max());
+  CHECK(full.y_min() == -128);
+  CHECK(full.y_max() == 256);
+}
+
+TEST_CASE("around a scenario's world is nothing, in one run", "[generate][scenarios]") {
+  const ScenarioWorld full(*scenario_model(1, 32), kSolid);
+  CHECK(full.generate({64, 0, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
+  CHECK(full.generate({0, -64, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
+  CHECK(full.generate({0, 0, 0}, Extent::cube(32)).is_uniform());
+}
+
+}  // namespace
+}  // namespace runstone::test
