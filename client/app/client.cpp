@@ -4,10 +4,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <type_traits>
 #include <utility>
 
@@ -18,15 +20,27 @@ namespace runstone {
 namespace {
 
 constexpr TimeUs kRestUs = 10'000;  // longest pause of the loop: session ticks
+constexpr TimeUs kInputUs = 2'000;  // longest pause with a window: how late a key or click is noticed
 constexpr TimeUs kTitleUs = 500'000;
 constexpr TimeUs kEventsUs = 8'000;         // messages taken per turn before meshes and frames get theirs
 constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
 
+/// Null where nothing is to be seen.
+std::unique_ptr<Window> make_window(const ClientOptions& options) {
+  if (!options.render || options.headless) return nullptr;
+  return std::make_unique<Window>(options.width, options.height, "Runstone");
+}
+
 /// Null where nothing is to be drawn.
-std::unique_ptr<Screen> make_screen(const ClientOptions& options) {
+std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Window* window,
+                                             std::function<void()> wake) {
   if (!options.render) return nullptr;
-  return options.headless ? Screen::headless(options.width, options.height)
-                          : Screen::window(options.width, options.height, "Runstone");
+  const auto make_screen = [window] {
+    return window == nullptr ? make_headless_screen() : make_window_screen(*window);
+  };
+  // Frames that nobody watches give way to what is measured.
+  const auto priority = window == nullptr ? DrawPriority::background : DrawPriority::normal;
+  return std::make_unique<DrawThread>(make_screen, priority, std::move(wake));
 }
 
 SessionConfig session_config(const ClientOptions& options) {
@@ -46,7 +60,9 @@ Client::Client(ClientOptions options, const Script* script)
     : options_(std::move(options)),
       session_(session_config(options_)),
       pins_known_(session_.pinned().size()),
-      picture_(session_.replica(), make_screen(options_), options_.workers, [this] { wake_.notify(); }) {
+      window_(make_window(options_)),
+      picture_(session_.replica(), make_draw_thread(options_, window_.get(), [this] { wake_.notify(); }),
+               window_ != nullptr, options_.workers, [this] { wake_.notify(); }) {
   spdlog::info("renderer={}", picture_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, static_cast<ScriptHost&>(*this));
   started_us_ = steady_now_us();
@@ -66,6 +82,7 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
     take_events();
     const TimeUs now_us = steady_now_us();
     take_input(now_us);
+    picture_.take_drawn();
     if (runner_) runner_->step(now_us);
     follow_player();
     session_.tick(now_us);
@@ -151,9 +168,8 @@ void Client::flush() {
 // ---- player
 
 void Client::take_input(TimeUs now_us) {
-  Screen* const screen = picture_.screen();
-  if (screen == nullptr || screen->window() == nullptr) return;
-  const WindowInput input = screen->window()->poll();
+  if (!window_) return;
+  const WindowInput input = window_->poll();
   const double seconds = static_cast<double>(now_us - input_us_) / 1e6;
   input_us_ = now_us;
   if (input.close || input.escape) wish_to_end_ = kExitOk;
@@ -224,23 +240,24 @@ std::vector<Marker> Client::markers() const {
 void Client::draw(TimeUs now_us) {
   const double edge = std::max(16, session_.replica().chunk_edge());
   const Camera camera = player_.camera((options_.view_radius + 1.5) * edge);
-  if (!picture_.draw(now_us, camera, [this] { return markers(); })) return;
-  ++frames_;
+  const std::array<int, 2> size =
+      window_ ? window_->framebuffer_size() : std::array{options_.width, options_.height};
+  picture_.draw(now_us, camera, size, [this] { return markers(); });
   show_title(now_us);
 }
 
 void Client::show_title(TimeUs now_us) {
-  Window* const window = picture_.screen()->window();
-  if (window == nullptr || now_us - title_us_ < kTitleUs) return;
+  if (!window_ || now_us - title_us_ < kTitleUs) return;
   const WorldPos at = player_.eye();
   const Material held = player_.held();
   const MaterialTable& materials = picture_.materials();
-  window->set_title(fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
-                                frames_ * 1e6 / static_cast<double>(now_us - title_us_),
-                                materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
-                                lost_us_ ? "  (connecting)" : ""));
+  const std::uint64_t frames = picture_.frames_presented();
+  window_->set_title(fmt::format(
+      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
+      static_cast<double>(frames - title_frames_) * 1e6 / static_cast<double>(now_us - title_us_),
+      materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z, lost_us_ ? "  (connecting)" : ""));
   title_us_ = now_us;
-  frames_ = 0;
+  title_frames_ = frames;
 }
 
 std::string Client::screenshot_path(const std::string& file) const {
@@ -255,7 +272,7 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
     std::fprintf(stderr, "runstone-client: %s\n", end->text.c_str());
     return kExitNoStart;
   }
-  if (runner_ && runner_->finished() && picture_.screenshots_done()) {
+  if (runner_ && runner_->finished() && picture_.screenshots_done() && picture_.has_caught_up()) {
     return runner_->failures().empty() && !drift_found() ? kExitOk : kExitFailed;
   }
   if (wish_to_end_) return drift_found() ? kExitFailed : *wish_to_end_;
@@ -269,8 +286,7 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
 }
 
 void Client::rest(TimeUs now_us) {
-  TimeUs pause = kRestUs;
-  if (options_.render && !options_.headless) pause = 1'000;  // the swap paces the loop
+  TimeUs pause = window_ ? kInputUs : kRestUs;
   if (runner_ && runner_->due_us()) pause = std::min(pause, *runner_->due_us() - now_us);
   if (pause > 0) wake_.wait(std::chrono::microseconds(pause));
 }
@@ -281,7 +297,7 @@ ClientReport Client::report() const {
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
   out.latency = picture_.recorder().report();
   out.chunks = chunk_stats_;
-  picture_.report(out.chunks);
+  picture_.report(out.chunks, out.frames);
   const NetStats& net = net_->stats();
   out.net.bytes_received = net.bytes_received;
   out.net.bytes_sent = net.bytes_sent;
@@ -374,7 +390,7 @@ bool Client::synced(std::uint64_t mark) const {
 }
 
 bool Client::screenshot(const std::string& file) {
-  if (picture_.screen() == nullptr) return false;
+  if (!picture_.draws()) return false;
   picture_.request_screenshot(screenshot_path(file), steady_now_us());
   return true;
 }

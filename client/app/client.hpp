@@ -1,7 +1,7 @@
-// Client: the main thread of runstone-client. It owns the session, the picture and the script, and passes
-// between them what the network thread and the mesh workers hand over. Nothing here waits for a peer: a turn
-// takes what is there, and the next one comes when there is more (WakeUp), a frame is due, or the script
-// wants to go on.
+// Client: the main thread of runstone-client. It owns the session, the window, the picture and the script,
+// and passes between them what the network thread, the mesh workers and the draw thread hand over. Nothing
+// here waits for a peer or for a frame: a turn takes what is there, and the next one comes when there is more
+// (WakeUp), a frame or the next look at the window's input is due, or the script wants to go on.
 #pragma once
 #include <csignal>
 #include <cstdint>
@@ -18,6 +18,7 @@
 #include "client/bots/script_runner.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"
+#include "client/platform/window.hpp"
 #include "client/replica/client_session.hpp"
 
 namespace runstone {
@@ -83,6 +84,7 @@ class Client final : private ScriptHost {
   WakeUp wake_;
   ClientSession session_;
   std::size_t pins_known_ = 0;
+  std::unique_ptr<Window> window_;  // null off screen
   Picture picture_;
   std::optional<ScriptRunner> runner_;
   Player player_;
@@ -96,7 +98,7 @@ class Client final : private ScriptHost {
   std::optional<int> wish_to_end_;  // the user or the server ends the program
 
   TimeUs input_us_ = 0, title_us_ = 0;
-  std::uint32_t frames_ = 0;  // since the title was set
+  std::uint64_t title_frames_ = 0;  // presented when the title was set
 
   std::unique_ptr<NetClient> net_;  // last: its thread wakes what is above
 };

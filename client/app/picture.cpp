@@ -9,18 +9,19 @@
 
 namespace runstone {
 
-Picture::Picture(const Replica& replica, std::unique_ptr<Screen> screen, unsigned workers,
-                 std::function<void()> wake)
-    : screen_(std::move(screen)),
+Picture::Picture(const Replica& replica, std::unique_ptr<DrawThread> draw_thread, bool watched,
+                 unsigned workers, std::function<void()> wake)
+    : watched_(watched),
       workers_(workers),
       wake_(std::move(wake)),
-      recorder_(screen_ ? LatencyStage::presented : LatencyStage::meshed),
-      planner_(replica) {}
+      recorder_(draw_thread ? LatencyStage::presented : LatencyStage::meshed),
+      planner_(replica),
+      draw_thread_(std::move(draw_thread)) {}
 
 void Picture::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
   materials_ = materials;
-  if (screen_) screen_->renderer().set_materials(materials_);
+  if (draw_thread_) draw_thread_->set_materials(materials_);
   pool_.reset();
   pool_ = std::make_unique<MeshPool>(VisibilityTable(materials_), workers_, steady_now_ns, wake_);
 }
@@ -28,12 +29,32 @@ void Picture::set_materials(const MaterialTable& materials) {
 void Picture::take(const ReplicaNews& news, const ClockOffset& clock, TimeUs now_us) {
   recorder_.take(news, clock, now_us);
   planner_.take(news.chunks);
-  if (!screen_) return;
+  if (!draw_thread_) return;
   for (const ChunkNews& chunk : news.chunks) {
     if (!chunk.removed) continue;
-    screen_->renderer().remove(chunk.key);
+    draw_thread_->remove(chunk.key);
     changed_ = true;
   }
+}
+
+void Picture::take_drawn() {
+  if (!draw_thread_) return;
+  // In the order of the draw thread: a frame presents the uploads before it and none after it.
+  for (const DrawDone& done : draw_thread_->take_done()) {
+    if (const auto* upload = std::get_if<UploadDone>(&done)) {
+      recorder_.uploaded(upload->key, upload->serial, upload->at_us);
+    }
+    if (const auto* frame = std::get_if<FrameDone>(&done)) take_frame(*frame);
+  }
+}
+
+void Picture::take_frame(const FrameDone& frame) {
+  recorder_.presented(frame.presented_us);
+  ++frames_.presented;
+  frames_.draw_us.add(frame.presented_us - frame.started_us);
+  frame_ = {};
+  if (!watched_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
+  for (const std::string& file : frame.unwritten) spdlog::error("cannot write {}", file);
 }
 
 void Picture::mesh() {
@@ -43,15 +64,14 @@ void Picture::mesh() {
 }
 
 void Picture::take_results() {
-  for (const MeshResult& result : pool_->take_results()) {
+  for (MeshResult& result : pool_->take_results()) {
     mesh_ns_.add(result.mesh_ns);
     if (!planner_.accept(result.key, result.number)) continue;
     recorder_.meshed(result.key, result.serial, result.meshed_us);
-    if (!screen_) continue;
-    screen_->renderer().upload(result.key, result.edge, result.mesh);
-    recorder_.uploaded(result.key, result.serial, steady_now_us());
+    if (!draw_thread_) continue;
+    draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
     changed_ = true;
-    edits_uploaded_ = edits_uploaded_ || recorder_.open_edits() != 0;
+    edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
   }
 }
 
@@ -63,23 +83,23 @@ void Picture::push_jobs() {
   }
 }
 
-bool Picture::draw(TimeUs now_us, const Camera& camera, const std::function<std::vector<Marker>()>& markers) {
-  if (!screen_) return false;
+void Picture::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
+                   const std::function<std::vector<Marker>()>& markers) {
+  if (!draw_thread_ || frame_.under_way) return;
   const bool screenshot_due =
       !screenshots_.empty() && (is_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
   // Off screen nobody watches terrain arrive: frames are for edits and pictures, and would only slow the
   // loading.
-  const TimeUs pause = screen_->window() != nullptr ? kFrameUs : kFrameOffScreenUs;
-  const bool due = changed_ && now_us - drawn_us_ >= pause;
-  if (!due && !screenshot_due && !edits_uploaded_) return false;
-  const auto drawn_markers = markers();
-  screen_->draw(camera, drawn_markers);
-  drawn_us_ = steady_now_us();
-  recorder_.presented(drawn_us_);
+  const bool due = changed_ && now_us >= next_frame_us_;
+  if (!due && !screenshot_due && !edits_waiting_) return;
+  FrameOrder order{camera, size[0], size[1], markers(), {}};
+  if (screenshot_due) order.screenshots = std::exchange(screenshots_, {});
+  draw_thread_->draw(std::move(order));
+  ++frames_ordered_;
+  frame_ = {true, edits_waiting_, screenshot_due};
   changed_ = false;
-  edits_uploaded_ = false;
-  if (screenshot_due) take_screenshots();
-  return true;
+  edits_waiting_ = false;
+  if (watched_) next_frame_us_ = now_us + kFrameUs;
 }
 
 void Picture::request_screenshot(std::string path, TimeUs now_us) {
@@ -87,17 +107,16 @@ void Picture::request_screenshot(std::string path, TimeUs now_us) {
   screenshot_since_us_ = now_us;
 }
 
-void Picture::take_screenshots() {
-  const Image image = screen_->renderer().read_image();
-  for (const std::string& path : std::exchange(screenshots_, {})) {
-    if (!write_png(path, image)) spdlog::error("cannot write {}", path);
-  }
+bool Picture::has_caught_up() {
+  if (!last_frame_) last_frame_ = frames_ordered_ + (edits_waiting_ ? 1 : 0);
+  return frames_.presented >= *last_frame_;
 }
 
-void Picture::report(ChunkStats& stats) const {
-  stats.mesh_ns = mesh_ns_;
-  stats.mesh_jobs = planner_.jobs();
-  stats.chunks_meshed = planner_.chunks_meshed();
+void Picture::report(ChunkStats& chunks, FrameStats& frames) const {
+  chunks.mesh_ns = mesh_ns_;
+  chunks.mesh_jobs = planner_.jobs();
+  chunks.chunks_meshed = planner_.chunks_meshed();
+  frames = frames_;
 }
 
 }  // namespace runstone

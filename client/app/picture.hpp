@@ -1,15 +1,17 @@
 // Picture: the way from what changed to what is seen: mesh jobs, uploads, frames, and when each of them was
-// done. Main thread only; the meshing itself is on the pool's threads.
+// done. Main thread only; the meshing itself is on the pool's threads and the drawing on the draw thread.
+// Here is decided what they do and when.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "client/app/draw_thread.hpp"
 #include "client/app/report.hpp"
-#include "client/app/screen.hpp"
 #include "client/replica/client_session.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/mesh_planner.hpp"
@@ -19,13 +21,13 @@ namespace runstone {
 
 class Picture {
  public:
-  /// `screen` may be null: then edits end at `meshed`. `replica` must outlive the picture. `wake` is called
-  /// from mesh threads.
-  Picture(const Replica& replica, std::unique_ptr<Screen> screen, unsigned workers,
+  /// `draw_thread` may be null: then edits end at `meshed`. `watched`: frames go to somebody's eyes, not only
+  /// into files. `replica` must outlive the picture. `wake` is called from mesh threads.
+  Picture(const Replica& replica, std::unique_ptr<DrawThread> draw_thread, bool watched, unsigned workers,
           std::function<void()> wake);
 
-  Screen* screen() { return screen_.get(); }
-  const char* renderer_name() const { return screen_ ? screen_->name() : "none"; }
+  bool draws() const { return draw_thread_ != nullptr; }
+  std::string renderer_name() const { return draw_thread_ ? draw_thread_->screen_name() : "none"; }
 
   /// The world's materials are known, or are other ones now.
   void set_materials(const MaterialTable& materials);
@@ -37,47 +39,64 @@ class Picture {
   void moved() { changed_ = true; }
 
   void take(const ReplicaNews& news, const ClockOffset& clock, TimeUs now_us);
-  /// Uploads the meshes that are done and gives the workers what is next.
+  /// Learns what the draw thread did. Throws std::runtime_error if it failed.
+  void take_drawn();
+  /// Hands over the meshes that are done and gives the workers what is next.
   void mesh();
-  /// Draws if there is reason to and the time has come. `markers` is asked only then. Returns whether it
-  /// drew.
-  bool draw(TimeUs now_us, const Camera& camera, const std::function<std::vector<Marker>()>& markers);
+  /// Orders a frame of width x height pixels if there is reason to, the time has come and none is under way.
+  /// `markers` is asked only then.
+  void draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
+            const std::function<std::vector<Marker>()>& markers);
 
-  /// The next frame in which no mesh is missing, or one after kScreenshotWaitUs, becomes this PNG. Requires a
-  /// screen.
+  /// The next frame in which no mesh is missing, or one after kScreenshotWaitUs, becomes this PNG. Requires
+  /// draws().
   void request_screenshot(std::string path, TimeUs now_us);
-  bool screenshots_done() const { return screenshots_.empty(); }
+  bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
 
   /// Everything that can be meshed is meshed, and edits are on the screen.
-  bool is_settled() const { return planner_.dirty_count() == 0 && is_idle() && !edits_uploaded_; }
+  bool is_settled() const {
+    return planner_.dirty_count() == 0 && is_idle() && !edits_waiting_ && !frame_.edits;
+  }
+  /// Whether all that was handed over before the first such question is on the screen: two frames later at
+  /// the most, whatever others edit meanwhile. Asked when the program wants to end.
+  bool has_caught_up();
+  std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
   const LatencyRecorder& recorder() const { return recorder_; }
-  /// Adds what was meshed.
-  void report(ChunkStats& stats) const;
+  /// Adds what was meshed and drawn.
+  void report(ChunkStats& chunks, FrameStats& frames) const;
 
-  static constexpr TimeUs kFrameUs = 16'000;            // between two frames in a window
-  static constexpr TimeUs kFrameOffScreenUs = 100'000;  // off screen, between frames that show no new edit
+  static constexpr TimeUs kFrameUs = 16'000;  // in a window, from order to order; the swap paces more finely
+  static constexpr TimeUs kFrameOffScreenUs =
+      100'000;  // off screen, after a frame until one without new edits
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
 
  private:
   bool is_idle() const { return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0); }
   void take_results();
   void push_jobs();
-  void take_screenshots();
+  void take_frame(const FrameDone& frame);
 
-  std::unique_ptr<Screen> screen_;
+  const bool watched_;
   const unsigned workers_;
   const std::function<void()> wake_;
   LatencyRecorder recorder_;
   MeshPlanner planner_;
   MaterialTable materials_;
   Histogram mesh_ns_;
-  bool changed_ = true;          // since the last frame
-  bool edits_uploaded_ = false;  // a mesh with edits is on the GPU and not on the screen
-  TimeUs drawn_us_ = 0;
-  std::vector<std::string> screenshots_;  // to take
+  FrameStats frames_;
+  bool changed_ = true;         // since the last frame was ordered
+  bool edits_waiting_ = false;  // a mesh with edits was handed over since the last frame was ordered
+  struct {
+    bool under_way = false, edits = false, screenshots = false;
+  } frame_;  // the one that was ordered last, and whether it shows new edits
+  std::uint64_t frames_ordered_ = 0;
+  std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
+  TimeUs next_frame_us_ = 0;                 // not before, if there is no new edit
+  std::vector<std::string> screenshots_;     // to take
   TimeUs screenshot_since_us_ = 0;
-  std::unique_ptr<MeshPool> pool_;  // once the materials are known; its threads use what is above
+  std::unique_ptr<DrawThread> draw_thread_;  // may be null
+  std::unique_ptr<MeshPool> pool_;           // once the materials are known; its threads use what is above
 };
 
 }  // namespace runstone

@@ -140,6 +140,8 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                      {"chunks", chunks.chunks_meshed},
                      {"per_chunk", per_chunk(chunks)},
                      {"mesh_ns", histogram_json(chunks.mesh_ns)}};
+  out["frames"] =
+      Json{{"presented", report.frames.presented}, {"draw_us", histogram_json(report.frames.draw_us)}};
   out["net"] =
       Json{{"bytes_received", report.net.bytes_received}, {"bytes_sent", report.net.bytes_sent},
            {"control_bytes", report.net.control_bytes},   {"edit_bytes", report.net.edit_bytes},
@@ -181,6 +183,10 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
       chunks.mesh_ns.mean().value_or(0) / 1000);
   fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks), chunks.mesh_jobs,
                  chunks.chunks_meshed);
+  if (report.frames.presented != 0) {
+    fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
+                   cell(report.frames.draw_us.percentile(0.5)));
+  }
   fmt::format_to(into, "drift: {} of {} audited\n", session.replica().counters().drifted,
                  session.replica().counters().audited);
   fmt::format_to(into, "dense expansions: {}\n", dense_expansions());

@@ -20,6 +20,12 @@ struct ChunkStats {
   std::uint64_t mesh_jobs = 0, chunks_meshed = 0;
 };
 
+/// Frames as they were drawn, on the draw thread.
+struct FrameStats {
+  std::uint64_t presented = 0;
+  Histogram draw_us;  // per frame: from its start until it is done (LatencyStage::presented)
+};
+
 struct NetCounts {
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   std::uint64_t control_bytes = 0, edit_bytes = 0, chunk_bytes = 0;  // messages received, by class
@@ -31,6 +37,7 @@ struct ClientReport {
   double seconds = 0;
   LatencyReport latency;
   ChunkStats chunks;
+  FrameStats frames;
   NetCounts net;
 };
 

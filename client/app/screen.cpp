@@ -2,37 +2,42 @@
 
 #include <utility>
 
+#include "client/platform/gl_context.hpp"
+#include "client/render/renderer.hpp"
+
 namespace runstone {
+namespace {
 
-Screen::Screen(std::unique_ptr<GlContext> context, Window* window, int width, int height)
-    : context_(std::move(context)), window_(window), width_(width), height_(height) {
-  context_->make_current();
-  renderer_ = std::make_unique<Renderer>(context_->loader());
-}
+class GlScreen final : public Screen {
+ public:
+  explicit GlScreen(std::unique_ptr<GlContext> context)
+      : context_(std::move(context)), renderer_(context_->loader()) {}
 
-std::unique_ptr<Screen> Screen::headless(int width, int height) {
-  return std::unique_ptr<Screen>(new Screen(make_headless_context(), nullptr, width, height));
-}
-
-std::unique_ptr<Screen> Screen::window(int width, int height, const std::string& title) {
-  auto window = std::make_unique<Window>(width, height, title);
-  Window* const raw = window.get();
-  return std::unique_ptr<Screen>(new Screen(std::move(window), raw, width, height));
-}
-
-RenderStats Screen::draw(const Camera& camera, std::span<const Marker> markers) {
-  if (window_ == nullptr) {
-    const RenderStats stats = renderer_->draw(camera, width_, height_, markers);
-    renderer_->finish();
+  const char* name() const override { return context_->name(); }
+  void set_materials(const MaterialTable& materials) override { renderer_.set_materials(materials); }
+  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) override {
+    renderer_.upload(key, edge, mesh);
+  }
+  void remove(const ChunkKey& key) override { renderer_.remove(key); }
+  RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers) override {
+    const RenderStats stats = renderer_.draw(camera, width, height, markers);
+    if (context_->is_window()) renderer_.present(width, height);
+    renderer_.finish();
+    context_->swap();
     return stats;
   }
-  const auto [width, height] = window_->framebuffer_size();
-  if (width <= 0 || height <= 0) return {};  // minimised
-  const RenderStats stats = renderer_->draw(camera, width, height, markers);
-  renderer_->present(width, height);
-  renderer_->finish();
-  window_->swap();
-  return stats;
+  Image read_image() override { return renderer_.read_image(); }
+
+ private:
+  std::unique_ptr<GlContext> context_;
+  Renderer renderer_;  // dies before its context
+};
+
+}  // namespace
+
+std::unique_ptr<Screen> make_headless_screen() { return std::make_unique<GlScreen>(make_headless_context()); }
+std::unique_ptr<Screen> make_window_screen(Window& window) {
+  return std::make_unique<GlScreen>(make_window_context(window));
 }
 
 }  // namespace runstone

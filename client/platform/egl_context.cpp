@@ -16,10 +16,7 @@ class EglContext final : public GlContext {
     eglDestroyContext(display_, context_);
     eglTerminate(display_);
   }
-  EglContext(const EglContext&) = delete;
-  EglContext& operator=(const EglContext&) = delete;
 
-  void make_current() override { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_); }
   Loader loader() const override { return &eglGetProcAddress; }
   const char* name() const override { return "EGL surfaceless"; }
 

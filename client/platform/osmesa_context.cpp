@@ -16,13 +16,10 @@ class OsmesaContext final : public GlContext {
   explicit OsmesaContext(OSMesaContext context)
       : context_(context), window_(4UL * kWindowSide * kWindowSide) {}
   ~OsmesaContext() override { OSMesaDestroyContext(context_); }
-  OsmesaContext(const OsmesaContext&) = delete;
-  OsmesaContext& operator=(const OsmesaContext&) = delete;
 
   bool try_make_current() {
     return OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, kWindowSide, kWindowSide) == GL_TRUE;
   }
-  void make_current() override { try_make_current(); }
   Loader loader() const override { return &OSMesaGetProcAddress; }
   const char* name() const override { return "OSMesa"; }
 

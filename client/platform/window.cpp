@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -31,6 +32,25 @@ std::string glfw_words() {
   return words != nullptr ? words : "unknown GLFW error";
 }
 
+class WindowContext final : public GlContext {
+ public:
+  explicit WindowContext(GLFWwindow* window) : window_(window) {
+    glfwMakeContextCurrent(window_);
+    if (glfwGetCurrentContext() != window_)
+      throw std::runtime_error("no OpenGL in the window: " + glfw_words());
+    glfwSwapInterval(1);
+  }
+  ~WindowContext() override { glfwMakeContextCurrent(nullptr); }
+
+  Loader loader() const override { return &glfwGetProcAddress; }
+  const char* name() const override { return "GLFW"; }
+  bool is_window() const override { return true; }
+  void swap() override { glfwSwapBuffers(window_); }
+
+ private:
+  GLFWwindow* const window_;
+};
+
 }  // namespace
 
 Window::Window(int width, int height, const std::string& title) : state_(std::make_unique<State>()) {
@@ -48,8 +68,6 @@ Window::Window(int width, int height, const std::string& title) : state_(std::ma
     glfwTerminate();
     throw std::runtime_error("no window: " + words);
   }
-  glfwMakeContextCurrent(state_->window);
-  glfwSwapInterval(1);
   glfwSetWindowUserPointer(state_->window, state_.get());
   glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
@@ -88,9 +106,6 @@ Window::~Window() {
   glfwTerminate();
 }
 
-void Window::make_current() { glfwMakeContextCurrent(state_->window); }
-GlContext::Loader Window::loader() const { return &glfwGetProcAddress; }
-
 WindowInput Window::poll() {
   glfwPollEvents();
   WindowInput input = std::exchange(state_->pending, WindowInput{});
@@ -106,12 +121,15 @@ WindowInput Window::poll() {
 }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(state_->window, title.c_str()); }
-void Window::swap() { glfwSwapBuffers(state_->window); }
 std::array<int, 2> Window::framebuffer_size() const {
   std::array<int, 2> size{};
   glfwGetFramebufferSize(state_->window, &size[0], &size[1]);
-  return size;
+  return {std::max(size[0], 1), std::max(size[1], 1)};
 }
 bool Window::mouse_captured() const { return state_->captured; }
+
+std::unique_ptr<GlContext> make_window_context(Window& window) {
+  return std::make_unique<WindowContext>(window.state_->window);
+}
 
 }  // namespace runstone

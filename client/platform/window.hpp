@@ -1,4 +1,5 @@
-// Window: a GLFW window with its OpenGL context and the input of one frame. Main thread only.
+// Window: a GLFW window and the input of one frame: main thread only, as GLFW wants it. Its OpenGL context is
+// the other half, for the one thread that draws.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,29 +23,31 @@ struct WindowInput {
   bool close = false;               // the window's close button
 };
 
-class Window final : public GlContext {
+class Window {
  public:
   /// Throws std::runtime_error with GLFW's words if there is no display or no 4.5 or 3.3 core context.
   Window(int width, int height, const std::string& title);
-  ~Window() override;
+  /// Its context must be gone.
+  ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
-
-  void make_current() override;
-  Loader loader() const override;
-  const char* name() const override { return "GLFW"; }
 
   /// Collects events since the last call. Clicks count only while the mouse is captured; the first click
   /// captures it.
   WindowInput poll();
   void set_title(const std::string& title);
-  void swap();
+  /// Pixels, each at least 1 (a minimised window has none on some systems).
   std::array<int, 2> framebuffer_size() const;
   bool mouse_captured() const;
 
  private:
+  friend std::unique_ptr<GlContext> make_window_context(Window& window);
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Makes the window's context current on this thread, until what is returned is destroyed there. One at a
+/// time; `window` must outlive it. Throws std::runtime_error with GLFW's words.
+std::unique_ptr<GlContext> make_window_context(Window& window);
 
 }  // namespace runstone

@@ -226,9 +226,13 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height, std::spa
 
 void Renderer::finish() {
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kNanosecondsMax = 10'000'000'000;  // a hung driver must not hang the client for ever
-  glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
+  constexpr GLuint64 kNanosecondsMax = 30'000'000'000;  // a hung driver must not hang the client for ever
+  const GLenum waited = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
   glDeleteSync(fence);
+  if (waited == GL_TIMEOUT_EXPIRED)
+    throw std::runtime_error("the OpenGL driver did not finish a frame in 30 s");
+  if (waited == GL_WAIT_FAILED) throw std::runtime_error("the OpenGL context is lost");
+  if (glGetError() == GL_OUT_OF_MEMORY) throw std::runtime_error("the GPU has no memory left");
 }
 
 Image Renderer::read_image() {

@@ -56,7 +56,7 @@ class Renderer {
   /// Draws into an own off-screen target of width x height.
   RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers = {});
   /// Blocks until the GPU has finished what draw() queued (a fence): the "presented" moment of a headless
-  /// client.
+  /// client. Throws std::runtime_error if it never does, or has no memory left.
   void finish();
   /// What the last draw() made. Requires a draw() before.
   Image read_image();
