@@ -55,7 +55,7 @@ std::int32_t pick(SplitMix64& rng, std::int32_t low, std::int32_t high) {
 
 }  // namespace
 
-bool oracle_covers(const EditDescriptor& edit, VoxelPos at) {
+bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
   if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {
     return voxel->at.x == at.x && voxel->at.y == at.y && voxel->at.z == at.z;
   }
@@ -70,23 +70,31 @@ bool oracle_covers(const EditDescriptor& edit, VoxelPos at) {
   const std::int64_t dx = 2 * (static_cast<std::int64_t>(at.x) - sphere.centre.x);
   const std::int64_t dy = 2 * (static_cast<std::int64_t>(at.y) - sphere.centre.y);
   const std::int64_t dz = 2 * (static_cast<std::int64_t>(at.z) - sphere.centre.z);
-  const std::int64_t diameter = 2 * static_cast<std::int64_t>(sphere.radius) + 1;
+  const int rim = fault == OracleFault::thin_sphere ? 0 : 1;
+  const std::int64_t diameter = 2 * static_cast<std::int64_t>(sphere.radius) + rim;
+  if (rim == 0) return dx * dx + dy * dy + dz * dz <= diameter * diameter;
   return dx * dx + dy * dy + dz * dz < diameter * diameter;
 }
 
-OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits) {
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+                           OracleFault fault) {
   OracleOutcome outcome;
+  std::array<int, 3> last{};
+  Material last_before = 0;
   for (int z = 0; z < chunk.side_z(); ++z) {
     for (int y = 0; y < chunk.side_y(); ++y) {
       for (int x = 0; x < chunk.side_x(); ++x) {
         const Material before = chunk.at(x, y, z);
         Material now = before;
         for (const EditDescriptor& edit : edits) {
-          const bool inside = oracle_covers(edit, {origin.x + x, origin.y + y, origin.z + z});
-          if (inside && is_admitted(edit.mask, now)) now = edit.material;
+          const bool inside = oracle_covers(edit, {origin.x + x, origin.y + y, origin.z + z}, fault);
+          const Material judged = fault == OracleFault::early_mask ? before : now;
+          if (inside && is_admitted(edit.mask, judged)) now = edit.material;
         }
         if (now == before) continue;
         chunk.set(x, y, z, now);
+        last = {x, y, z};
+        last_before = before;
         ++outcome.voxels_changed;
         outcome.dirty[0].insert(static_cast<unsigned>(x));
         outcome.dirty[1].insert(static_cast<unsigned>(y));
@@ -94,6 +102,9 @@ OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const E
       }
     }
   }
+  if (outcome.voxels_changed == 0) return outcome;
+  if (fault == OracleFault::lost_voxel) chunk.set(last[0], last[1], last[2], last_before);
+  if (fault == OracleFault::miscounted_voxel) ++outcome.voxels_changed;
   return outcome;
 }
 

@@ -24,8 +24,17 @@ std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit);
 
 namespace runstone::test {
 
+/// Mistakes that the oracle can be told to make, so that a test can show that it would notice them.
+enum class OracleFault {
+  none,
+  thin_sphere,       // |d| <= r instead of |d| < r + 1/2
+  early_mask,        // masks look at the chunk before the stack
+  lost_voxel,        // the last changed voxel is left as it was
+  miscounted_voxel,  // one changed voxel too many is reported
+};
+
 /// Whether the geometry holds this voxel.
-bool oracle_covers(const EditDescriptor& edit, VoxelPos at);
+bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault = OracleFault::none);
 
 struct OracleOutcome {
   std::uint64_t voxels_changed = 0;         // against the chunk before the whole stack
@@ -33,7 +42,8 @@ struct OracleOutcome {
 };
 
 /// Applies the edits one after another, each voxel by voxel, to the chunk whose first voxel is `origin`.
-OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits);
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+                           OracleFault fault = OracleFault::none);
 
 /// Voxels of the geometry, found by trying every voxel up to `reach` away from `around`.
 std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around, std::int32_t reach);

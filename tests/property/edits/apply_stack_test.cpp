@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <map>
+#include <string>
 
 #include "common/edits/edit_stack.hpp"
 #include "common/edits/edit_stack_strategies.hpp"
@@ -56,6 +58,23 @@ bool same(const ApplyResult& a, const ApplyResult& b) {
          a.voxels_changed == b.voxels_changed;
 }
 
+/// Applies the edits to the runs and to the oracle. Names the first fact in which they differ; null: none.
+const char* difference(RunChunk& chunk, Digest& digest, DenseChunk& oracle, VoxelPos origin,
+                       std::span<const EditDescriptor> edits, ApplyScratch& scratch,
+                       OracleFault fault = OracleFault::none) {
+  const RunChunk before = chunk;
+  const ApplyResult result = apply_stack(chunk, digest, origin, edits, scratch);
+  const OracleOutcome expected = oracle_apply(oracle, origin, edits, fault);
+  if (!validate(chunk)) return "invariants";
+  if (!(DenseChunk::of(chunk) == oracle)) return "voxels";
+  if (result.changed != (expected.voxels_changed != 0)) return "changed";
+  if (result.voxels_changed != expected.voxels_changed) return "voxels_changed";
+  if (listed(result.dirty) != expected.dirty) return "dirty";
+  if (listed(result.areas) != oracle_areas(before, chunk)) return "areas";
+  if (digest != digest_of(chunk)) return "digest";
+  return nullptr;
+}
+
 }  // namespace
 
 TEST_CASE("stacks of edits equal the dense oracle in voxels, digest and report", "[edits][property]") {
@@ -74,17 +93,11 @@ TEST_CASE("stacks of edits equal the dense oracle in voxels, digest and report",
       CAPTURE(Catch::rngSeed(), edits_done, step, edits, chunk.extent.x, chunk.extent.y, chunk.extent.z,
               static_cast<int>(chunk.order));
       const RunChunk before = chunk;
-      const ApplyResult result = apply_stack(chunk, digest, origin, edits, scratch);
-      const OracleOutcome expected = oracle_apply(oracle, origin, edits);
-      REQUIRE(validate(chunk).has_value());
-      REQUIRE(DenseChunk::of(chunk) == oracle);
-      REQUIRE(result.changed == (expected.voxels_changed != 0));
-      REQUIRE(result.voxels_changed == expected.voxels_changed);
-      REQUIRE(listed(result.dirty) == expected.dirty);
-      REQUIRE(listed(result.areas) == oracle_areas(before, chunk));
-      REQUIRE(digest == digest_of(chunk));
+      const char* differs = difference(chunk, digest, oracle, origin, edits, scratch);
+      INFO((differs == nullptr ? "" : differs));
+      REQUIRE(differs == nullptr);
       edits_done += depth;
-      stacks_changed += result.changed ? 1 : 0;
+      stacks_changed += chunk == before ? 0 : 1;
     }
     REQUIRE(digest == oracle.digest());
   }
@@ -174,38 +187,27 @@ TEST_CASE("an edit that reaches over many chunks changes each as the oracle says
 }
 
 TEST_CASE("a broken edit oracle is caught", "[edits][property]") {
-  // A sphere of |d| <= r instead of |d| < r + 1/2, and a mask that looks at the chunk before the stack: both
-  // are mistakes an implementation could share with a careless oracle.
-  SplitMix64 rng{5};
-  ApplyScratch scratch;
-  int caught_sphere = 0;
-  int caught_mask = 0;
-  for (int round = 0; round < 20; ++round) {
-    const Extent extent = Extent::cube(16);
-    RunChunk chunk = uniform_chunk(extent, 0, random_order(rng));
-    Digest digest = digest_of(chunk);
-    const FillSphere ball{{8, 8, 8}, static_cast<std::uint16_t>(1 + rng.below(7))};
-    const std::vector<EditDescriptor> edits = {{ball, {}, 3}, {ball, {MaskKind::only_empty, 0}, 4}};
-    apply_stack(chunk, digest, {}, edits, scratch);
-    DenseChunk narrow(extent);
-    DenseChunk early_mask(extent);
-    for (int z = 0; z < 16; ++z) {
-      for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 16; ++x) {
-          const int d2 = (x - 8) * (x - 8) + (y - 8) * (y - 8) + (z - 8) * (z - 8);
-          if (d2 <= ball.radius * ball.radius) narrow.set(x, y, z, 3);
-          if (d2 <= ball.radius * ball.radius + ball.radius) early_mask.set(x, y, z, 4);
-        }
-      }
+  // The same random stacks against oracles that err on purpose, each in its own way.
+  const auto caught_by = [](OracleFault fault) {
+    SplitMix64 rng{5};
+    ApplyScratch scratch;
+    std::map<std::string, int> caught;
+    for (int round = 0; round < 120; ++round) {
+      RunChunk chunk = random_chunk(rng);
+      const VoxelPos origin = random_origin(rng, chunk.extent);
+      Digest digest = digest_of(chunk);
+      DenseChunk oracle = DenseChunk::of(chunk);
+      const auto edits = random_stack(rng, origin, chunk.extent, 1 + rng.below(40));
+      const char* differs = difference(chunk, digest, oracle, origin, edits, scratch, fault);
+      if (differs != nullptr) ++caught[differs];
     }
-    caught_sphere += DenseChunk::of(chunk) == narrow ? 0 : 1;
-    caught_mask += DenseChunk::of(chunk) == early_mask ? 0 : 1;
-    DenseChunk sound(extent);
-    oracle_apply(sound, {}, edits);
-    REQUIRE(DenseChunk::of(chunk) == sound);
-  }
-  CHECK(caught_sphere == 20);
-  CHECK(caught_mask == 20);
+    return caught;
+  };
+  CHECK(caught_by(OracleFault::none).empty());
+  CHECK(caught_by(OracleFault::thin_sphere)["voxels"] > 20);
+  CHECK(caught_by(OracleFault::early_mask)["voxels"] > 20);
+  CHECK(caught_by(OracleFault::lost_voxel)["voxels"] > 60);
+  CHECK(caught_by(OracleFault::miscounted_voxel)["voxels_changed"] > 60);
 }
 
 }  // namespace runstone::test
