@@ -11,6 +11,8 @@
 namespace runstone {
 
 inline constexpr std::uint32_t kProtocolVersion = 1;
+/// Optional parts of the protocol that this build knows, a bit each. None exist yet.
+inline constexpr std::uint64_t kFeaturesKnown = 0;
 
 // Frames. A fragment is small, so that an edit never waits behind much terrain in a send buffer.
 inline constexpr std::size_t kFrameHeaderBytes = 12;
@@ -49,6 +51,7 @@ inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
 inline constexpr std::uint8_t kLodMax = 0;               // levels above full detail are reserved
 inline constexpr std::size_t kViewRadiusMax = 64;        // chunks
 inline constexpr std::size_t kChunkRequestKeysMax = 64;  // per message
+inline constexpr std::size_t kUnavailableKeysMax = 64;   // per message
 inline constexpr std::size_t kCommitEditsMax = 4096;
 inline constexpr std::size_t kTouchedChunksMax = 4096;  // per edit: bounds the work of one request
 inline constexpr std::size_t kAuditEntriesMax = 1024;

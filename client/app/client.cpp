@@ -205,6 +205,9 @@ void Client::follow_player() {
 void Client::take_news() {
   const ReplicaNews news = session_.replica().take_news();
   picture_.take(news, session_.clock(), steady_now_us());
+  for (const auto& [key, reason] : news.unavailable) {
+    spdlog::warn("chunk={},{},{} unavailable: {}", key.at.x, key.at.y, key.at.z, to_string(reason));
+  }
   for (const RejectNews& reject : news.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
   }

@@ -61,6 +61,7 @@ Json replica_json(const Replica& replica) {
   const ReplicaCounters& c = replica.counters();
   return Json{{"confirmed_chunks", replica.confirmed_count()},
               {"awaiting", replica.awaiting_count()},
+              {"unavailable", replica.unavailable_count()},
               {"own_not_durable", replica.own_edits().all().size()},
               {"newest", replica.newest()},
               {"durable", replica.durable()},

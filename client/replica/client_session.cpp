@@ -26,6 +26,7 @@ void ClientSession::connected(const Nonce& nonce, TimeUs now_us) {
   hello_.nonce = nonce;
   hello_.name = config_.name;
   hello_.encodings = config_.encodings;
+  hello_.features = config_.features;
   outgoing_.push_back(hello_);
   state_ = SessionState::greeting;
   heard_us_ = now_us;
@@ -74,6 +75,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           fail_with(GoodbyeReason::unexpected_message, "message before ready", false);
         } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
           replica_.receive(std::move(m), arrival);
+        } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
+          replica_.receive(m);
         } else if constexpr (std::is_same_v<T, Commit>) {
           const auto taken = replica_.receive(m, arrival);
           if (!taken) fail_with(GoodbyeReason::malformed_message, taken.error().what, false);
@@ -103,6 +106,9 @@ void ClientSession::on_welcome(Welcome welcome) {
   }
   if (!verify(welcome.server_key, server_transcript(hello_, welcome), welcome.signature)) {
     return fail_with(GoodbyeReason::not_authenticated, "server signature is wrong", true);
+  }
+  if ((welcome.features & ~hello_.features) != 0) {
+    return fail_with(GoodbyeReason::malformed_message, "welcome has features that hello did not offer", true);
   }
   const auto [pin, first_use] = config_.pinned.try_emplace(welcome.world_id, welcome.server_key);
   if (!first_use && pin->second != welcome.server_key) {
@@ -134,7 +140,8 @@ void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
                             .epoch = welcome_->epoch,
                             .durable = welcome_->durable,
                             .head = welcome_->head,
-                            .decided = ready.decided});
+                            .decided = ready.decided,
+                            .heights = welcome_->heights});
   send_view();
   tick(now_us);
   for (auto& [message, arrival] : std::exchange(early_, {})) receive(std::move(message), arrival);
@@ -239,7 +246,8 @@ std::size_t ClientSession::view_chunks() const {
 }
 
 bool ClientSession::loaded() const {
-  return is_open() && replica_.current_count() == view_chunks() && replica_.awaiting_count() == 0;
+  return is_open() && replica_.current_count() + replica_.unavailable_count() == view_chunks() &&
+         replica_.awaiting_count() == 0;
 }
 
 void ClientSession::on_roster(const Roster& roster) {

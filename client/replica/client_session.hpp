@@ -36,8 +36,9 @@ inline constexpr TimeUs kAnswerUsMax = 10'000'000;  // an edit not answered by t
 struct SessionConfig {
   KeyPair keys;
   std::string name = "builder";
-  ClientInstance instance = 1;          // random per process
-  std::uint8_t encodings = 3;           // as in Hello
+  ClientInstance instance = 1;  // random per process
+  std::uint8_t encodings = 3;   // as in Hello
+  std::uint64_t features = kFeaturesKnown;
   View view;                            // wished; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
 };
@@ -92,7 +93,8 @@ class ClientSession {
   View view() const;
   /// Number of chunks in view.
   std::size_t view_chunks() const;
-  /// The snapshot of every chunk in view came on this connection, and none waits to be repaired.
+  /// Of every chunk in view the snapshot came on this connection, or the word that it is unavailable; and
+  /// none waits to be repaired.
   bool loaded() const;
   /// Counts pongs; a ping sent after a moment has come back once it rises by two from then.
   std::uint64_t pongs() const { return pongs_; }

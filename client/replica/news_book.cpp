@@ -24,6 +24,7 @@ EditNews& NewsBook::edit(const OrderedInfo& info, TimeUs applied_us) {
     auto news = std::make_unique<EditNews>();
     news->op = info.op;
     news->seq = info.version.seq;
+    news->subject = info.subject;
     news->own = info.own;
     news->submitted_us = info.submitted_us;
     news->ordered_us = info.ordered_us;
@@ -63,6 +64,7 @@ ReplicaNews NewsBook::take() {
   news.rejects = std::exchange(rejects_, {});
   news.durable = std::exchange(durable_, {});
   news.unseen = std::exchange(unseen_, {});
+  news.unavailable = std::exchange(unavailable_, {});
   chunks_.clear();
   edits_.clear();
   confirmed_.clear();

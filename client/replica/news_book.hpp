@@ -22,6 +22,7 @@ class NewsBook {
   EditNews& edit(const OrderedInfo& info, TimeUs applied_us);
   /// A new entry for the prediction of an own edit.
   EditNews& prediction(const OperationId& op, TimeUs applied_us);
+  void unavailable(UnavailableNews news) { unavailable_.push_back(news); }
   void reject(RejectNews news) { rejects_.push_back(std::move(news)); }
   void durable(std::span<const ClientSequence> seqs) {
     durable_.insert(durable_.end(), seqs.begin(), seqs.end());
@@ -40,6 +41,7 @@ class NewsBook {
   std::vector<std::unique_ptr<EditNews>> edits_;
   std::map<OperationId, EditNews*> confirmed_;  // those of edits_ that are not predictions
   std::vector<RejectNews> rejects_;
+  std::vector<UnavailableNews> unavailable_;
   std::vector<ClientSequence> durable_, unseen_;
 };
 

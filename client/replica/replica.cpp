@@ -16,19 +16,24 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   // Of what the last server ordered, only what we heard to be durable survived its end for sure: by now the
   // log may have grown past that again, with other edits.
   const Sequence kept = std::min(durable_, opening.durable);
+  // Neither epochs nor durable sequences go back but where a backup was restored: no number says what is
+  // common then.
+  const bool went_back = opening_ && (opening.epoch < opening_->epoch || opening.durable < durable_ ||
+                                      (opening.epoch == opening_->epoch && opening.head < newest_));
   opening_ = opening;
   durable_ = opening.durable;
   newest_ = opening.head;
   requests_.clear();
-  current_count_ = 0;
+  current_count_ = unavailable_count_ = 0;
   for (auto& [key, chunk] : chunks_) {
-    chunk.current = false;
+    chunk.current = chunk.unavailable = false;
     chunk.inbox.clear();
     chunk.latest = 0;
     chunk.awaiting = false;
     if (!chunk.confirmed) continue;
     const Version version = chunk.confirmed->version;
-    if (version.epoch < opening.epoch && version.seq > kept) {
+    const bool may_be_lost = version.epoch < opening.epoch && version.seq > kept;
+    if (may_be_lost || (went_back && version.seq != 0)) {
       // The server that ordered this is gone and may not have kept it. What is on the screen stays until the
       // new snapshot.
       chunk.confirmed = nullptr;
@@ -60,7 +65,7 @@ void Replica::reset() {
     if (chunk.shown) news_.removed(key);
   }
   chunks_.clear();
-  confirmed_count_ = current_count_ = 0;
+  confirmed_count_ = current_count_ = unavailable_count_ = 0;
   own_.clear();
   requests_.clear();
   opening_.reset();
@@ -76,6 +81,7 @@ void Replica::set_view(const View& view) {
     if (it->second.shown) news_.removed(it->first);
     if (it->second.confirmed) --confirmed_count_;
     if (it->second.current) --current_count_;
+    if (it->second.unavailable) --unavailable_count_;
     it = chunks_.erase(it);
   }
 }
@@ -109,12 +115,21 @@ Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submit
   if (touched_chunks_bound(edit, opening_->chunk_edge) > kTouchedChunksMax) {
     return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
   }
+  if (!within(edit, opening_->heights)) {
+    return fail(ErrorCode::bad_value, "edit reaches above or below the world's heights");
+  }
   if (own_.full()) return fail(ErrorCode::limit_exceeded, "too many own edits wait for the server");
 
   OwnEdit own;
   own.edit = edit;
   own.submitted_us = submitted_us;
-  for (const ChunkCoord at : touched_chunks(edit, opening_->chunk_edge)) own.chunks.push_back({0, at});
+  for (const ChunkCoord at : touched_chunks(edit, opening_->chunk_edge)) {
+    const TrackedChunk* chunk = find({0, at});
+    if (chunk != nullptr && chunk->unavailable) {
+      return fail(ErrorCode::not_found, "edit touches a chunk that the server cannot send");
+    }
+    own.chunks.push_back({0, at});
+  }
   const std::vector<ChunkKey> chunks = own.chunks;
   const ClientSequence seq = own_.add(std::move(own));
   ++counters_.own_submitted;
@@ -153,6 +168,7 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   TrackedChunk& chunk = track(snapshot.key);
   if (!chunk.current) ++current_count_;
   chunk.current = true;
+  if (std::exchange(chunk.unavailable, false)) --unavailable_count_;
   if (chunk.confirmed) {
     const Version held = chunk.confirmed->version;
     const bool repairs = chunk.awaiting && snapshot.chunk.version == held;
@@ -179,6 +195,29 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   settle(snapshot.key, chunk, true, arrival.now_us);
 }
 
+void Replica::receive(const ChunkUnavailable& unavailable) {
+  if (!opening_) return;
+  for (const ChunkKey& key : unavailable.keys) {
+    if (key.lod != 0 || !view_ || !view_->contains(key.at)) continue;
+    TrackedChunk& chunk = track(key);
+    if (std::exchange(chunk.unavailable, true)) continue;
+    ++unavailable_count_;
+    // What was held from an earlier connection gets no more edits: better nothing than something stale.
+    if (std::exchange(chunk.current, false)) --current_count_;
+    if (std::exchange(chunk.confirmed, nullptr)) --confirmed_count_;
+    const bool was_shown = std::exchange(chunk.shown, nullptr) != nullptr;
+    chunk.serial = 0;
+    chunk.awaiting = false;
+    chunk.inbox.clear();
+    news_.removed(key);  // also where nothing was shown: neighbours wait for it no longer
+    for (int i = 0; was_shown && i < kDirectionCount; ++i) {
+      const auto d = static_cast<Direction>(i);
+      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), {});
+    }
+    news_.unavailable({key, unavailable.reason});
+  }
+}
+
 Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
   if (!opening_) return fail(ErrorCode::bad_value, "commit before ready");
   if (commit.epoch != opening_->epoch) return fail(ErrorCode::bad_value, "commit of another epoch");
@@ -197,9 +236,9 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
     OrderedPtr info;
     const auto shared_info = [&] {
       if (!info) {
-        info = std::make_shared<const OrderedInfo>(OrderedInfo{ordered.op, version, ordered.edit, own,
-                                                               ordered.submitted_us, ordered.ordered_us,
-                                                               arrival.received_us, arrival.unpacked_us});
+        info = std::make_shared<const OrderedInfo>(
+            OrderedInfo{ordered.op, version, ordered.edit, ordered.subject, own, ordered.submitted_us,
+                        ordered.ordered_us, arrival.received_us, arrival.unpacked_us});
       }
       return info;
     };
@@ -223,6 +262,7 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
           if (pending.seq == ordered.op.seq) pending.decided_at = version.seq;
         }
       }
+      if (chunk.unavailable) continue;
       chunk.inbox.push_back({shared_info(), ordered.previous[c]});
       if (!chunk.current || chunk.awaiting) {
         ++counters_.chunk_edits_buffered;
@@ -375,16 +415,21 @@ void Replica::show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next,
   if (whole) return;
   for (int i = 0; i < kDirectionCount; ++i) {
     const auto d = static_cast<Direction>(i);
-    if (!border_dirty(dirty, d, extent.sides()[static_cast<std::size_t>(axis_of(d))])) continue;
-    const ChunkKey next_key{key.lod, neighbour(key.at, d)};
-    TrackedChunk* beside = find(next_key);
-    if (beside == nullptr || !beside->shown) continue;
-    beside->serial = ++last_serial_;
-    ChunkNews& border = news_.chunk(next_key);
-    border.serial = beside->serial;
-    border.borders = static_cast<std::uint8_t>(border.borders | 1U << static_cast<unsigned>(opposite(d)));
-    NewsBook::attribute(border, cause);
+    if (border_dirty(dirty, d, extent.sides()[static_cast<std::size_t>(axis_of(d))])) {
+      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), cause);
+    }
   }
+}
+
+/// Tells the mesher that what lies beside a chunk on this side is different now.
+void Replica::border_changed(const ChunkKey& key, Direction side, std::span<EditNews* const> cause) {
+  TrackedChunk* chunk = find(key);
+  if (chunk == nullptr || !chunk->shown) return;
+  chunk->serial = ++last_serial_;
+  ChunkNews& border = news_.chunk(key);
+  border.serial = chunk->serial;
+  border.borders = static_cast<std::uint8_t>(border.borders | 1U << static_cast<unsigned>(side));
+  NewsBook::attribute(border, cause);
 }
 
 std::vector<ChunkKey> Replica::take_requests() { return std::exchange(requests_, {}); }

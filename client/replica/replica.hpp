@@ -11,11 +11,12 @@
 //   for;
 //   - a snapshot older than what is held is ignored.
 // After a restart of the server (new epoch) everything newer than what it kept on disk is distrusted, and own
-// edits it lost are offered again; operation ids make that exactly-once. Pure: no clock, no socket; times are
-// arguments (microseconds of the client's steady clock). One thread; the chunks handed out are immutable and
-// may be read from anywhere. Bounds: chunks, by the view; own edits, kOwnEditsMax (full: submit() refuses);
-// commits held back, kInboxEditsMax a chunk (full: they are dropped and the chunk asks for a snapshot that
-// contains them).
+// edits it lost are offered again; operation ids make that exactly-once. A server whose log ends before what
+// was durable here stands on a restored backup: then every edited chunk is distrusted. Pure: no clock, no
+// socket; times are arguments (microseconds of the client's steady clock). One thread; the chunks handed out
+// are immutable and may be read from anywhere. Bounds: chunks, by the view; own edits, kOwnEditsMax (full:
+// submit() refuses); commits held back, kInboxEditsMax a chunk (full: they are dropped and the chunk asks for
+// a snapshot that contains them).
 #pragma once
 #include <cstdint>
 #include <map>
@@ -30,6 +31,7 @@
 #include "client/replica/tracked_chunk.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/edit_stack.hpp"
+#include "common/edits/height_limits.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -46,6 +48,7 @@ struct Opening {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   ClientSequence decided = 0;
+  HeightLimits heights{};  // of edits
 };
 
 class Replica {
@@ -63,11 +66,14 @@ class Replica {
   const std::optional<View>& view() const { return view_; }
 
   /// Shows an own edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled
-  /// time. Fails on an invalid descriptor, before the first opening, and when kOwnEditsMax are held.
+  /// time. Fails on an invalid descriptor, beyond the world's heights, on an unavailable chunk, before the
+  /// first opening, and when kOwnEditsMax are held.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void mark_sent(ClientSequence seq, TimeUs now_us);
 
   void receive(ChunkSnapshot snapshot, const Arrival& arrival);
+  /// The server cannot send these chunks: nothing is shown there, and own edits there are refused.
+  void receive(const ChunkUnavailable& unavailable);
   /// Fails if the commit contradicts itself (a list of previous sequences that does not fit its edit).
   Result<void> receive(const Commit& commit, const Arrival& arrival);
   void receive(const Reject& reject, TimeUs now_us);
@@ -96,6 +102,12 @@ class Replica {
   std::size_t current_count() const { return current_count_; }
   /// Chunks that wait for a snapshot they asked for.
   std::size_t awaiting_count() const;
+  /// Chunks that the server said on this connection it cannot send.
+  std::size_t unavailable_count() const { return unavailable_count_; }
+  bool unavailable(const ChunkKey& key) const {
+    const TrackedChunk* chunk = find(key);
+    return chunk != nullptr && chunk->unavailable;
+  }
   const OwnEdits& own_edits() const { return own_; }
   Sequence durable() const { return durable_; }
   /// Newest sequence seen in a commit or a welcome.
@@ -110,6 +122,7 @@ class Replica {
   void settle_own();
   void request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
   void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next, std::span<EditNews* const> cause);
+  void border_changed(const ChunkKey& key, Direction side, std::span<EditNews* const> cause);
   void show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause);
   bool is_own(const OperationId& op) const;
   VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }
@@ -119,6 +132,7 @@ class Replica {
   std::map<ChunkKey, TrackedChunk> chunks_;
   std::size_t confirmed_count_ = 0;
   std::size_t current_count_ = 0;
+  std::size_t unavailable_count_ = 0;
   OwnEdits own_;
   Sequence durable_ = 0;
   Sequence newest_ = 0;

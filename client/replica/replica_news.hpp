@@ -29,7 +29,7 @@ struct ChunkNews {
   std::uint8_t borders =
       0;               // bit per Direction: the neighbour there changed in the layer that touches this chunk
   bool whole = false;  // nothing was shown here before
-  bool removed = false;            // out of view: nothing is shown any more
+  bool removed = false;            // out of view or unavailable: nothing is shown here
   std::vector<OperationId> edits;  // edits that this change contains, in the order they were applied
 };
 
@@ -37,6 +37,7 @@ struct ChunkNews {
 struct EditNews {
   OperationId op;
   Sequence seq = 0;          // 0 for a prediction
+  Sequence subject = 0;      // the earlier edit that this one answers (rollback, undo, redo); 0: none
   bool own = false;          // made by this client instance
   bool predicted = false;    // shown ahead of the server's answer
   bool in_snapshot = false;  // came with a snapshot after its commit had been held back
@@ -56,6 +57,12 @@ struct RejectNews {
   std::string detail;
 };
 
+/// The server cannot send a chunk of the view.
+struct UnavailableNews {
+  ChunkKey key;
+  UnavailableReason reason = UnavailableReason::damaged;
+};
+
 struct ReplicaNews {
   std::vector<ChunkNews> chunks;  // ascending by key
   std::vector<EditNews> edits;    // in the order applied
@@ -64,6 +71,8 @@ struct ReplicaNews {
   /// Own edits that were decided while we could not listen, by a server that no longer knows how: applied and
   /// durable, or refused. The chunks tell.
   std::vector<ClientSequence> unseen;
+  /// Chunks that the server cannot send, and why.
+  std::vector<UnavailableNews> unavailable;
 };
 
 /// Counts since the replica was made. `chunk edits` count an edit once per chunk.

@@ -20,6 +20,7 @@ struct OrderedInfo {
   OperationId op;
   Version version;
   EditDescriptor edit;
+  Sequence subject = 0;                     // as in OrderedEdit
   bool own = false;                         // made by this client instance
   TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
   TimeUs received_us = 0, unpacked_us = 0;  // this client's
@@ -48,6 +49,7 @@ struct TrackedChunk {
   Sequence latest = 0;           // newest edit of this chunk seen on this connection
   bool current = false;          // a snapshot of it came on this connection
   bool awaiting = false;         // asked for a snapshot: nothing else is taken
+  bool unavailable = false;  // said the server on this connection; then nothing is held, shown or kept back
   std::optional<TimeUs> requested_us;
 
   /// Puts an own edit into the pending stack, at its place, unless it is there.

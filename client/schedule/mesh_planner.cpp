@@ -17,11 +17,11 @@ std::int64_t distance_squared(ChunkCoord a, ChunkCoord b) {
 void MeshPlanner::take(std::span<const ChunkNews> news) {
   for (const ChunkNews& chunk : news) {
     if (chunk.removed) {
-      const auto it = states_.find(chunk.key);
-      if (it == states_.end()) continue;
-      if (it->second.rank) ready_.erase(*it->second.rank);
-      if (it->second.dirty) --dirty_;
-      states_.erase(it);
+      if (const auto it = states_.find(chunk.key); it != states_.end()) {
+        if (it->second.rank) ready_.erase(*it->second.rank);
+        if (it->second.dirty) --dirty_;
+        states_.erase(it);
+      }
       place_neighbours(chunk.key);
       continue;
     }
@@ -55,7 +55,9 @@ bool MeshPlanner::ready(const ChunkKey& key) const {
   if (!replica_.shown(key)) return false;
   for (int i = 0; i < kDirectionCount; ++i) {
     const ChunkKey next = beside(key, static_cast<Direction>(i));
-    if (replica_.view() && replica_.view()->contains(next.at) && !replica_.shown(next)) return false;
+    const bool will_come =
+        replica_.view() && replica_.view()->contains(next.at) && !replica_.unavailable(next);
+    if (will_come && !replica_.shown(next)) return false;
   }
   return true;
 }

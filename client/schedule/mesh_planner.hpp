@@ -1,8 +1,8 @@
 // MeshPlanner: which chunk to mesh next, and from what. Pure; the threads are MeshPool's.
 //   - changes of one chunk are joined until it is meshed (the newest runs win; older results are dropped);
-//   - a chunk waits for neighbours that are in view and not here yet; beyond the view a missing neighbour
-//   means that the
-//     faces at the edge are drawn, and the chunk is meshed again should the view grow past it;
+//   - a chunk waits for neighbours that are in view and not here yet; beyond the view, or where the server
+//     has none to send, a missing neighbour means that the faces at the edge are drawn, and the chunk is
+//     meshed again should the view grow past it;
 //   - a change at the border meshes the neighbour again too;
 //   - edited chunks first, then the nearest to the eye.
 // One thread. Cost: O(log chunks) a change or job, O(chunks to mesh) when the eye crosses into another chunk.

@@ -52,14 +52,15 @@ Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& w
   t.field(hello.nonce);
   t.text(hello.name);
   t.number(hello.encodings, 1);
+  t.number(hello.features, 8);
   t.number(welcome.protocol, 4);
   t.field(welcome.world_id);
   t.number(welcome.epoch, 4);
   t.number(welcome.durable, 8);
   t.number(welcome.head, 8);
   t.number(welcome.chunk_edge, 2);
-  t.number(static_cast<std::uint32_t>(welcome.y_min), 4);
-  t.number(static_cast<std::uint32_t>(welcome.y_max), 4);
+  t.number(static_cast<std::uint32_t>(welcome.heights.y_min), 4);
+  t.number(static_cast<std::uint32_t>(welcome.heights.y_max), 4);
   t.number(welcome.spawn.x);
   t.number(welcome.spawn.y);
   t.number(welcome.spawn.z);
@@ -74,6 +75,7 @@ Bytes transcript_of(std::string_view label, const Hello& hello, const Welcome& w
   t.number(static_cast<std::uint8_t>(welcome.encoding), 1);
   t.number(welcome.edit_volume_max, 8);
   t.number(welcome.view_radius_max, 1);
+  t.number(welcome.features, 8);
   return t.take();
 }
 

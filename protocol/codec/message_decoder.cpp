@@ -45,12 +45,25 @@ struct BodyReader {
   /// Before welcome, what suits every world.
   std::int32_t key_edge() const { return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax); }
 
+  /// 1 .. count_max keys, each inside the world.
+  bool take_keys(const flatbuffers::Vector<const wire::Key*>* from, std::size_t count_max,
+                 std::vector<ChunkKey>& to) const {
+    const auto count = count_of(from, count_max);
+    if (!count || *count == 0) return false;
+    to.resize(*count);
+    for (std::uint32_t i = 0; i < *count; ++i) {
+      if (!take_key(from->Get(i), key_edge(), to[i])) return false;
+    }
+    return true;
+  }
+
   Result<Message> read(const wire::Hello& t) const {
     Hello m;
     m.protocol = t.protocol();
     if (m.protocol != kProtocolVersion) return m;
     m.instance = t.instance();
     m.encodings = t.encodings();
+    m.features = t.features();
     if (!take_exact(t.key(), m.key)) return bad("hello.key is not 32 bytes");
     if (!take_exact(t.nonce(), m.nonce)) return bad("hello.nonce is not 32 bytes");
     if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name))
@@ -68,11 +81,11 @@ struct BodyReader {
     m.durable = t.durable();
     m.head = t.head();
     m.chunk_edge = t.chunk_edge();
-    m.y_min = t.y_min();
-    m.y_max = t.y_max();
+    m.heights = {t.y_min(), t.y_max()};
     m.encoding = static_cast<ChunkEncoding>(t.encoding());
     m.edit_volume_max = t.edit_volume_max();
     m.view_radius_max = t.view_radius_max();
+    m.features = t.features();
     if (!take_exact(t.world_id(), m.world_id)) return bad("welcome.world_id is not 16 bytes");
     if (!take_exact(t.server_key(), m.server_key)) return bad("welcome.server_key is not 32 bytes");
     if (!take_exact(t.challenge(), m.challenge)) return bad("welcome.challenge is not 32 bytes");
@@ -83,8 +96,7 @@ struct BodyReader {
     const bool edge_known =
         m.chunk_edge == 16 || m.chunk_edge == 32 || m.chunk_edge == 64 || m.chunk_edge == 128;
     if (!edge_known) return bad("welcome.chunk_edge is not 16, 32, 64 or 128");
-    if (m.y_min > m.y_max || m.y_min < -kWorldLimit || m.y_max > kWorldLimit)
-      return bad("welcome.y_min .. y_max");
+    if (!validate(m.heights)) return bad("welcome.y_min .. y_max");
     if (t.encoding() < 1 || t.encoding() > 2) return bad("welcome.encoding is unknown");
     if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
     if (const auto ok = take_materials(t.materials(), m.materials); !ok) return Unexpected<Error>{ok.error()};
@@ -109,12 +121,9 @@ struct BodyReader {
   }
 
   Result<Message> read(const wire::ChunkRequest& t) const {
-    const auto count = count_of(t.keys(), kChunkRequestKeysMax);
-    if (!count || *count == 0) return bad("chunk request has not 1 .. 64 keys");
     ChunkRequest m;
-    m.keys.resize(*count);
-    for (std::uint32_t i = 0; i < *count; ++i) {
-      if (!take_key(t.keys()->Get(i), key_edge(), m.keys[i])) return bad("chunk key is outside the world");
+    if (!take_keys(t.keys(), kChunkRequestKeysMax, m.keys)) {
+      return bad("chunk request has not 1 .. 64 keys inside the world");
     }
     return m;
   }
@@ -130,6 +139,16 @@ struct BodyReader {
     if (!voxels) return Unexpected<Error>{voxels.error()};
     m.chunk.voxels = *std::move(voxels);
     return Message{std::move(m)};
+  }
+
+  Result<Message> read(const wire::ChunkUnavailable& t) const {
+    ChunkUnavailable m;
+    if (!take_keys(t.keys(), kUnavailableKeysMax, m.keys)) {
+      return bad("unavailable chunks are not 1 .. 64 keys inside the world");
+    }
+    if (t.reason() == 0) return bad("unavailable reason is 0");
+    m.reason = static_cast<UnavailableReason>(t.reason());  // later reasons are no harm
+    return m;
   }
 
   Result<Message> read(const wire::EditRequest& t) const {
@@ -166,6 +185,8 @@ struct BodyReader {
       out.submitted_us = e.submitted_us();
       out.ordered_us = e.ordered_us();
       if (!is_time(out.submitted_us) || !is_time(out.ordered_us)) return bad("commit time is out of range");
+      out.subject = e.subject();
+      if (out.subject >= m.first + i) return bad("commit subject is not an earlier edit");
       auto edit = decode_descriptor(view_of(e.edit()));
       if (!edit) return Unexpected<Error>{edit.error()};
       out.edit = *edit;
@@ -317,6 +338,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Durable:
       return Route{false, true, FrameClass::edits};
     case wire::Body::Chunk:
+    case wire::Body::ChunkUnavailable:
       return Route{false, true, FrameClass::chunks};
     case wire::Body::Goodbye:
       return Route{true, true, FrameClass::control};
@@ -364,6 +386,8 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Pong());
     case wire::Body::Goodbye:
       return reader.read(*message.body_as_Goodbye());
+    case wire::Body::ChunkUnavailable:
+      return reader.read(*message.body_as_ChunkUnavailable());
     case wire::Body::NONE:
       break;
   }

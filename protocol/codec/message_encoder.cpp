@@ -37,7 +37,7 @@ struct BodyBuilder {
     const auto key = bytes_of(b, m.key);
     const auto nonce = bytes_of(b, m.nonce);
     const auto name = b.CreateString(m.name);
-    return wire::CreateHello(b, m.protocol, key, m.instance, nonce, name, m.encodings);
+    return wire::CreateHello(b, m.protocol, key, m.instance, nonce, name, m.encodings, m.features);
   }
   Offset<wire::Welcome> operator()(const Welcome& m) {
     std::vector<Offset<wire::MaterialRow>> rows;
@@ -55,9 +55,10 @@ struct BodyBuilder {
     const auto challenge = bytes_of(b, m.challenge);
     const auto signature = bytes_of(b, m.signature);
     const wire::Position spawn = position_of(m.spawn);
-    return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge, m.y_min,
-                               m.y_max, &spawn, materials, server_key, challenge, signature,
-                               static_cast<std::uint8_t>(m.encoding), m.edit_volume_max, m.view_radius_max);
+    return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge,
+                               m.heights.y_min, m.heights.y_max, &spawn, materials, server_key, challenge,
+                               signature, static_cast<std::uint8_t>(m.encoding), m.edit_volume_max,
+                               m.view_radius_max, m.features);
   }
   Offset<wire::Proof> operator()(const Proof& m) { return wire::CreateProof(b, bytes_of(b, m.signature)); }
   Offset<wire::Ready> operator()(const Ready& m) { return wire::CreateReady(b, m.author, m.decided); }
@@ -66,12 +67,14 @@ struct BodyBuilder {
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
-    std::vector<wire::Key> keys(m.keys.size());
-    std::transform(m.keys.begin(), m.keys.end(), keys.begin(), key_of);
-    return wire::CreateChunkRequest(b, b.CreateVectorOfStructs(keys));
+    return wire::CreateChunkRequest(b, keys(m.keys));
   }
   Offset<wire::Chunk> operator()(const ChunkSnapshot& m) {
     return snapshot(m.key, m.chunk, ChunkEncoding::raw);
+  }
+  Offset<wire::ChunkUnavailable> operator()(const ChunkUnavailable& m) {
+    RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kUnavailableKeysMax);
+    return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
@@ -86,6 +89,7 @@ struct BodyBuilder {
       const OrderedEdit& e = m.edits[i];
       previous.clear();
       ByteWriter w(previous);
+      RUNSTONE_ASSERT(e.subject < m.first + i);
       for (const Sequence seq : e.previous) {
         RUNSTONE_ASSERT(seq < m.first + i);
         w.varint(m.first + i - seq);
@@ -93,7 +97,7 @@ struct BodyBuilder {
       const auto edit = bytes_of(b, encode(e.edit));
       edits.push_back(wire::CreateOrderedEdit(b, e.op.author, e.op.instance, e.op.seq,
                                               static_cast<std::uint8_t>(e.cause), e.submitted_us,
-                                              e.ordered_us, edit, bytes_of(b, previous)));
+                                              e.ordered_us, edit, bytes_of(b, previous), e.subject));
     }
     return wire::CreateCommit(b, m.epoch, m.first, b.CreateVector(edits));
   }
@@ -147,6 +151,11 @@ struct BodyBuilder {
     const wire::Version v = version_of(chunk.version);
     const wire::Digest d = digest_bytes(chunk.digest);
     return wire::CreateChunk(b, &k, &v, &d, bytes);
+  }
+  Offset<flatbuffers::Vector<const wire::Key*>> keys(const std::vector<ChunkKey>& list) {
+    std::vector<wire::Key> keys(list.size());
+    std::transform(list.begin(), list.end(), keys.begin(), key_of);
+    return b.CreateVectorOfStructs(keys);
   }
   /// Texts are for people: a longer one is cut, never refused.
   Offset<flatbuffers::String> text(const std::string& t) {

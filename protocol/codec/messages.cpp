@@ -12,7 +12,8 @@ FrameClass frame_class_of(const Message& message) {
                                 std::is_same_v<T, Reject> || std::is_same_v<T, Durable> ||
                                 std::is_same_v<T, Ready>;
         if constexpr (kOrder) return FrameClass::edits;
-        return std::is_same_v<T, ChunkSnapshot> ? FrameClass::chunks : FrameClass::control;
+        constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable>;
+        return kChunk ? FrameClass::chunks : FrameClass::control;
       },
       message);
 }
@@ -22,21 +23,27 @@ const char* to_string(RejectReason reason) {
     case RejectReason::busy:
       return "busy";
     case RejectReason::already_decided:
-      return "already decided";
+      return "already_decided";
     case RejectReason::unknown_material:
-      return "unknown material";
+      return "unknown_material";
     case RejectReason::too_large:
-      return "too large";
+      return "too_large";
     case RejectReason::out_of_reach:
-      return "out of reach";
+      return "out_of_reach";
     case RejectReason::not_permitted:
-      return "not permitted";
+      return "not_permitted";
     case RejectReason::rate_limited:
-      return "rate limited";
+      return "rate_limited";
     case RejectReason::bad_edit:
-      return "bad edit";
+      return "bad_edit";
+    case RejectReason::outside_world:
+      return "outside_world";
   }
   return "unknown";
+}
+
+const char* to_string(UnavailableReason reason) {
+  return reason == UnavailableReason::damaged ? "damaged" : "unknown";
 }
 
 const char* to_string(GoodbyeReason reason) {
@@ -44,25 +51,25 @@ const char* to_string(GoodbyeReason reason) {
     case GoodbyeReason::closing:
       return "closing";
     case GoodbyeReason::wrong_protocol:
-      return "wrong protocol";
+      return "wrong_protocol";
     case GoodbyeReason::malformed_frame:
-      return "malformed frame";
+      return "malformed_frame";
     case GoodbyeReason::malformed_message:
-      return "malformed message";
+      return "malformed_message";
     case GoodbyeReason::unexpected_message:
-      return "unexpected message";
+      return "unexpected_message";
     case GoodbyeReason::not_authenticated:
-      return "not authenticated";
+      return "not_authenticated";
     case GoodbyeReason::already_connected:
-      return "already connected";
+      return "already_connected";
     case GoodbyeReason::server_full:
-      return "server full";
+      return "server_full";
     case GoodbyeReason::timed_out:
-      return "timed out";
+      return "timed_out";
     case GoodbyeReason::flooding:
       return "flooding";
     case GoodbyeReason::internal:
-      return "internal error";
+      return "internal";
   }
   return "unknown";
 }

@@ -14,6 +14,7 @@
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/edit_descriptor.hpp"
+#include "common/edits/height_limits.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -45,6 +46,7 @@ struct Hello {
   Nonce nonce{};
   std::string name;
   std::uint8_t encodings = 3;  // bit per ChunkEncoding: 1 << (encoding - 1)
+  std::uint64_t features = 0;  // as sent: may have bits that this build does not know
   friend bool operator==(const Hello&, const Hello&) = default;
 };
 struct Welcome {
@@ -53,7 +55,7 @@ struct Welcome {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   std::uint16_t chunk_edge = 32;
-  std::int32_t y_min = 0, y_max = 0;
+  HeightLimits heights;  // of edits
   WorldPos spawn;
   MaterialTable materials;
   PublicKey server_key{};
@@ -62,6 +64,7 @@ struct Welcome {
   ChunkEncoding encoding = ChunkEncoding::raw;
   std::uint64_t edit_volume_max = 0;
   std::uint8_t view_radius_max = 0;
+  std::uint64_t features = 0;  // of hello's, those in force
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct Proof {
@@ -96,6 +99,18 @@ struct ChunkSnapshot {
   Chunk chunk;
   friend bool operator==(const ChunkSnapshot&, const ChunkSnapshot&) = default;
 };
+/// Why a chunk cannot be had. Values are on the wire; readers take reasons they do not know.
+enum class UnavailableReason : std::uint8_t {
+  damaged = 1,  // its row in the server's database is damaged: until that is repaired and the server restarts
+};
+const char* to_string(UnavailableReason reason);
+
+/// Chunks of the view that the server cannot send: answered by name, so that nobody waits for them.
+struct ChunkUnavailable {
+  std::vector<ChunkKey> keys;
+  UnavailableReason reason = UnavailableReason::damaged;
+  friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
+};
 struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
@@ -108,6 +123,7 @@ struct OrderedEdit {
   TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
   EditDescriptor edit;
   std::vector<Sequence> previous;  // sequence each touched chunk stood at before, in touched_chunks() order
+  Sequence subject = 0;            // as in EditRecord: the earlier edit this one answers; 0: none
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 struct Commit {
@@ -127,9 +143,11 @@ enum class RejectReason : std::uint8_t {
   out_of_reach = 5,
   not_permitted = 6,
   rate_limited = 7,
-  bad_edit = 8,  // outside the world or otherwise invalid
+  bad_edit = 8,       // not a valid descriptor
+  outside_world = 9,  // a voxel of it lies above or below the world's heights
 };
-inline constexpr std::uint8_t kRejectReasonMax = 8;
+inline constexpr std::uint8_t kRejectReasonMax = 9;
+/// The name in docs/protocol.md.
 const char* to_string(RejectReason reason);
 
 struct Reject {
@@ -200,6 +218,7 @@ enum class GoodbyeReason : std::uint16_t {
   internal = 11,
 };
 inline constexpr std::uint16_t kGoodbyeReasonMax = 11;
+/// The name in docs/protocol.md.
 const char* to_string(GoodbyeReason reason);
 
 struct Goodbye {
@@ -209,8 +228,9 @@ struct Goodbye {
 };
 
 /// Order follows the union of the schema.
-using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest,
-                             Commit, Reject, Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye>;
+using Message =
+    std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
+                 Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye, ChunkUnavailable>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {
@@ -218,8 +238,9 @@ inline bool digest_holds(const ChunkSnapshot& snapshot) {
 }
 
 /// The class every message of this kind travels in: edit requests, commits, rejects, durable and ready in
-/// `edits`, snapshots in `chunks`, the rest in `control`. So durable stays behind the commits it speaks of,
-/// and neither can overtake the ready that opens their session.
+/// `edits`, snapshots and what stands in their place in `chunks`, the rest in `control`. So durable stays
+/// behind the commits it speaks of, neither can overtake the ready that opens their session, and the last
+/// word on a chunk comes last.
 FrameClass frame_class_of(const Message& message);
 
 /// Serialises a message: FlatBuffers of protocol/schema/runstone.fbs, chunk snapshots as `raw` (see

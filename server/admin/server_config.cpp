@@ -48,6 +48,8 @@ const std::vector<Field>& fields() {
       number("edit_queue_kib", &C::edit_queue_kib, 64, 1'048'576, "KiB per session"),
       number("chunk_queue_kib", &C::chunk_queue_kib, 64, 1'048'576, "KiB per session"),
       number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
+      number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
+      number("depth_max", &C::depth_max, 0, 1ULL << 29, "voxels below y = 0 where edits may be"),
       number("reach_max", &C::reach_max, 0, 1ULL << 30, "voxels from player to edit, 0: no limit"),
       number("edits_per_second", &C::edits_per_second, 0, kNoMax, "edits per session, 0: no limit"),
       number("edit_burst", &C::edit_burst, 1, 1'000'000, "edits per session at once"),

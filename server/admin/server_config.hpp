@@ -34,6 +34,8 @@ struct ServerConfig {
   std::uint64_t chunk_queue_kib = 4'096;       // per session, KiB, 64..1048576
   // Edits.
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
+  std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
+  std::uint64_t depth_max = 1ULL << 29;       // voxels below y = 0 where edits may be, 0..2^29
   std::uint64_t reach_max = 0;                // voxels from the player to the edit, 0: no limit
   std::uint64_t edits_per_second = 2'000;     // per session, 0: no limit
   std::uint64_t edit_burst = 4'000;           // per session, 1..1000000

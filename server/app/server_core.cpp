@@ -57,8 +57,8 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
   WorldConfig world;
   world.world_id = meta.world_id;
   world.chunk_edge = meta.chunk_edge;
-  world.y_min = generator_.y_min();
-  world.y_max = generator_.y_max();
+  world.heights = {-static_cast<std::int32_t>(config.depth_max),
+                   static_cast<std::int32_t>(config.height_max)};
   world.spawn = meta.spawn;
   world.materials = meta.materials;
   world.server_keys = key_pair_of(meta.server_key_seed);
@@ -113,17 +113,9 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
   if (!epoch) return Unexpected<std::string>{epoch.error().message()};
   start->log.epoch = *epoch;
 
-  WorldConfig config = world_config(config_);
-  const auto base = store_.base_keys();
-  if (!base) return Unexpected<std::string>{base.error().message()};
-  for (const ChunkKey& key : *base) {  // an imported world reaches beyond what its generator makes
-    const VoxelBox box = box_of(key.at, config.chunk_edge);
-    config.y_min = std::min(config.y_min, box.min.y);
-    config.y_max = std::max(config.y_max, box.max.y);
-  }
-  world_ = std::make_unique<WorldServer>(std::move(config), *start, *this, [](std::span<std::uint8_t> out) {
-    randombytes_buf(out.data(), out.size());
-  });
+  world_ = std::make_unique<WorldServer>(
+      world_config(config_), *start, *this,
+      [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   std::uint64_t restacked = 0;
   const auto read = store_.read_log(start->checkpoint + 1, start->log.last, [&](const EditRecord& record) {
     world_->restack(record);
@@ -216,13 +208,14 @@ void ServerCore::log_counters() {
         "counters sessions={} opened={} closed={} malformed={} edits_ordered={} edits_rejected={} commits={} "
         "seq={} "
         "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} chunks_resident={} "
-        "resident_bytes={} chunks_failed={} snapshots_sent={} chunks_stale={} queue_full={} audits_sent={} "
+        "resident_bytes={} chunks_failed={} snapshots_sent={} unavailable_sent={} chunks_stale={} "
+        "queue_full={} audits_sent={} "
         "audit_mismatches={} bytes_in={} bytes_out={} dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, world_->resident_chunks(), world_->resident_bytes(),
-        w.chunks_failed, w.snapshots_sent, w.chunks_stale, w.queue_full, w.audits_sent, w.audit_mismatches,
-        n.bytes_in.load(), n.bytes_out.load(), dense_expansions());
+        w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent,
+        w.audit_mismatches, n.bytes_in.load(), n.bytes_out.load(), dense_expansions());
   });
 }
 

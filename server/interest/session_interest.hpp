@@ -2,7 +2,7 @@
 //   wanted       in the queue, nearest first
 //   waiting      not in memory: a load was asked for
 //   subscribed   a snapshot was sent; every later commit that touches the chunk goes to the session
-//   unavailable  it could not be loaded; asking again would fail again
+//   unavailable  it could not be loaded, and the session was told; loading again would fail again
 // One thread.
 #pragma once
 #include <array>

@@ -61,6 +61,7 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
     ordered.submitted_us = offer.submitted_us;
     ordered.ordered_us = now.steady_us;
     ordered.edit = offer.edit;
+    ordered.subject = offer.subject;
     for (const ChunkCoord at : touched_chunks(offer.edit, limits_.chunk_edge)) {
       const ChunkKey key{0, at};
       ordered.previous.push_back(chunks_.push(key, version, offer.edit));
@@ -68,7 +69,7 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
     }
     bytes += kOrderedEditBytesMax + kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
-    batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit});
+    batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
   }
   std::sort(batch.touched.begin(), batch.touched.end());
   batch.touched.erase(std::unique(batch.touched.begin(), batch.touched.end()), batch.touched.end());

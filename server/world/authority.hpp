@@ -33,6 +33,7 @@ struct EditOffer {
   Cause cause = Cause::player;
   TimeUs submitted_us = 0;
   EditDescriptor edit;
+  Sequence subject = 0;  // as in EditRecord: the edit this one answers; 0: none
 };
 
 /// One commit: the message, the records for the log, and the chunks it touched, ascending.

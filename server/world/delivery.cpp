@@ -7,17 +7,33 @@ bool is_stalled(const WorldState& world, const WorldSession& session, const Now&
   return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
 }
 
-bool send_snapshot(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                   const Now& now) {
-  if (world.ports.send_snapshot(session, key, chunk)) {
-    world.interest.set_state(session, key, ChunkInterest::subscribed);
-    ++world.counters.snapshots_sent;
-    return true;
-  }
+/// The session's queue is full: the chunk has to wait for room.
+void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Now& now) {
   ++world.counters.queue_full;
   world.find(session)->stalled_us = now.steady_us;
   world.interest.set_state(session, key, ChunkInterest::wanted);
-  return false;
+}
+
+/// The snapshot, or without a chunk the word that there is none. False: the queue is full, later again.
+bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                  const Now& now) {
+  if (chunk == nullptr) {
+    const ChunkUnavailable unavailable{{key}, UnavailableReason::damaged};
+    if (!world.ports.send(session, encode_message(unavailable))) {
+      put_off(world, session, key, now);
+      return false;
+    }
+    world.interest.set_state(session, key, ChunkInterest::unavailable);
+    ++world.counters.unavailable_sent;
+    return true;
+  }
+  if (!world.ports.send_snapshot(session, key, chunk)) {
+    put_off(world, session, key, now);
+    return false;
+  }
+  world.interest.set_state(session, key, ChunkInterest::subscribed);
+  ++world.counters.snapshots_sent;
+  return true;
 }
 
 }  // namespace
@@ -35,10 +51,9 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
   while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
     const auto key = world.interest.nearest_wanted(session);
     if (!key) return;
-    if (const ChunkPtr chunk = chunks.find(*key)) {
-      if (!send_snapshot(world, session, *key, chunk, now)) return;
-    } else if (chunks.residency(*key) == Residency::quarantined) {
-      world.interest.set_state(session, *key, ChunkInterest::unavailable);
+    const ChunkPtr chunk = chunks.find(*key);
+    if (chunk != nullptr || chunks.residency(*key) == Residency::quarantined) {
+      if (!answer_chunk(world, session, *key, chunk, now)) return;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
       ask_load(world, *key);
@@ -49,12 +64,10 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
   const ChunkPtr chunk = world.authority.chunks().find(key);
   for (const SessionId session : world.interest.waiting(key)) {
-    if (chunk == nullptr) {
-      world.interest.set_state(session, key, ChunkInterest::unavailable);
-    } else if (is_stalled(world, *world.find(session), now)) {
+    if (is_stalled(world, *world.find(session), now)) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
     } else {
-      send_snapshot(world, session, key, chunk, now);
+      answer_chunk(world, session, key, chunk, now);
     }
     deliver(world, session, now);
   }

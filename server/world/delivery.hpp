@@ -12,7 +12,7 @@ namespace runstone {
 void deliver(WorldState& world, SessionId session, const Now& now);
 /// Asks for a chunk unless it is here, on its way or quarantined.
 void ask_load(WorldState& world, const ChunkKey& key);
-/// A load ended: whoever waits gets the chunk, or nothing if it is quarantined.
+/// A load ended: whoever waits gets the chunk, or the word that it is unavailable.
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now);
 /// A commit did not fit the session's queue: these chunks are stale for it, are unsubscribed and will be sent
 /// again as snapshots once the queue has room.

@@ -11,6 +11,7 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
   const bool knows_mask =
       edit.mask.kind != MaskKind::only_material || edit.mask.material < limits.material_count;
   if (edit.material >= limits.material_count || !knows_mask) return RejectReason::unknown_material;
+  if (!within(edit, limits.heights)) return RejectReason::outside_world;
   if (touched_chunks_bound(edit, limits.chunk_edge) > limits.touched_chunks_max)
     return RejectReason::too_large;
   if (voxel_count(edit) > limits.volume_max) return RejectReason::too_large;

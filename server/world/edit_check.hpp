@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/edits/edit_descriptor.hpp"
+#include "common/edits/height_limits.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -12,11 +13,13 @@ namespace runstone {
 struct EditLimits {
   std::int32_t chunk_edge = 32;
   std::size_t material_count = 1;        // ids below are known
+  HeightLimits heights;                  // of every voxel of the geometry
   std::uint64_t volume_max = 1'000'000;  // voxels of the geometry
   std::uint64_t touched_chunks_max = kTouchedChunksMax;
 };
 
-/// Nothing if the edit is allowed; else why not: bad_edit, unknown_material (the mask's too) or too_large.
+/// Nothing if the edit is allowed; else why not: bad_edit, unknown_material (the mask's too), outside_world
+/// or too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
 
 /// Whether the geometry's bounding box comes within `reach` voxels of `from`.

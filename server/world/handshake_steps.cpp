@@ -22,8 +22,7 @@ Welcome welcome_of(const WorldState& world) {
   welcome.durable = world.durable;
   welcome.head = world.authority.head();
   welcome.chunk_edge = config.chunk_edge;
-  welcome.y_min = config.y_min;
-  welcome.y_max = config.y_max;
+  welcome.heights = config.heights;
   welcome.spawn = config.spawn;
   welcome.materials = config.materials;
   welcome.server_key = config.server_keys.public_key;
@@ -57,6 +56,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   if (close_if_full(world, session)) return;
   Welcome welcome = welcome_of(world);
   welcome.encoding = choose_encoding(world.config, hello.encodings);
+  welcome.features = world.config.features & hello.features;
   world.random(welcome.challenge);
   welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome));
   mine.key = hello.key;

@@ -16,8 +16,10 @@ void on_view(WorldState& world, SessionId session, View view, const Now& now) {
 
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request, const Now& now) {
   for (const ChunkKey& key : request.keys) {
-    if (world.interest.subscribes(session, key))
+    const auto state = world.interest.find(session)->state(key);
+    if (state == ChunkInterest::subscribed || state == ChunkInterest::unavailable) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
+    }
   }
   deliver(world, session, now);
   collect_released(world);
@@ -38,7 +40,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     world.authority.refuse(op, *refusal);
   } else {
     const bool has_room = world.accepts_edits && world.ports.log_has_room(world.authority.queued() + 1);
-    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit}, has_room);
+    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0}, has_room);
   }
   if (!refusal) return;
   ++world.counters.edits_rejected;

@@ -25,7 +25,7 @@
 namespace runstone {
 
 /// absent: not in memory. loading: asked for. resident: published. quarantined: it could not be loaded; its
-/// edits are ordered and logged, but nobody gets it and it is never made anew.
+/// edits are ordered and logged, but nobody gets it (they are told) and it is never made anew.
 enum class Residency { absent, loading, resident, quarantined };
 
 class WorldChunks {

@@ -18,10 +18,11 @@ struct WorldConfig {
   // The world.
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;
-  std::int32_t y_min = 0, y_max = 0;  // generator bounds, voxels
+  HeightLimits heights;  // of edits, voxels
   WorldPos spawn;
   MaterialTable materials;
   KeyPair server_keys;
+  std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::uint8_t view_radius_max = 16;          // chunks; larger views are cut to it

@@ -14,8 +14,9 @@ struct WorldCounters {
   std::uint64_t commit_bytes = 0;  // serialised once each
   std::uint64_t commits_sent = 0;  // commit times receiver
   std::uint64_t snapshots_sent = 0;
-  std::uint64_t chunks_stale = 0;  // chunk times session, because a commit did not fit its queue
-  std::uint64_t queue_full = 0;    // sends refused by a session's queue
+  std::uint64_t unavailable_sent = 0;  // chunk times session: told that there is none
+  std::uint64_t chunks_stale = 0;      // chunk times session, because a commit did not fit its queue
+  std::uint64_t queue_full = 0;        // sends refused by a session's queue
   std::uint64_t audits_sent = 0;
   std::uint64_t audit_mismatches = 0;  // published digest differs from its runs: a bug or broken memory
   std::uint64_t chunks_failed = 0;     // loads that ended in quarantine

@@ -11,6 +11,7 @@ EditLimits limits_of(const WorldConfig& config) {
   EditLimits limits;
   limits.chunk_edge = config.chunk_edge;
   limits.material_count = config.materials.size();
+  limits.heights = config.heights;
   limits.volume_max = config.edit_volume_max;
   return limits;
 }

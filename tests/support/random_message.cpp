@@ -95,6 +95,7 @@ Hello any_hello(SplitMix64& rng) {
   draw(rng, m.nonce);
   m.name = any_text(rng, 1, kPlayerNameBytesMax);
   m.encodings = static_cast<std::uint8_t>(rng.below(64) * 4 + 1 + rng.below(3));
+  m.features = any64(rng);
   return m;
 }
 
@@ -105,8 +106,7 @@ Welcome any_welcome(SplitMix64& rng) {
   m.head = any64(rng);
   m.durable = m.head - m.head / (1 + rng.below(9));
   m.chunk_edge = static_cast<std::uint16_t>(16u << rng.below(4));
-  m.y_min = rng.between(-1000, 0);
-  m.y_max = rng.between(0, 1000);
+  m.heights = {rng.between(-1000, 0), rng.between(1, 1000)};
   m.spawn = any_position(rng);
   m.materials = any_materials(rng);
   draw(rng, m.server_key);
@@ -115,6 +115,7 @@ Welcome any_welcome(SplitMix64& rng) {
   m.encoding = rng.below(2) == 0 ? ChunkEncoding::raw : ChunkEncoding::packed;
   m.edit_volume_max = any64(rng);
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
+  m.features = any64(rng);
   return m;
 }
 
@@ -133,6 +134,14 @@ ChunkRequest any_chunk_request(SplitMix64& rng) {
   ChunkRequest m;
   m.keys.resize(1 + rng.below(kChunkRequestKeysMax));
   for (ChunkKey& key : m.keys) key.at = any_coord(rng);
+  return m;
+}
+
+ChunkUnavailable any_unavailable(SplitMix64& rng) {
+  ChunkUnavailable m;
+  m.keys.resize(1 + rng.below(kUnavailableKeysMax));
+  for (ChunkKey& key : m.keys) key.at = any_coord(rng);
+  m.reason = static_cast<UnavailableReason>(1 + rng.below(255));
   return m;
 }
 
@@ -158,6 +167,7 @@ Commit any_commit(SplitMix64& rng) {
     e.ordered_us = any_time(rng);
     e.edit = any_edit(rng);
     const Sequence seq = m.first + i;
+    if (rng.below(2) == 0) e.subject = any64(rng) % seq;
     for (std::size_t c = touched_chunks(e.edit, kMessageEdge).size(); c > 0; --c) {
       e.previous.push_back(rng.below(4) == 0 ? 0 : seq - std::min<std::uint64_t>(seq, 1 + any64(rng)));
     }
@@ -233,10 +243,12 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
       return Ping{any_time(rng)};
     case 16:
       return Pong{any_time(rng), any_time(rng)};
-    default:
-      RUNSTONE_ASSERT(kind == 17);
+    case 17:
       return Goodbye{static_cast<GoodbyeReason>(1 + rng.below(kGoodbyeReasonMax)),
                      any_text(rng, 0, kTextBytesMax)};
+    default:
+      RUNSTONE_ASSERT(kind == 18);
+      return any_unavailable(rng);
   }
 }
 

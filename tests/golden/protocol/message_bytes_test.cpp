@@ -29,6 +29,7 @@ Hello a_hello() {
   m.nonce = counting<32>(0x80);
   m.name = "Ren\xc3\xa9";
   m.encodings = 3;
+  m.features = 0x8000000000000005ULL;
   return m;
 }
 
@@ -45,8 +46,7 @@ Welcome a_welcome() {
   m.durable = 480;
   m.head = 499;
   m.chunk_edge = 32;
-  m.y_min = -64;
-  m.y_max = 192;
+  m.heights = {-64, 192};
   m.spawn = {0.5, 70, -0.25};
   REQUIRE(m.materials.add({"stone", {128, 128, 128, 255}, Visibility::opaque, std::nullopt}).has_value());
   m.server_key = keys_of(1).public_key;
@@ -54,41 +54,42 @@ Welcome a_welcome() {
   m.encoding = ChunkEncoding::packed;
   m.edit_volume_max = 1'000'000;
   m.view_radius_max = 16;
+  m.features = 5;
   return m;
 }
 
 constexpr const char* kServerSignature =
-    "ad3dd6f04410814ac7b2478af7906f9ae3d212f3f04f5b1bef72a6f78ac4bb22"
-    "2847ecc28deb6cf8c6d1ea1104a8aeebea09eb68ea3f23b5fb72853927ce0008";
+    "d723110a940565091722944a6071d6eaca5a6ff6cb99d7dbdd89dfbcae2ed7cb"
+    "86453325e3f32352da03f094bfbac18888da44b24458ff19db704c33df0a2006";
 
 }  // namespace
 
 TEST_CASE("hello of protocol 1 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::client, FrameClass::control,
-                                 "1400000052554e310000000008000c0007000800080000000000000114000000"
-                                 "1000240008000c00180010001400070010000000000000030100000048000000"
-                                 "2000000010000000efcdab8967452301000000000500000052656ec3a9000000"
-                                 "20000000808182838485868788898a8b8c8d8e8f909192939495969798999a9b"
-                                 "9c9d9e9f20000000000102030405060708090a0b0c0d0e0f1011121314151617"
-                                 "18191a1b1c1d1e1f");
+                                 "1000000052554e3108000e000700080008000000000000011800000000001200"
+                                 "2c0008000c001800100014000700200012000000000000030100000050000000"
+                                 "2800000018000000efcdab896745230105000000000000800000000005000000"
+                                 "52656ec3a900000020000000808182838485868788898a8b8c8d8e8f90919293"
+                                 "9495969798999a9b9c9d9e9f20000000000102030405060708090a0b0c0d0e0f"
+                                 "101112131415161718191a1b1c1d1e1f");
   CHECK(read_back == Message(a_hello()));
 }
 
 TEST_CASE("welcome of protocol 1 is read, and its signature holds", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::control,
-                                 "1400000052554e310000000008000c0007000800080000000000000228000000"
-                                 "24005c0008000c00100044004c000600140018001c00340038003c0040000400"
-                                 "54000500240000000210200001000000dc00000003000000c0ffffffc0000000"
-                                 "000000000000e03f0000000000805140000000000000d0bfc80000008c000000"
-                                 "640000001c000000e001000000000000f30100000000000040420f0000000000"
-                                 "40000000ad3dd6f04410814ac7b2478af7906f9ae3d212f3f04f5b1bef72a6f7"
-                                 "8ac4bb222847ecc28deb6cf8c6d1ea1104a8aeebea09eb68ea3f23b5fb728539"
-                                 "27ce000820000000404142434445464748494a4b4c4d4e4f5051525354555657"
-                                 "58595a5b5c5d5e5f200000008a88e3dd7409f195fd52db2d3cba5d72ca6709bf"
-                                 "1d94121bf3748801b40f6f5c10000000101112131415161718191a1b1c1d1e1f"
-                                 "02000000340000001000000000000a00100008000c0007000a00000000000001"
-                                 "08000000808080ff0500000073746f6e65000600080004000600000004000000"
-                                 "0300000061697200",
+                                 "1000000052554e3108000e000700080008000000000000022c00000000002600"
+                                 "640008000c00100044004c000600140018001c00340038003c00400004005400"
+                                 "05005c00260000000210200001000000e400000003000000c0ffffffc0000000"
+                                 "000000000000e03f0000000000805140000000000000d0bfd000000094000000"
+                                 "6c00000024000000e001000000000000f30100000000000040420f0000000000"
+                                 "050000000000000040000000d723110a940565091722944a6071d6eaca5a6ff6"
+                                 "cb99d7dbdd89dfbcae2ed7cb86453325e3f32352da03f094bfbac18888da44b2"
+                                 "4458ff19db704c33df0a200620000000404142434445464748494a4b4c4d4e4f"
+                                 "505152535455565758595a5b5c5d5e5f200000008a88e3dd7409f195fd52db2d"
+                                 "3cba5d72ca6709bf1d94121bf3748801b40f6f5c100000001011121314151617"
+                                 "18191a1b1c1d1e1f02000000340000001000000000000a00100008000c000700"
+                                 "0a0000000000000108000000808080ff0500000073746f6e6500060008000400"
+                                 "06000000040000000300000061697200",
                                  0);
   Welcome expected = a_welcome();
   const Bytes signature = from_hex(kServerSignature);
@@ -113,13 +114,13 @@ TEST_CASE("an edit request of protocol 1 is read", "[protocol][golden]") {
 TEST_CASE("a commit of protocol 1 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::edits,
                                  "1400000052554e310000000008000e0007000800080000000000000910000000"
-                                 "00000a00140004000c0008000a000000030000000c000000f401000000000000"
-                                 "020000005c000000180000001400180000000000000007000000100008000c00"
-                                 "1400000000000001180000000c0000009af119000000000004000000f5038301"
-                                 "0700000003020720101003001400340004001000180000002000280008000c00"
-                                 "1400000002000000340000002800000088776655443322110900000000000000"
-                                 "a0f01900000000009af119000000000000000000010000000100000007000000"
-                                 "0100ac0202030600");
+                                 "00000a00180004000c0008000a0000000300000010000000f401000000000000"
+                                 "0000000002000000680000001c00000000001600200000000000000007000000"
+                                 "100008000c001800160000000000000220000000140000009af1190000000000"
+                                 "e00100000000000004000000f503830107000000030207201010030014003400"
+                                 "04001000180000002000280008000c0014000000020000003400000028000000"
+                                 "88776655443322110900000000000000a0f01900000000009af1190000000000"
+                                 "000000000100000001000000070000000100ac0202030600");
   Commit expected;
   expected.epoch = 3;
   expected.first = 500;
@@ -128,14 +129,25 @@ TEST_CASE("a commit of protocol 1 is read", "[protocol][golden]") {
                             1'700'000,
                             1'700'250,
                             {SetVoxel{{1, -2, 3}}, {}, 300},
-                            {499}});
+                            {499},
+                            0});
   expected.edits.push_back({{0, 0, 0},
-                            Cause::console,
+                            Cause::rollback,
                             0,
                             1'700'250,
                             {FillSphere{{16, 8, 8}, 3}, {MaskKind::only_solid, 0}, 7},
-                            {0, 370}});
+                            {0, 370},
+                            480});
   CHECK(read_back == Message(expected));
+}
+
+TEST_CASE("unavailable chunks of protocol 1 are read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::chunks,
+                                 "1000000052554e3108000c000700080008000000000000130c00000008000c00"
+                                 "08000700080000000000000104000000020000000000000001000000feffffff"
+                                 "0300000000000000fcffffff0000000007000000");
+  CHECK(read_back ==
+        Message(ChunkUnavailable{{{0, {1, -2, 3}}, {0, {-4, 0, 7}}}, UnavailableReason::damaged}));
 }
 
 TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]") {
@@ -152,6 +164,7 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
             "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"  // hello.nonce
             "05000000 52656ec3a9"                                                        // hello.name
             "01000000 03"                                                                // hello.encodings
+            "08000000 0500000000000080"                                                  // hello.features
             "04000000 01000000"                                                          // welcome.protocol
             "10000000 101112131415161718191a1b1c1d1e1f"                                  // world_id
             "04000000 03000000"                                                          // epoch
@@ -167,12 +180,13 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
             "20000000 8a88e3dd7409f195fd52db2d3cba5d72ca6709bf1d94121bf3748801b40f6f5c"      // server_key
             "20000000 404142434445464748494a4b4c4d4e4f505152535455565758595a5b5c5d5e5f"      // challenge
             "01000000 02"                                                                    // encoding
-            "08000000 40420f0000000000"  // edit_volume_max
-            "01000000 10")));            // view_radius_max
+            "08000000 40420f0000000000"      // edit_volume_max
+            "01000000 10"                    // view_radius_max
+            "08000000 0500000000000000")));  // welcome.features
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
   CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome))) ==
-        "530dcbf4ddc2934bda27a08799611c831f6f8a6393ec6b49b7e121327e450788"
-        "6d579abf9b746e555b2087b46030011aa1cad26f81b9c727f6ea292ddc017b0e");
+        "157700e0e9a8ecd4dd7e1e8ae256bb9de8e1a47c84ec6acb02b0f251181bcc05"
+        "dd28568d7cf349c35e701cda50a2ecc1466fbcb6da19e5f8983b55477c530b0d");
 }
 
 }  // namespace runstone::test

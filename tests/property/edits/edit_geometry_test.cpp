@@ -3,6 +3,7 @@
 #include <set>
 
 #include "common/edits/edit_geometry.hpp"
+#include "common/edits/height_limits.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -25,6 +26,30 @@ TEST_CASE("voxel counts and bounding boxes equal a count of single voxels", "[ed
     }
     REQUIRE(bounding_box(edit) == tight);
   }
+}
+
+TEST_CASE("an edit is within height limits when each of its voxels is", "[edits][property]") {
+  SplitMix64 rng{24 + Catch::rngSeed()};
+  int inside = 0, partly = 0;
+  for (int round = 0; round < 400; ++round) {
+    EditDescriptor edit = random_edit_near(rng, {-4, -4, -4}, Extent::cube(8));
+    if (auto* ball = std::get_if<FillSphere>(&edit.shape))
+      ball->radius = static_cast<std::uint16_t>(rng.below(9));
+    const VoxelBox box = bounding_box(edit);  // limits close to its ends, where it matters
+    HeightLimits limits{box.min.y + rng.between(-2, 1), box.max.y + rng.between(-1, 2)};
+    if (limits.y_max <= limits.y_min) limits.y_max = limits.y_min + 1;
+    CAPTURE(Catch::rngSeed(), round, edit, limits.y_min, limits.y_max);
+    std::size_t voxels = 0, between = 0;
+    for (const VoxelPos p : oracle_voxels(edit, {}, 54)) {
+      ++voxels;
+      between += p.y >= limits.y_min && p.y < limits.y_max ? 1 : 0;
+    }
+    REQUIRE(within(edit, limits) == (between == voxels));
+    inside += between == voxels ? 1 : 0;
+    partly += between != 0 && between != voxels ? 1 : 0;
+  }
+  CHECK(inside > 50);
+  CHECK(partly > 50);
 }
 
 TEST_CASE("touched chunks are the chunks of the single voxels", "[edits][property]") {

@@ -26,6 +26,7 @@ constexpr int kReplicas = 3;
 struct Reckoning {
   std::vector<std::string> faults;
   std::uint64_t edits = 0, chunks = 0, rejected = 0;
+  std::uint64_t beyond = 0;  // refused by the clients themselves: not a place to edit
   std::uint64_t unknown =
       0;  // refused by a server that died before it could say so: told as "decided unseen"
   void expect(bool ok, const std::string& fault) {
@@ -80,6 +81,7 @@ class Simulation {
     check_durable_kept(log, r);
     check_exactly_once(log, r);
     check_voxels(log, r);
+    check_heights(log, r);
     return r;
   }
 
@@ -93,8 +95,7 @@ class Simulation {
   static WorldConfig world_config() {
     WorldConfig config;
     config.chunk_edge = kSimEdge;
-    config.y_min = -64;
-    config.y_max = 64;
+    config.heights = {-24, 30};  // random edits reach beyond both
     config.materials = default_material_table();
     config.server_keys = key_pair_of(KeySeed{7});
     config.edits_per_second = 0;
@@ -191,6 +192,22 @@ class Simulation {
     }
   }
 
+  /// Nothing beyond the world's heights was ordered, and no client had to be told: each knew by itself.
+  void check_heights(const std::vector<EditRecord>& log, Reckoning& r) const {
+    const HeightLimits heights = world_config().heights;
+    for (const EditRecord& record : log) {
+      const VoxelBox box = bounding_box(record.edit);
+      r.expect(box.min.y >= heights.y_min && box.max.y <= heights.y_max,
+               "an edit beyond the heights is in the log");
+    }
+    for (const auto& client : clients_) {
+      r.beyond += client->refused();
+      for (const auto& [seq, reason] : client->rejected()) {
+        r.expect(reason != RejectReason::outside_world, "a client predicted an edit beyond the heights");
+      }
+    }
+  }
+
   /// Server, replicas and the dense replay of the log agree, chunk by chunk.
   void check_voxels(const std::vector<EditRecord>& log, Reckoning& r) {
     std::map<ChunkKey, std::vector<EditDescriptor>> edits;
@@ -257,6 +274,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   CHECK(simulation.crashes() > 2);
   CHECK(simulation.cuts() > 5);
   CHECK(r.rejected > 0);
+  CHECK(r.beyond > 50);
   for (const auto& client : simulation.clients()) CHECK(client->replica().counters().drifted == 0);
   WARN("seed " << seed << ": 2500 steps, " << r.edits << " edits, " << r.chunks << " chunks, "
                << simulation.crashes() << " crashes, " << simulation.cuts() << " cuts, " << r.rejected

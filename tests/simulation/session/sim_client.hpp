@@ -25,6 +25,7 @@ class SimClient {
   void edit(const EditDescriptor& edit) {
     const auto seq = session_.submit(edit, time_.now(), time_.now());
     if (seq) submitted_[*seq] = edit;
+    refused_ += replica().opened() && !seq ? 1 : 0;
   }
   void look(const View& view) { session_.set_view(view); }
   void cut() {
@@ -34,6 +35,7 @@ class SimClient {
   ClientInstance instance() const { return instance_; }
   const std::map<ClientSequence, EditDescriptor>& submitted() const { return submitted_; }
   const std::map<ClientSequence, RejectReason>& rejected() const { return rejected_; }
+  std::uint64_t refused() const { return refused_; }
   const std::set<ClientSequence>& durable() const { return durable_; }
   const std::set<ClientSequence>& unseen() const { return unseen_; }
   bool settled() {
@@ -113,6 +115,7 @@ class SimClient {
   TimeUs retry_at_ = 0;
   std::map<ClientSequence, EditDescriptor> submitted_;
   std::map<ClientSequence, RejectReason> rejected_;
+  std::uint64_t refused_ = 0;  // by the client itself
   std::set<ClientSequence> durable_, unseen_;
 };
 

@@ -85,7 +85,6 @@ struct Fixture {
     Welcome out;
     out.epoch = 1;
     out.chunk_edge = 16;
-    out.y_max = 16;
     out.materials = default_material_table();
     return out;
   }

@@ -66,14 +66,16 @@ TEST_CASE("whatever hello or welcome says differently on the way breaks both sig
       [](Exchange& e) { e.hello.nonce[31] ^= 1; },
       [](Exchange& e) { e.hello.name += "x"; },
       [](Exchange& e) { e.hello.encodings ^= 1; },
+      [](Exchange& e) { e.hello.features ^= 1; },
+      [](Exchange& e) { e.hello.features ^= 1ULL << 63; },
       [](Exchange& e) { e.welcome.protocol ^= 1; },
       [](Exchange& e) { e.welcome.world_id[0] ^= 1; },
       [](Exchange& e) { e.welcome.epoch ^= 1; },
       [](Exchange& e) { e.welcome.durable ^= 1; },
       [](Exchange& e) { e.welcome.head ^= 1; },
       [](Exchange& e) { e.welcome.chunk_edge ^= 48; },
-      [](Exchange& e) { e.welcome.y_min ^= 1; },
-      [](Exchange& e) { e.welcome.y_max ^= 1; },
+      [](Exchange& e) { e.welcome.heights.y_min ^= 1; },
+      [](Exchange& e) { e.welcome.heights.y_max ^= 1; },
       [](Exchange& e) { e.welcome.spawn.x += 1; },
       [](Exchange& e) { e.welcome.spawn.y += 1; },
       [](Exchange& e) { e.welcome.spawn.z += 1; },
@@ -87,6 +89,7 @@ TEST_CASE("whatever hello or welcome says differently on the way breaks both sig
       },
       [](Exchange& e) { e.welcome.edit_volume_max ^= 1; },
       [](Exchange& e) { e.welcome.view_radius_max ^= 1; },
+      [](Exchange& e) { e.welcome.features ^= 1; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     CAPTURE(i);

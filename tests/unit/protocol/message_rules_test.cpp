@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "protocol/codec/messages.hpp"
 #include "protocol/schema/runstone_generated.h"
@@ -48,9 +50,10 @@ struct HelloFields {
   std::size_t key = 32, nonce = 32;
   std::string name = "ann";
   std::uint8_t encodings = 3;
+  std::uint64_t features = 0;
   Offset<wire::Hello> operator()(FlatBufferBuilder& b) const {
     const auto k = filled(b, key), n = filled(b, nonce);
-    return wire::CreateHello(b, protocol, k, 1, n, b.CreateString(name), encodings);
+    return wire::CreateHello(b, protocol, k, 1, n, b.CreateString(name), encodings, features);
   }
 };
 
@@ -92,6 +95,7 @@ struct CommitFields {
   Bytes edit = encode(kEdit);
   Bytes previous{1};
   std::size_t edits = 1;
+  std::uint64_t subject = 0;
   bool shared = false;  // all edits point at one list
   Offset<wire::Commit> operator()(FlatBufferBuilder& b) const {
     std::vector<Offset<wire::OrderedEdit>> list;
@@ -100,7 +104,7 @@ struct CommitFields {
     for (std::size_t i = 0; i < edits; ++i) {
       const auto e = b.CreateVector(edit);
       const auto p = shared ? list_of_all : b.CreateVector(previous);
-      list.push_back(wire::CreateOrderedEdit(b, 1, 1, 1, cause, 0, 0, e, p));
+      list.push_back(wire::CreateOrderedEdit(b, 1, 1, 1, cause, 0, 0, e, p, subject));
     }
     return wire::CreateCommit(b, epoch, first, b.CreateVector(list));
   }
@@ -146,7 +150,10 @@ TEST_CASE("hello is refused with a field of the wrong size or range", "[protocol
                         [](auto& h) { h.encodings = 0; }, [](auto& h) { h.encodings = 4; }});
   HelloFields future;
   future.encodings = 1 + 128;  // an encoding that does not exist yet
-  CHECK(passes_from_client(future));
+  future.features = ~0ULL;     // nor do these
+  const auto hello = received(Sender::client, FrameClass::control, future);
+  REQUIRE(hello.has_value());
+  CHECK(std::get<Hello>(*hello).features == ~0ULL);  // as sent: the transcript needs them
 }
 
 TEST_CASE("hello of another protocol passes with its version alone, so that it can be answered",
@@ -174,6 +181,8 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                           [](auto& w) { w.edge = 48; },
                           [](auto& w) { w.edge = 256; },
                           [](auto& w) { w.y_min = 11; },
+                          [](auto& w) { w.y_min = w.y_max; },
+                          [](auto& w) { w.y_min = -kWorldLimit - 1; },
                           [](auto& w) { w.y_max = kWorldLimit + 1; },
                           [](auto& w) { w.spawn.y = kNan; },
                           [](auto& w) { w.spawn.x = -kInfinity; },
@@ -283,6 +292,31 @@ TEST_CASE("a snapshot is refused with bad keys, versions, digests, bytes or size
   CHECK(received(Sender::server, FrameClass::chunks, base, 0).has_value());
 }
 
+TEST_CASE("unavailable chunks are named, and their reason may be one of the future", "[protocol]") {
+  const auto read = [](const std::vector<wire::Key>& keys, std::uint8_t reason) {
+    return received(Sender::server, FrameClass::chunks, [&](auto& b) {
+      return wire::CreateChunkUnavailable(b, b.CreateVectorOfStructs(keys), reason);
+    });
+  };
+  const auto most = read(std::vector<wire::Key>(kUnavailableKeysMax), 255);
+  REQUIRE(most.has_value());
+  CHECK(std::get<ChunkUnavailable>(*most).keys.size() == kUnavailableKeysMax);
+  CHECK(to_string(std::get<ChunkUnavailable>(*most).reason) == std::string("unknown"));
+  CHECK_FALSE(read(std::vector<wire::Key>(kUnavailableKeysMax + 1), 1).has_value());
+  CHECK_FALSE(read({}, 1).has_value());
+  CHECK_FALSE(read({wire::Key(0, 1, 2, 3)}, 0).has_value());
+  CHECK_FALSE(read({wire::Key(0, kReach, 0, 0)}, 1).has_value());
+  CHECK_FALSE(read({wire::Key(1, 0, 0, 0)}, 1).has_value());
+  CHECK_FALSE(
+      passes_from_server([](auto& b) { return wire::CreateChunkUnavailable(b, 0, 1); }, FrameClass::chunks));
+  const std::vector<wire::Key> here(1);
+  const auto build = [&](auto& b) {
+    return wire::CreateChunkUnavailable(b, b.CreateVectorOfStructs(here), 1);
+  };
+  CHECK_FALSE(passes_from_server(build, FrameClass::control));
+  CHECK_FALSE(passes_from_client(build, FrameClass::chunks));
+}
+
 TEST_CASE("an edit request needs a sequence and one whole descriptor", "[protocol]") {
   const auto request = [](std::uint64_t seq, const Bytes& edit) {
     return passes_from_client(
@@ -307,6 +341,7 @@ TEST_CASE("a commit is refused where it contradicts itself", "[protocol]") {
       {[](auto& c) { c.epoch = 0; }, [](auto& c) { c.first = 0; }, [](auto& c) { c.first = ~0ULL; },
        [](auto& c) { c.edits = 0; }, [](auto& c) { c.edits = kCommitEditsMax + 1; },
        [](auto& c) { c.cause = kCauseMax + 1; }, [](auto& c) { c.edit.pop_back(); },
+       [](auto& c) { c.subject = 10; },             // answers itself
        [](auto& c) { c.previous = {0}; },           // precedes itself
        [](auto& c) { c.previous = {11}; },          // before the log
        [](auto& c) { c.previous = {}; },            // one chunk is touched
@@ -318,9 +353,11 @@ TEST_CASE("a commit is refused where it contradicts itself", "[protocol]") {
        [](auto& c) { c.edits = 2000, c.shared = true, c.previous = Bytes(4000, 1); }});
   CommitFields from_base;
   from_base.previous = {10};
+  from_base.subject = 9;
   const auto decoded = received(Sender::server, FrameClass::edits, from_base);
   REQUIRE(decoded.has_value());
   CHECK(std::get<Commit>(*decoded).edits[0].previous == std::vector<Sequence>{0});
+  CHECK(std::get<Commit>(*decoded).edits[0].subject == 9);
 }
 
 TEST_CASE("lists of previous sequences that edits share cannot outgrow the message", "[protocol]") {
@@ -426,7 +463,7 @@ TEST_CASE("a message without a known body is refused", "[protocol]") {
   REQUIRE_FALSE(refused(with_type(ping, true)));
   CHECK(refused(with_type(ping, false)));
   CHECK(refused(with_type(0, true)));
-  for (unsigned type = 19; type < 256; ++type)
+  for (unsigned type = 20; type < 256; ++type)
     CHECK(refused(with_type(static_cast<std::uint8_t>(type), true)));
 }
 
@@ -459,6 +496,25 @@ TEST_CASE("raw snapshot bytes lie 4-aligned in their message", "[protocol]") {
     const auto* chunk = wire::GetMessage(encoded.bytes->data())->body_as_Chunk();
     CHECK(reinterpret_cast<std::uintptr_t>(chunk->data()->data()) % 4 == 0);
   }
+}
+
+TEST_CASE("reasons have the names and numbers of the protocol page", "[protocol]") {
+  std::ifstream file(RUNSTONE_SOURCE_DIR "/docs/protocol.md");
+  std::set<std::string> rows;  // "| `name` | number |"
+  for (std::string line; std::getline(file, line);) {
+    const auto number_ends = line.find(" |", line.find(" | ") + 3);
+    if (line.starts_with("| `") && number_ends != std::string::npos) rows.insert(line.substr(0, number_ends));
+  }
+  const auto row = [](const char* name, unsigned number) {
+    return "| `" + std::string(name) + "` | " + std::to_string(number);
+  };
+  for (unsigned i = 1; i <= kRejectReasonMax; ++i) {
+    CHECK(rows.contains(row(to_string(static_cast<RejectReason>(i)), i)));
+  }
+  for (unsigned i = 1; i <= kGoodbyeReasonMax; ++i) {
+    CHECK(rows.contains(row(to_string(static_cast<GoodbyeReason>(i)), i)));
+  }
+  CHECK(rows.contains(row(to_string(UnavailableReason::damaged), 1)));
 }
 
 TEST_CASE("every reason has a name of its own", "[protocol]") {

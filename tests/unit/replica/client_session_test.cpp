@@ -118,6 +118,58 @@ TEST_CASE_METHOD(Fixture, "a session opens by hello, welcome, proof and ready, t
   CHECK(session.loaded());
 }
 
+TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to be unavailable",
+                 "[replica]") {
+  static_cast<void>(open());
+  const ChunkKey damaged{0, {0, -1, 1}};
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const ChunkCoord at{x, y, z};
+        if (session.view().contains(at) && at != damaged.at) receive(server.world.snapshot(at));
+      }
+    }
+  }
+  CHECK_FALSE(session.loaded());
+  receive(ChunkUnavailable{{damaged}, UnavailableReason::damaged});
+  CHECK(session.loaded());
+  CHECK_FALSE(session.wants_close());
+  session.disconnected();
+  static_cast<void>(open());
+  CHECK_FALSE(session.loaded());
+}
+
+TEST_CASE_METHOD(Fixture, "a session keeps to the heights that welcome announces", "[replica]") {
+  greet();
+  Welcome welcome = server.make_welcome();
+  welcome.heights = {-4, 4};
+  welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+  receive(welcome);
+  receive(Ready{6, 0});
+  REQUIRE(session.is_open());
+  CHECK(session.submit(set({0, 3, 0}, 1), now, now).has_value());
+  CHECK_FALSE(session.submit(set({0, 4, 0}, 1), now, now).has_value());
+}
+
+TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add any", "[replica]") {
+  SessionConfig offering = config();
+  offering.features = 0b110;
+  session = ClientSession(offering);
+  const auto answered = [&](std::uint64_t features) {
+    greet();
+    CHECK(server.hello.features == 0b110);
+    Welcome welcome = server.make_welcome();
+    welcome.features = features;
+    welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+    receive(welcome);
+    return !session.wants_close();
+  };
+  CHECK(answered(0));
+  CHECK(answered(0b010));
+  CHECK_FALSE(answered(0b011));
+  CHECK(session.end()->reason == GoodbyeReason::malformed_message);
+}
+
 TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();

@@ -523,3 +523,106 @@ TEST_CASE_METHOD(Fixture, "a gap that the first snapshot after a resumption does
   replica.receive(world.snapshot(kHere.at), kNow);
   require_in_step(kHere);
 }
+
+TEST_CASE_METHOD(Fixture, "an unavailable chunk is settled: nothing is shown, and edits into it are refused",
+                 "[replica]") {
+  load(kRight);
+  take(world.commit(other(1), set({1, 1, 1}, 2)));  // held back for a snapshot that will not come
+  replica.receive(ChunkUnavailable{{kHere, {0, {9, 0, 0}}}, UnavailableReason::damaged});
+  CHECK(replica.unavailable(kHere));
+  CHECK_FALSE(replica.unavailable(kRight));
+  CHECK(replica.unavailable_count() == 1);  // the other one is out of view
+  const ReplicaNews news = replica.take_news();
+  REQUIRE(news.unavailable.size() == 1);
+  CHECK(news.unavailable[0].key == kHere);
+  CHECK(news.unavailable[0].reason == UnavailableReason::damaged);
+  REQUIRE(news.chunks.size() == 1);
+  CHECK(news.chunks[0].removed);
+
+  CHECK_FALSE(replica.submit(set({3, 3, 3}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.submit(box({14, 0, 0}, {18, 1, 1}, 2), 0, 0).has_value());  // partly
+  CHECK(replica.own_edits().all().empty());
+  CHECK(replica.shown_at({17, 0, 0}) == kEmpty);
+  submit(set({17, 0, 0}, 2));
+  for (ClientSequence i = 2; i < 10; ++i) take(world.commit(other(i), set({2, 1, 1}, 2)));
+  CHECK(replica.counters().chunk_edits_buffered == 1);
+  CHECK(replica.take_requests().empty());
+
+  replica.receive(world.snapshot(kHere.at), kNow);  // the server has it after all
+  CHECK_FALSE(replica.unavailable(kHere));
+  CHECK(replica.unavailable_count() == 0);
+  require_in_step(kHere);
+  submit(set({3, 3, 3}, 2));
+}
+
+TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is shown no longer",
+                 "[replica]") {
+  load(kHere);
+  load(kRight);
+  CHECK(replica.open(opening()).empty());
+  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
+  CHECK(replica.confirmed(kHere) == nullptr);
+  CHECK(replica.shown(kHere) == nullptr);
+  CHECK(replica.confirmed_count() == 1);
+  const ReplicaNews news = replica.take_news();
+  REQUIRE(news.chunks.size() == 2);
+  CHECK(news.chunks[0].removed);
+  CHECK(news.chunks[1].borders == 1U << static_cast<unsigned>(Direction::neg_x));
+  static_cast<void>(replica.open(opening()));  // the next server may have it repaired
+  CHECK(replica.unavailable_count() == 0);
+  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
+  replica.set_view({{3, 0, 0}, 2, 2});
+  CHECK(replica.unavailable_count() == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before it is shown", "[replica]") {
+  Opening low = opening();
+  low.heights = {-16, 8};
+  static_cast<void>(replica.open(low));
+  load(kHere);
+  CHECK(replica.submit(set({1, 7, 1}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.submit(set({1, 8, 1}, 2), 0, 0).has_value());
+  CHECK_FALSE(replica.submit({FillSphere{{4, 4, 4}, 4}, {}, 2}, 0, 0).has_value());
+  CHECK(replica.shown_at({4, 4, 4}) == kEmpty);
+  CHECK(replica.own_edits().all().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing that was edited",
+                 "[replica]") {
+  load(kRight);
+  take(world.commit(other(1), set({3, 4, 5}, 2)));
+  replica.receive(world.snapshot(kHere.at), kNow);
+  const ClientSequence seq = submit(set({20, 1, 1}, 3));
+  take(world.commit(mine(seq), set({20, 1, 1}, 3)));
+  replica.receive(Durable{world.epoch(), 2});
+  REQUIRE(replica.confirmed(kHere) != nullptr);
+  REQUIRE(replica.confirmed(kRight) != nullptr);
+  Opening restored = opening();
+  SECTION("an older epoch") { restored.epoch = 0; }
+  SECTION("a log that is shorter than what was durable here") {
+    restored.epoch += 3;
+    restored.durable = restored.head = 1;
+  }
+  SECTION("the same epoch, and an end of the log before one that we saw") {
+    static_cast<void>(world.commit(other(2), set({3, 4, 5}, 4)));
+    replica.receive(Durable{world.epoch(), 0});
+    restored.head = 1;
+    restored.durable = 2;
+  }
+  CHECK(replica.open(restored).empty());  // the own edit was durable: it is not ours to offer any more
+  CHECK(replica.confirmed(kHere) == nullptr);
+  CHECK(replica.confirmed(kRight) == nullptr);
+}
+
+TEST_CASE_METHOD(Fixture, "news of an edit says which earlier one it answers", "[replica]") {
+  load(kHere);
+  take(world.commit(other(1), set({3, 4, 5}, 2)));
+  Commit undo = world.commit(other(2), set({3, 4, 5}, kEmpty));
+  undo.edits[0].cause = Cause::undo;
+  undo.edits[0].subject = 1;
+  take(undo);
+  const ReplicaNews news = replica.take_news();
+  REQUIRE(news.edits.size() == 2);
+  CHECK(news.edits[0].subject == 0);
+  CHECK(news.edits[1].subject == 1);
+}

@@ -66,6 +66,21 @@ TEST_CASE_METHOD(Fixture, "a chunk waits for its neighbours in view and not for 
   CHECK(planner.dirty_count() == 0);
 }
 
+TEST_CASE_METHOD(Fixture, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
+  load({0, 0, 0});
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  load({0, 0, -1});
+  CHECK(drain().size() == 3);
+  replica.receive(ChunkUnavailable{{{0, {1, 0, 0}}}, UnavailableReason::damaged});
+  tell();
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
+  CHECK(planner.dirty_count() == 0);
+  load({1, 0, 0});  // after all: the side that stood open closes
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
 TEST_CASE_METHOD(Fixture, "loading a view meshes every chunk once", "[schedule]") {
   load_all();
   CHECK(drain().size() == 5);

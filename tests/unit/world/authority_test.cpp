@@ -144,6 +144,34 @@ TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
   CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
 }
 
+TEST_CASE("an edit that reaches above or below the world is refused whole", "[world]") {
+  EditLimits l = limits();
+  l.heights = {-8, 8};
+  const auto reason = [&](const EditShape& shape) { return check_edit({shape, {}, 1}, l); };
+  CHECK_FALSE(reason(SetVoxel{{0, -8, 0}}).has_value());
+  CHECK_FALSE(reason(SetVoxel{{0, 7, 0}}).has_value());
+  CHECK(reason(SetVoxel{{0, 8, 0}}) == RejectReason::outside_world);
+  CHECK(reason(SetVoxel{{0, -9, 0}}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillBox{{{0, -8, 0}, {1, 8, 1}}}).has_value());
+  CHECK(reason(FillBox{{{0, 0, 0}, {1, 9, 1}}}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillSphere{{0, 2, 0}, 5}).has_value());
+  CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
+}
+
+TEST_CASE("what an edit answers goes into its commit and its record", "[world]") {
+  Authority authority(limits(), {2, 30, 0});
+  EditOffer undo = offer(1, SetVoxel{{1, 1, 1}}, 1);
+  undo.cause = Cause::undo;
+  undo.subject = 17;
+  CHECK_FALSE(authority.submit(undo, true).has_value());
+  CHECK_FALSE(authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2), true).has_value());
+  const auto batch = authority.commit(kNow);
+  CHECK(batch->commit.edits[0].subject == 17);
+  CHECK(batch->records[0].subject == 17);
+  CHECK(batch->commit.edits[1].subject == 0);
+  CHECK(batch->records[1].subject == 0);
+}
+
 TEST_CASE("reach is measured to the edit's bounding box", "[world]") {
   const EditDescriptor edit{FillBox{{{10, 0, 0}, {12, 2, 2}}}, {}, 1};
   CHECK(within_reach(edit, {5, 1, 1}, 5));

@@ -484,23 +484,88 @@ TEST_CASE("a chunk request brings chunks of the view again and ignores others", 
   CHECK(bench.ports.loads.empty());
 }
 
-TEST_CASE("a quarantined chunk is reported, never sent and never asked for again", "[world]") {
+TEST_CASE("a quarantined chunk is reported, told to whoever wants it, and never loaded again", "[world]") {
   Bench bench;
+  const ChunkUnavailable expected{{ChunkKey{}}, UnavailableReason::damaged};
+  const auto told = [&](SessionId session) { return bench.ports.messages<ChunkUnavailable>(session, kEdge); };
   bench.join(1, 1);
   bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
   REQUIRE(bench.ports.loads.size() == 1);
   bench.ports.loads.clear();
+  CHECK(told(1).empty());
   bench.server.chunk_failed({}, "world.sqlite: snapshot chunk=0,0,0: bad checksum", bench.now());
   REQUIRE(bench.ports.lines.size() >= 1);
   CHECK(bench.ports.lines.back().find("snapshot chunk=0,0,0: bad checksum") != std::string::npos);
+  CHECK(told(1) == std::vector{expected});
   bench.join(2, 2);
   bench.view(2, kSmall);
   bench.tick(500'000);
   CHECK(bench.ports.snapshots.size() == 4);
+  CHECK(told(2) == std::vector{expected});
+  CHECK(told(1).size() == 1);
+  bench.server.received(1, ChunkRequest{{ChunkKey{}}}, bench.now());
+  CHECK(told(1).size() == 2);
+  CHECK(bench.ports.loads.empty());
   bench.edit(1, 1, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.server.head() == 1);  // ordered, logged and answered all the same
   CHECK(bench.commits(1).size() == 1);
+}
+
+TEST_CASE("a loaded chunk that does not fit the log is told to be unavailable", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.ports.loads.clear();
+  bench.server.chunk_loaded({}, test::empty_chunk(32), bench.now());
+  CHECK(bench.ports.messages<ChunkUnavailable>(1, kEdge).size() == 1);
+  CHECK(bench.ports.snapshots.empty());
+}
+
+TEST_CASE("the word that a chunk is unavailable waits for room like a snapshot", "[world]") {
+  Bench bench;
+  const auto told = [&] { return bench.ports.messages<ChunkUnavailable>(1, kEdge).size(); };
+  bench.join(1, 1);
+  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.ports.loads.clear();
+  bench.ports.full.insert(1);
+  bench.server.chunk_failed({}, "damaged", bench.now());
+  CHECK(told() == 0);
+  bench.ports.full.clear();
+  bench.server.drained(1, bench.now());
+  CHECK(told() == 1);
+  bench.tick(500'000);
+  CHECK(told() == 1);
+}
+
+TEST_CASE("edits beyond the world's heights are rejected by name", "[world]") {
+  WorldConfig c = config();
+  c.heights = {-8, 8};
+  Bench bench(c);
+  bench.join(1, 1);
+  CHECK(bench.ports.messages<Welcome>(1, 0).at(0).heights == HeightLimits{-8, 8});
+  bench.edit(1, 1, FillSphere{{0, 0, 0}, 9});
+  bench.edit(1, 2, FillSphere{{0, 0, 0}, 7});
+  bench.server.commit(bench.now());
+  const auto rejects = bench.ports.messages<Reject>(1, kEdge);
+  REQUIRE(rejects.size() == 1);
+  CHECK(rejects[0].client_seq == 1);
+  CHECK(rejects[0].reason == RejectReason::outside_world);
+  CHECK(bench.server.head() == 1);
+}
+
+TEST_CASE("features are in force that both sides know; others are ignored", "[world]") {
+  WorldConfig c = config();
+  c.features = 0b0110;
+  Bench bench(c);
+  bench.server.connected(1, bench.now());
+  Hello hello = bench.hello(1);
+  hello.features = 1ULL << 63 | 0b1011;
+  bench.server.received(1, hello, bench.now());
+  const Welcome welcome = bench.ports.messages<Welcome>(1, 0).at(0);
+  CHECK(welcome.features == 0b0010);
+  bench.server.received(1, bench.proof(1, hello, welcome), bench.now());
+  CHECK(bench.ports.messages<Ready>(1, kEdge).size() == 1);
 }
 
 TEST_CASE("poses go to everyone when they changed, ten times a second at most", "[world]") {
