@@ -1,30 +1,23 @@
 #include "client/net/key_file.hpp"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+
+#include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
 
 namespace {
 
-struct Folder {
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "runstone-key-XXXXXX").string();
-    REQUIRE(::mkdtemp(pattern.data()) != nullptr);
-    path = pattern;
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string file(const char* name) const { return (path / name).string(); }
+struct Folder : test::TempFolder {
+  std::string file(const char* name) const { return *this / name; }
   void write(const char* name, const std::string& text, mode_t mode = 0600) const {
     std::ofstream(file(name)) << text;
     REQUIRE(::chmod(file(name).c_str(), mode) == 0);
   }
-  std::filesystem::path path;
 };
 
 }  // namespace

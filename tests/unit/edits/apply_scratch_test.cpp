@@ -1,28 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "common/edits/edit_stack.hpp"
+#include "tests/support/count_allocations.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations{0};
-}  // namespace
-
-// Counts every allocation of this test program. Not inlined: g++ would see free() meet operator new and warn.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (void* p = operator new(size, std::nothrow)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace runstone::test {
 
@@ -45,10 +26,8 @@ TEST_CASE("applying stacks allocates nothing once scratch, result and chunk have
   RunChunk measured = warm;
   measured.runs.reserve(start.volume());
   all(warm);
-  const std::size_t before = allocations;
-  REQUIRE(before > 0);
-  all(measured);
-  CHECK(allocations == before);
+  REQUIRE(allocations().count > 0);
+  CHECK(allocations_of([&] { all(measured); }).count == 0);
   CHECK(measured == warm);
 }
 

@@ -1,28 +1,10 @@
-// What the chunk codec allocates, counted by the global operator new of this test program.
+// What the chunk codec allocates.
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "protocol/codec/chunk_codec.hpp"
+#include "tests/support/count_allocations.hpp"
 #include "tests/support/packed_spelling.hpp"
 #include "tests/support/random_chunk.hpp"
-
-namespace {
-std::size_t allocations = 0, allocated_bytes = 0;  // test programs are single-threaded
-}  // namespace
-
-// Not inlined: g++ would see free() meet operator new and warn.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  allocated_bytes += size;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (void* p = operator new(size, std::nothrow)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace runstone::test {
 namespace {
@@ -30,30 +12,19 @@ namespace {
 /// Clang removes allocations that nobody looks at.
 const void* volatile looked_at = nullptr;
 
-struct Cost {
-  std::size_t allocations = 0, bytes = 0;
-};
-
-template <class F>
-Cost cost_of(F&& f) {
-  const Cost before{::allocations, ::allocated_bytes};
-  f();
-  return {::allocations - before.allocations, ::allocated_bytes - before.bytes};
-}
-
-Cost cost_of_refusing(const Bytes& bytes) {
-  return cost_of([&] { REQUIRE_FALSE(decode_chunk(bytes).has_value()); });
+Allocations cost_of_refusing(const Bytes& bytes) {
+  return allocations_of([&] { REQUIRE_FALSE(decode_chunk(bytes).has_value()); });
 }
 
 }  // namespace
 
 TEST_CASE("the counter of allocations counts", "[protocol]") {
-  const Cost cost = cost_of([] {
+  const Allocations cost = allocations_of([] {
     const Bytes bytes(1000, std::uint8_t{1});
     looked_at = bytes.data();
   });
   CHECK(looked_at != nullptr);
-  CHECK(cost.allocations == 1);
+  CHECK(cost.count == 1);
   CHECK(cost.bytes >= 1000);
 }
 
@@ -95,8 +66,8 @@ TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack
   REQUIRE(bomb.bytes().size() < 1'000);
   CHECK(cost_of_refusing(bomb.bytes()).bytes < 11ULL * 128 * 128 * 128);
   // And is not even begun where the world's chunks are smaller.
-  const Cost small =
-      cost_of([&] { REQUIRE_FALSE(decode_chunk(bomb.bytes(), Extent::cube(32)).has_value()); });
+  const Allocations small =
+      allocations_of([&] { REQUIRE_FALSE(decode_chunk(bomb.bytes(), Extent::cube(32)).has_value()); });
   CHECK(small.bytes < 10'000);
 }
 
@@ -108,13 +79,13 @@ TEST_CASE("in a steady state the codec allocates the chunk and nothing else", "[
     encode_chunk(chunk, encoding, out);
     static_cast<void>(decode_chunk(out));
     const Bytes bytes = out;
-    const Cost encoding_cost = cost_of([&] {
+    const Allocations encoding_cost = allocations_of([&] {
       out.clear();
       encode_chunk(chunk, encoding, out);
     });
-    CHECK(encoding_cost.allocations == 0);
-    const Cost decoding_cost = cost_of([&] { REQUIRE(decode_chunk(bytes).has_value()); });
-    CHECK(decoding_cost.allocations <= (encoding == ChunkEncoding::raw ? 1 : 2));  // the runs; the palette
+    CHECK(encoding_cost.count == 0);
+    const Allocations decoding_cost = allocations_of([&] { REQUIRE(decode_chunk(bytes).has_value()); });
+    CHECK(decoding_cost.count <= (encoding == ChunkEncoding::raw ? 1 : 2));  // the runs; the palette
   }
 }
 

@@ -1,0 +1,43 @@
+// Counts what a test program takes from the heap: it replaces the global operator new. Include it in one file
+// of a program. Test programs are single-threaded unless a test starts threads; then read it while they rest.
+#pragma once
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace runstone::test {
+
+struct Allocations {
+  std::size_t count = 0, bytes = 0;
+};
+
+namespace counting {
+inline std::atomic<std::size_t> count{0}, bytes{0};
+}
+
+/// Since the program began.
+inline Allocations allocations() { return {counting::count, counting::bytes}; }
+
+/// Of a call.
+template <class F>
+Allocations allocations_of(F&& f) {
+  const Allocations before = allocations();
+  f();
+  const Allocations after = allocations();
+  return {after.count - before.count, after.bytes - before.bytes};
+}
+
+}  // namespace runstone::test
+
+// Not inlined: g++ would see free() meet operator new and warn.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++runstone::test::counting::count;
+  runstone::test::counting::bytes += size;
+  return std::malloc(size == 0 ? 1 : size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* p = operator new(size, std::nothrow)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
