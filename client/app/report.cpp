@@ -7,18 +7,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "common/core/hex.hpp"
 #include "common/runs/dense.hpp"
 
 namespace runstone {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hex_of(ByteView bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) fmt::format_to(std::back_inserter(text), "{:02x}", byte);
-  return text;
-}
 
 Json value_json(const std::optional<std::int64_t>& value) {
   if (!value) return nullptr;
@@ -109,7 +104,7 @@ double per_chunk(const ChunkStats& chunks) {
 
 std::string to_json(const ClientReport& report, const ClientSession& session) {
   Json out;
-  out["world_id"] = session.welcome() ? Json(hex_of(session.welcome()->world_id)) : Json(nullptr);
+  out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);
   out["renderer"] = report.renderer;
   out["seconds"] = report.seconds;
   if (session.clock().known()) {
@@ -208,7 +203,7 @@ bool write_digests(const std::string& file, const ClientSession& session) {
                           {"digest", to_hex(digest_of(chunk->voxels))}});
   }
   Json out;
-  out["world_id"] = session.welcome() ? Json(hex_of(session.welcome()->world_id)) : Json(nullptr);
+  out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);
   out["seq"] = replica.newest();
   out["chunks"] = std::move(chunks);
   return write_text(file, out.dump(1) + "\n");

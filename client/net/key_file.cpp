@@ -11,20 +11,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/core/hex.hpp"
+
 namespace runstone {
 namespace {
 
 constexpr const char* kPinsSuffix = ".servers";
-
-std::string hex_of(ByteView bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
 
 template <std::size_t N>
 bool parse_hex(const std::string& text, std::array<std::uint8_t, N>& out) {
@@ -46,7 +38,7 @@ KeySeed create_seed(const std::string& file) {
   randombytes_buf(seed.data(), seed.size());
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (fd < 0) refuse(file, std::strerror(errno));
-  const std::string text = hex_of(seed) + "\n";
+  const std::string text = to_hex(seed) + "\n";
   const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   const bool closed = ::close(fd) == 0;
   if (!written || !closed) refuse(file, "cannot be written");
@@ -114,7 +106,7 @@ void save_pinned_servers(const std::string& key_file, const std::map<WorldId, Pu
   // Renamed into place, so that a crash leaves the old list or the new one.
   const std::string fresh = file + ".new";
   std::ofstream out(fresh, std::ios::trunc);
-  for (const auto& [world, key] : pinned) out << hex_of(world) << ' ' << hex_of(key) << '\n';
+  for (const auto& [world, key] : pinned) out << to_hex(world) << ' ' << to_hex(key) << '\n';
   out.close();
   if (!out || ::rename(fresh.c_str(), file.c_str()) != 0) refuse(file, "cannot be written");
 }

@@ -2,6 +2,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
+#include "common/core/hex.hpp"
 #include "common/core/m61.hpp"
 
 namespace runstone {
@@ -92,13 +93,11 @@ Digest world_digest_term(const ChunkKey& key, const Digest& chunk) {
 }
 
 std::string to_hex(const Digest& digest) {
-  static constexpr char kHex[] = "0123456789abcdef";
-  std::string out;
-  out.reserve(16 * kDigestLanes);
-  for (const std::uint64_t lane : digest.lane) {
-    for (int shift = 60; shift >= 0; shift -= 4) out.push_back(kHex[(lane >> shift) & 15]);
+  std::array<std::uint8_t, 8 * kDigestLanes> bytes{};  // highest byte of a lane first
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(digest.lane[i / 8] >> (56 - 8 * (i % 8)));
   }
-  return out;
+  return to_hex(ByteView(bytes));
 }
 
 }  // namespace runstone

@@ -10,6 +10,7 @@
 #include <optional>
 #include <system_error>
 
+#include "common/core/hex.hpp"
 #include "common/core/m61.hpp"
 
 namespace runstone {
@@ -86,16 +87,6 @@ std::optional<AuditEntry> parse_entry(const Json& row) {
 }
 
 }  // namespace
-
-std::string to_hex(const WorldId& id) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
-  for (const std::uint8_t byte : id) {
-    hex += kDigits[byte >> 4];
-    hex += kDigits[byte & 15];
-  }
-  return hex;
-}
 
 std::string to_json(const DigestList& list) {
   std::vector<const AuditEntry*> rows;

@@ -30,6 +30,5 @@ Result<DigestList, TextError> read_digests_json(const std::string& file);
 
 /// The two halves of write_digests_json() and read_digests_json(), for files that say more.
 Result<void, TextError> write_text_file(const std::string& file, std::string_view text);
-std::string to_hex(const WorldId& id);
 
 }  // namespace runstone

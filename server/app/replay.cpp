@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/core/key_text.hpp"
 #include "common/edits/edit_geometry.hpp"
 #include "common/runs/reorder.hpp"
 
@@ -12,17 +13,6 @@ namespace {
 
 constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
 constexpr Sequence kProgressEdits = 1024;
-
-std::string text_of(const Version& version) {
-  return std::to_string(version.epoch) + ":" + std::to_string(version.seq);
-}
-
-std::string text_of(const ChunkKey& key) {
-  std::string text =
-      std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," + std::to_string(key.at.z);
-  if (key.lod != 0) text += " lod=" + std::to_string(key.lod);
-  return text;
-}
 
 }  // namespace
 

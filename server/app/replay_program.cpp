@@ -2,31 +2,22 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <iomanip>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
-#include <vector>
 
+#include "common/core/hex.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/app/replay.hpp"
+#include "server/app/replay_options.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
 
 namespace {
-
-struct Options {
-  std::string world;
-  bool verify = false;
-  Sequence at = std::numeric_limits<Sequence>::max();
-  std::string json;
-  std::vector<std::string> against;
-};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -109,7 +100,7 @@ int cannot_read(std::ostream& err, const std::string& message) {
   return static_cast<int>(ReplayExit::cannot_read);
 }
 
-int run(const Options& options, std::ostream& out, std::ostream& err) {
+int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   auto opened = open_world(options.world, StoreAccess::read_only);
   if (!opened) return cannot_read(err, opened.error().message());
   Store& store = **opened;
@@ -149,22 +140,8 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
 }  // namespace
 
 int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  Options options;
-  CLI::App app(
-      "Rebuilds a world from base and edit log and compares digests. Exit code 0: equal, 1: different, "
-      "2: cannot read.",
-      "runstone-replay");
-  app.add_option("--world", options.world, "folder of the world; a server may be running")->required();
-  app.add_option("--at", options.at, "stop after this sequence number");
-  app.add_flag("--verify", options.verify, "also read and verify every row of every table");
-  app.add_option("--json", options.json, "write digests and report to this file");
-  app.add_option("--against", options.against, "compare with digests that a server or client wrote");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error, out, err) == 0 ? 0 : static_cast<int>(ReplayExit::cannot_read);
-  }
-  return run(options, out, err);
+  const auto [options, exit_code] = parse_replay_options(argc, argv, out, err);
+  return options ? run(*options, out, err) : exit_code;
 }
 
 }  // namespace runstone

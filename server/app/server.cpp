@@ -27,38 +27,6 @@ struct Server::Parts {
   bool is_running = false;
 };
 
-namespace {
-
-/// Digests of all chunks that have a snapshot: after a clean stop these are all chunks ever edited.
-StopReport sum_up(Store& store, bool is_clean) {
-  StopReport report;
-  report.is_clean = is_clean;
-  report.digests.world_id = store.meta().world_id;
-  const auto failed = [&](const StoreError& error) {
-    if (report.error.empty()) report.error = error.message();
-  };
-  const auto last = store.last_sequence();
-  if (last) report.digests.seq = *last;
-  if (!last) failed(last.error());
-  const auto keys = store.snapshot_keys();
-  if (!keys) {
-    failed(keys.error());
-    return report;
-  }
-  for (const auto& [key, version] : *keys) {
-    const auto chunk = store.load_snapshot(key);
-    if (!chunk) {
-      failed(chunk.error());
-    } else if (chunk->has_value()) {
-      report.digests.chunks.push_back({key, (*chunk)->version, (*chunk)->digest});
-      report.world_digest = report.world_digest + world_digest_term(key, (*chunk)->digest);
-    }
-  }
-  return report;
-}
-
-}  // namespace
-
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Server::~Server() {
@@ -111,8 +79,9 @@ StopReport Server::stop() {
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
   const bool is_clean = is_settled && !parts.core->has_failed();
+  const auto live = parts.core->edited_chunks();
   parts.core.reset();
-  return sum_up(*parts.world.store, is_clean);
+  return sum_up(*parts.world.store, live, is_clean);
 }
 
 }  // namespace runstone

@@ -8,18 +8,10 @@
 
 #include "common/core/result.hpp"
 #include "server/admin/server_config.hpp"
-#include "server/app/digest_list.hpp"
+#include "server/app/stop_report.hpp"
 #include "server/app/world_folder.hpp"
 
 namespace runstone {
-
-/// What a server leaves behind.
-struct StopReport {
-  bool is_clean = false;  // everything ordered is on disk, in the log and in snapshots
-  Digest world_digest;    // over all edited chunks
-  DigestList digests;     // of them
-  std::string error;      // first row that could not be read while summing up; empty if none
-};
 
 class Server {
  public:

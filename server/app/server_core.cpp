@@ -10,6 +10,7 @@
 
 #include "common/runs/dense.hpp"
 #include "server/app/logging.hpp"
+#include "server/net/steady_us.hpp"
 
 namespace runstone {
 namespace {
@@ -17,10 +18,8 @@ namespace {
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
 
 Now now() {
-  using std::chrono::duration_cast;
-  using std::chrono::microseconds;
-  return {duration_cast<microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count(),
-          duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count()};
+  const auto utc = std::chrono::system_clock::now().time_since_epoch();
+  return {steady_us(), std::chrono::duration_cast<std::chrono::microseconds>(utc).count()};
 }
 
 NetLimits net_limits(const ServerConfig& config) {
@@ -81,28 +80,26 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
 Result<WorldStart, std::string> ServerCore::read_start() {
   WorldStart start;
   const auto failure = [](const StoreError& error) { return Unexpected<std::string>{error.message()}; };
-  const auto last = store_.last_sequence();
-  if (!last) return failure(last.error());
-  start.log.last = *last;
+  const auto range = store_.log_range();
+  if (!range) return failure(range.error());
+  start.log.last = range->last.version.seq;
+  start.log.last_time_us = range->last.time_us;
+  // No edit of this run may be stamped by a damaged time: the last row's checksum vouches for it.
+  const auto last_row =
+      store_.read_log(start.log.last, start.log.last, [](const EditRecord&) { return true; });
+  if (!last_row) return failure(last_row.error());
   const auto checkpoint = store_.checkpoint();
   if (!checkpoint) return failure(checkpoint.error());
   start.checkpoint = *checkpoint;
   auto snapshots = store_.snapshot_keys();
   if (!snapshots) return failure(snapshots.error());
   start.snapshots = *std::move(snapshots);
-  const auto players = store_.players();
+  auto players = store_.players();
   if (!players) return failure(players.error());
-  for (const PlayerRow& row : *players) start.players.push_back({row.author, row.key, row.name});
-  const auto marks = store_.high_waters();
+  start.players = *std::move(players);
+  auto marks = store_.high_waters();
   if (!marks) return failure(marks.error());
-  for (const HighWater& mark : *marks) start.decided.push_back({mark.author, mark.instance, mark.decided});
-  if (*last > 0) {
-    const auto read = store_.read_log(*last, *last, [&](const EditRecord& record) {
-      start.log.last_time_us = record.time_us;
-      return true;
-    });
-    if (!read) return failure(read.error());
-  }
+  start.decided = *std::move(marks);
   return start;
 }
 
@@ -315,11 +312,8 @@ void ServerCore::close(SessionId session, GoodbyeReason reason, const std::strin
 
 bool ServerCore::log_has_room(std::size_t records) const { return writer_->has_room(records); }
 
-void ServerCore::log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) {
-  std::vector<PlayerRow> rows;
-  rows.reserve(players.size());
-  for (NewPlayer& player : players) rows.push_back({player.author, player.key, std::move(player.name)});
-  writer_->append(std::move(rows), std::move(records));
+void ServerCore::log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
+  writer_->append(std::move(players), std::move(records));
 }
 
 void ServerCore::load_chunk(const ChunkKey& key) {

@@ -46,6 +46,8 @@ class ServerCore final : public WorldPorts, public NetEvents {
   std::future<bool> begin_stop();
   /// After begin_stop()'s answer: writes what is queued and ends the writer's thread.
   void stop_writer();
+  /// Edited chunks in memory, ascending. Once no thread runs the strand any more.
+  std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const { return world_->edited_chunks(); }
   bool has_failed() const { return failed_.load(); }
   /// One line at info. Any thread.
   void log_counters();
@@ -62,7 +64,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   bool log_has_room(std::size_t records) const override;
-  void log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) override;
+  void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void load_chunk(const ChunkKey& key) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override;
   void log(WorldLogLevel level, const std::string& line) override;

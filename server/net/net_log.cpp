@@ -2,9 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <mutex>
+#include <utility>
 
+#include "server/net/steady_us.hpp"
 #include "server/world/token_bucket.hpp"
 
 namespace runstone {
@@ -16,8 +17,7 @@ void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason r
   std::uint64_t missed = 0;
   {
     const std::lock_guard lock(mutex);
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    if (!lines.take(1, std::chrono::duration_cast<std::chrono::microseconds>(now).count())) {
+    if (!lines.take(1, steady_us())) {
       ++left_out;
       return;
     }

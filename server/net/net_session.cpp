@@ -11,18 +11,13 @@
 #include <utility>
 
 #include "server/net/net_log.hpp"
+#include "server/net/steady_us.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 16 * 1024;
-
-TimeUs steady_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -51,13 +52,6 @@ Version version_of(const sql::Statement& row, int column) {
 
 }  // namespace
 
-std::string name_of(const ChunkKey& key) {
-  std::string name =
-      std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," + std::to_string(key.at.z);
-  if (key.lod != 0) name += " lod=" + std::to_string(key.lod);
-  return name;
-}
-
 StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
   const std::string table = kind == Kind::snapshot ? "snapshot" : "base";
   const std::string where = " FROM " + table + " WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
@@ -80,7 +74,7 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
 
 Unexpected<StoreError> ChunkTable::failure(StoreError::Kind kind, const ChunkKey& key,
                                            std::string what) const {
-  return {{kind, file_, table_ + " chunk=" + name_of(key), std::move(what)}};
+  return {{kind, file_, table_ + " chunk=" + text_of(key), std::move(what)}};
 }
 
 StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uint16_t chunk_edge) {

@@ -12,9 +12,6 @@
 
 namespace runstone {
 
-/// "1,0,-3", and " lod=2" behind it when that is not 0.
-std::string name_of(const ChunkKey& key);
-
 class ChunkTable {
  public:
   enum class Kind { base, snapshot };

@@ -18,12 +18,14 @@ bool LogWriter::has_room(std::size_t records) const {
 }
 
 void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> records) {
+  if (players.empty() && records.empty()) return;
   {
     const std::lock_guard guard(mutex_);
     if (failed_ || stopping_) return;
-    RUNSTONE_ASSERT(room_taken_ + records.size() <= limits_.queued_records_max);
-    room_taken_ += records.size();
-    batches_.push_back({std::move(players), std::move(records)});
+    const std::size_t room = std::max<std::size_t>(records.size(), 1);
+    RUNSTONE_ASSERT(room_taken_ + room <= limits_.queued_records_max);
+    room_taken_ += room;
+    batches_.push_back({std::move(players), std::move(records), room});
   }
   work_.notify_one();
 }
@@ -59,10 +61,11 @@ LogWriter::Batch LogWriter::take_group() {
   Batch group;
   while (!batches_.empty()) {
     Batch& next = batches_.front();
-    const bool first = group.players.empty() && group.records.empty();
+    const bool first = group.room == 0;
     if (!first && group.records.size() + next.records.size() > limits_.commit_records_max) break;
     std::move(next.players.begin(), next.players.end(), std::back_inserter(group.players));
     std::move(next.records.begin(), next.records.end(), std::back_inserter(group.records));
+    group.room += next.room;
     batches_.pop_front();
   }
   return group;
@@ -81,10 +84,7 @@ void LogWriter::run() {
         jobs_.pop_front();
         job_in_hand_ = true;
       }
-      if (group.players.empty() && group.records.empty() && !job) {
-        if (stopping_ && batches_.empty()) return;
-        continue;  // a batch of nothing
-      }
+      if (group.room == 0 && !job) return;  // stopping, and nothing is left
     }
     if (!write(group)) return;
     // After every slice the records that came meanwhile get their turn.
@@ -102,14 +102,14 @@ void LogWriter::run() {
 }
 
 bool LogWriter::write(const Batch& group) {
-  if (group.players.empty() && group.records.empty()) return true;
+  if (group.room == 0) return true;
   if (const auto appended = store_.append(group.players, group.records); !appended) {
     fail(appended.error());
     return false;
   }
   {
     const std::lock_guard guard(mutex_);
-    room_taken_ -= group.records.size();
+    room_taken_ -= group.room;
     counters_.commits += 1;
     counters_.records += group.records.size();
   }

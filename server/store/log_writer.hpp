@@ -54,8 +54,9 @@ class LogWriter {
   /// Whether append() may be given this many records now. Only appending makes it false, so the one thread
   /// that appends may rely on a true answer. False after a failure and after stop().
   bool has_room(std::size_t records) const;
-  /// Queues one batch; it becomes durable as a whole. Requires has_room(records.size()) unless the writer has
-  /// failed or stopped, when the batch is dropped. Players ride along and take no room.
+  /// Queues one batch; it becomes durable as a whole. Requires has_room(records.size()), or has_room(1) if
+  /// there are none, unless the writer has failed or stopped, when the batch is dropped. Players ride along
+  /// and take no room; a batch of players alone takes that of one record.
   void append(std::vector<PlayerRow> players, std::vector<EditRecord> records);
   /// Queues a job. False if the queue of jobs is full (or the writer has failed or stopped): nothing was
   /// taken.
@@ -70,6 +71,7 @@ class LogWriter {
   struct Batch {
     std::vector<PlayerRow> players;
     std::vector<EditRecord> records;
+    std::size_t room = 0;  // what it takes of queued_records_max
   };
   struct Job {
     SnapshotChunks chunks;
@@ -93,7 +95,7 @@ class LogWriter {
   // Guarded by mutex_ from here on.
   std::deque<Batch> batches_;
   std::deque<Job> jobs_;
-  std::size_t room_taken_ = 0;  // records queued or being written
+  std::size_t room_taken_ = 0;  // by batches queued or being written
   bool job_in_hand_ = false;    // the writer thread has taken a job out of the queue
   bool stopping_ = false, failed_ = false;
   Counters counters_;

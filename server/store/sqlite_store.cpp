@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "common/core/key_text.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -149,7 +150,7 @@ StoreResult<void> SqliteStore::save_snapshots(std::span<const std::pair<ChunkKey
     const Version durable = range->last.version;
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version > durable) {
-        return refuse("snapshot chunk=" + name_of(key), "its version is not durable yet");
+        return refuse("snapshot chunk=" + text_of(key), "its version is not durable yet");
       }
     }
     if (auto saved = save_chunks(snapshots_, chunks); !saved) return saved;
@@ -169,7 +170,7 @@ StoreResult<void> SqliteStore::save_base(std::span<const std::pair<ChunkKey, Chu
     if (*last != 0) return refuse("base", "cannot change once the log has edits");
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version != Version{})
-        return refuse("base chunk=" + name_of(key), "base chunks stand at version (0, 0)");
+        return refuse("base chunk=" + text_of(key), "base chunks stand at version (0, 0)");
     }
     return save_chunks(base_, chunks);
   });

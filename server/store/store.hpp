@@ -25,6 +25,7 @@
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/players/player_rows.hpp"
 
 namespace runstone {
 
@@ -49,20 +50,6 @@ struct WorldMeta {
   MaterialTable materials;
   std::array<std::uint8_t, 32> server_key_seed{};  // Ed25519 identity of this world's server
   WorldPos spawn;
-};
-
-struct PlayerRow {
-  AuthorId author = 0;  // from 1
-  PublicKey key{};
-  std::string name;  // last used
-};
-
-/// Highest client sequence decided per client instance; survives compaction of the log.
-struct HighWater {
-  AuthorId author = 0;
-  ClientInstance instance = 0;
-  ClientSequence decided = 0;
-  TimeUs last_us = 0;  // UTC, of the instance's last record: old instances may be forgotten one day
 };
 
 /// A place in the log: (0, 0) and 0 before the first edit.

@@ -2,6 +2,7 @@
 #include <map>
 #include <utility>
 
+#include "common/core/key_text.hpp"
 #include "server/store/sqlite_store.hpp"
 
 namespace runstone {
@@ -22,7 +23,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (version > newest) {
       return Unexpected<StoreError>{
-          {StoreError::Kind::corrupt, file(), table.name() + " chunk=" + name_of(key),
+          {StoreError::Kind::corrupt, file(), table.name() + " chunk=" + text_of(key),
            is_base ? "holds edits that are in the log as well" : "is newer than the end of the log"}};
     }
   }

@@ -4,13 +4,14 @@
 #include <map>
 #include <set>
 
+#include "common/core/key_text.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
 namespace {
 
-std::vector<NewPlayer> new_players_of(WorldState& world, const std::vector<EditRecord>& records) {
-  std::vector<NewPlayer> players;
+std::vector<PlayerRow> unsaved_players_of(WorldState& world, const std::vector<EditRecord>& records) {
+  std::vector<PlayerRow> players;
   for (const EditRecord& record : records) {
     if (auto player = world.players.take_unsaved(record.op.author)) players.push_back(std::move(*player));
   }
@@ -66,7 +67,7 @@ void commit_and_broadcast(WorldState& world, const Now& now) {
     ++world.counters.commits;
     world.counters.commit_bytes += encoded.bytes->size();
     world.counters.edits_ordered += batch->records.size();
-    std::vector<NewPlayer> players = new_players_of(world, batch->records);
+    std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
     world.ports.log_append(std::move(players), std::move(batch->records));
     for (const SessionId session : receivers_of(world, *batch)) {
       if (world.ports.send(session, encoded)) {
@@ -136,10 +137,8 @@ void send_audits(WorldState& world) {
       const Digest digest = digest_of(chunk->voxels);
       if (digest != chunk->digest) {
         ++world.counters.audit_mismatches;
-        world.ports.log(WorldLogLevel::error,
-                        "chunk=" + std::to_string(key->at.x) + "," + std::to_string(key->at.y) + "," +
-                            std::to_string(key->at.z) + " digest of runs " + to_hex(digest) +
-                            " is not the one kept " + to_hex(chunk->digest));
+        world.ports.log(WorldLogLevel::error, "chunk=" + text_of(*key) + " digest of runs " + to_hex(digest) +
+                                                  " is not the one kept " + to_hex(chunk->digest));
       }
       audit.entries.push_back({*key, chunk->version, digest});
     }

@@ -84,6 +84,9 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
   mine.proof_transcript = {};
   mine.state = SessionState::open;
   mine.author = world.players.enter(mine.key, mine.name);
+  if (world.players.is_renamed(mine.author) && world.ports.log_has_room(world.authority.queued() + 1)) {
+    world.ports.log_append({*world.players.take_unsaved(mine.author)}, {});
+  }
   mine.pose.at = world.config.spawn;
   mine.pose_changed = true;
   mine.edits = TokenBucket(world.config.edits_per_second, world.config.edit_burst);

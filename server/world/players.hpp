@@ -1,6 +1,6 @@
 // Players: which author a public key is. A key gets the next free author number when it first shows that it
 // owns its secret, but the row is written only with the author's first edit: keys that never edit leave
-// nothing on disk.
+// nothing on disk. A name that an author with a row comes back under is written anew: the last one wins.
 #pragma once
 #include <map>
 #include <optional>
@@ -8,46 +8,52 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
-#include "protocol/codec/messages.hpp"
-#include "server/world/world_ports.hpp"
+#include "server/players/player_rows.hpp"
 
 namespace runstone {
 
 class Players {
  public:
   /// A row of the store, at the start.
-  void restore(AuthorId author, const PublicKey& key, std::string name) {
-    by_key_[key] = author;
-    rows_[author] = {key, std::move(name), true};
+  void restore(const PlayerRow& stored) {
+    by_key_[stored.key] = stored.author;
+    known_[stored.author] = {stored, stored.name};
   }
   /// The key's author; a new one for a new key. The name replaces the one known.
   AuthorId enter(const PublicKey& key, const std::string& name) {
     const auto found = by_key_.find(key);
     if (found != by_key_.end()) {
-      rows_[found->second].name = name;
+      known_[found->second].row.name = name;
       return found->second;
     }
-    const AuthorId author = rows_.empty() ? 1 : rows_.rbegin()->first + 1;
+    const AuthorId author = known_.empty() ? 1 : known_.rbegin()->first + 1;
     by_key_[key] = author;
-    rows_[author] = {key, name, false};
+    known_[author] = {{author, key, name}, std::nullopt};
     return author;
   }
-  /// The row to be written with the author's first record; nothing if the store has it.
-  std::optional<NewPlayer> take_unsaved(AuthorId author) {
-    const auto found = rows_.find(author);
-    if (found == rows_.end() || found->second.is_saved) return std::nullopt;
-    found->second.is_saved = true;
-    return NewPlayer{author, found->second.key, found->second.name};
+  /// Whether the store has the author under another name.
+  bool is_renamed(AuthorId author) const {
+    const auto found = known_.find(author);
+    return found != known_.end() && found->second.stored_name &&
+           *found->second.stored_name != found->second.row.name;
+  }
+  /// The row to be written, at the latest with the author's next record; nothing if the store has it so.
+  std::optional<PlayerRow> take_unsaved(AuthorId author) {
+    const auto found = known_.find(author);
+    if (found == known_.end()) return std::nullopt;
+    auto& [row, stored_name] = found->second;
+    if (stored_name == row.name) return std::nullopt;
+    stored_name = row.name;
+    return row;
   }
 
  private:
-  struct Row {
-    PublicKey key{};
-    std::string name;
-    bool is_saved = false;
+  struct Known {
+    PlayerRow row;
+    std::optional<std::string> stored_name;  // nothing: the store has no row
   };
   std::map<PublicKey, AuthorId> by_key_;
-  std::map<AuthorId, Row> rows_;
+  std::map<AuthorId, Known> known_;
 };
 
 }  // namespace runstone

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/core/assert.hpp"
+#include "common/core/key_text.hpp"
 
 namespace runstone {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 constexpr std::size_t kChunkOverheadBytes = 192;  // entry, control block, vectors: about
 
 std::size_t bytes_of(const Chunk& chunk) { return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes; }
-
-std::string text_of(Version v) { return std::to_string(v.epoch) + ":" + std::to_string(v.seq); }
 
 }  // namespace
 
@@ -96,6 +95,15 @@ ChunkPtr WorldChunks::find(const ChunkKey& key) const {
 Version WorldChunks::version(const ChunkKey& key) const {
   const Entry* e = entry(key);
   return e == nullptr ? Version{} : e->version;
+}
+
+std::vector<std::pair<ChunkKey, ChunkPtr>> WorldChunks::edited() const {
+  std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
+  for (const auto& [key, e] : entries_) {
+    if (e.published != nullptr && e.version != Version{}) chunks.emplace_back(key, e.published);
+  }
+  std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return chunks;
 }
 
 std::size_t WorldChunks::stack_size(const ChunkKey& key) const {

@@ -16,6 +16,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/edits/edit_stack.hpp"
@@ -50,6 +51,8 @@ class WorldChunks {
   /// Null unless resident.
   ChunkPtr find(const ChunkKey& key) const;
   Version version(const ChunkKey& key) const;
+  /// Resident chunks that were ever edited, ascending. O(entries).
+  std::vector<std::pair<ChunkKey, ChunkPtr>> edited() const;
   std::size_t stack_size(const ChunkKey& key) const;
   /// Absent becomes loading; true if the caller has to ask for it.
   bool begin_load(const ChunkKey& key);

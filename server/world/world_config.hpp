@@ -9,6 +9,7 @@
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/players/player_rows.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/snapshot_keeper.hpp"
 
@@ -47,16 +48,11 @@ struct WorldConfig {
 
 /// What the store remembers. Log records above the checkpoint follow by WorldServer::restack().
 struct WorldStart {
-  struct Mark {
-    AuthorId author = 0;
-    ClientInstance instance = 0;
-    ClientSequence decided = 0;
-  };
   LogPosition log;
   Sequence checkpoint = 0;
   std::vector<std::pair<ChunkKey, Version>> snapshots;
-  std::vector<NewPlayer> players;
-  std::vector<Mark> decided;
+  std::vector<PlayerRow> players;
+  std::vector<HighWater> decided;
 };
 
 /// Fills a buffer with unpredictable bytes (predictable ones in tests).

@@ -12,18 +12,12 @@
 #include "common/edits/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/players/player_rows.hpp"
 
 namespace runstone {
 
 /// What the world strand has to tell the operator; the port names the logger.
 enum class WorldLogLevel { debug, info, warn, error };
-
-/// Row of `player` to be written with the next batch.
-struct NewPlayer {
-  AuthorId author = 0;
-  PublicKey key{};
-  std::string name;
-};
 
 class WorldPorts {
  public:
@@ -43,8 +37,9 @@ class WorldPorts {
 
   /// Room in the log queue for `records` more; false: reject edits as busy.
   virtual bool log_has_room(std::size_t records) const = 0;
-  /// Hands a commit's records to the log writer. Answer: WorldServer::durable() once they are on disk.
-  virtual void log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) = 0;
+  /// Hands a commit's records to the log writer, and with them players to be written or written anew (also
+  /// without records). Answer: WorldServer::durable() once records are on disk.
+  virtual void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) = 0;
   /// Asks for a chunk: newest snapshot, else base, else generated, from a worker. Answer:
   /// WorldServer::chunk_loaded() or chunk_failed(). Asked at most once per chunk until answered.
   virtual void load_chunk(const ChunkKey& key) = 0;

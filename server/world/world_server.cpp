@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/core/key_text.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/handshake_steps.hpp"
@@ -14,11 +15,6 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kEvictionStepsPerTick = 512;
-
-std::string text_of(const ChunkKey& key) {
-  return "chunk=" + std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," +
-         std::to_string(key.at.z);
-}
 
 /// Messages that an open session may send.
 bool needs_open(const Message& message) {
@@ -146,7 +142,7 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now)
   WorldState& world = *state_;
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
-    world.ports.log(WorldLogLevel::error, text_of(key) + " quarantined: " + *wrong);
+    world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + *wrong);
   }
   deliver_loaded(world, key, now);
   // A chunk that was loaded for its stack alone has no user; it may go once it is written.
@@ -158,7 +154,7 @@ void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, con
   WorldState& world = *state_;
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
-  world.ports.log(WorldLogLevel::error, text_of(key) + " quarantined: " + what);
+  world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
   step_keeper(now);
 }
@@ -206,6 +202,9 @@ std::size_t WorldServer::resident_chunks() const { return state_->authority.chun
 std::size_t WorldServer::resident_bytes() const { return state_->authority.chunks().resident_bytes(); }
 const WorldCounters& WorldServer::counters() const { return state_->counters; }
 ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const { return state_->authority.chunks().find(key); }
+std::vector<std::pair<ChunkKey, ChunkPtr>> WorldServer::edited_chunks() const {
+  return state_->authority.chunks().edited();
+}
 Version WorldServer::chunk_version(const ChunkKey& key) const {
   return state_->authority.chunks().version(key);
 }

@@ -6,6 +6,8 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "protocol/codec/messages.hpp"
 #include "server/world/world_config.hpp"
@@ -71,6 +73,8 @@ class WorldServer {
   const WorldCounters& counters() const;
   /// Null unless the chunk is in memory.
   ChunkPtr find_chunk(const ChunkKey& key) const;
+  /// All chunks in memory that were ever edited, ascending.
+  std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const;
   /// Version by the order, whether the chunk is in memory or not.
   Version chunk_version(const ChunkKey& key) const;
 

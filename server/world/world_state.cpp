@@ -27,7 +27,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts&
       interest(CoordLimit{kWorldLimit / config.chunk_edge}),
       durable(start.log.last) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
-  for (const NewPlayer& player : start.players) players.restore(player.author, player.key, player.name);
+  for (const PlayerRow& player : start.players) players.restore(player);
   for (const auto& mark : start.decided)
     authority.decided().raise({mark.author, mark.instance, mark.decided});
 }

@@ -1,11 +1,11 @@
-// Bytes as hex digits, for golden bytes and failure messages.
+// Hex digits as bytes, for golden bytes; common/core/hex.hpp goes the other way.
 #pragma once
 #include <cstdint>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 
 #include "common/core/bytes.hpp"
+#include "common/core/hex.hpp"
 
 namespace runstone::test {
 
@@ -25,16 +25,6 @@ inline Bytes from_hex(std::string_view text) {
     }
   }
   if (high >= 0) throw std::invalid_argument("half a byte");
-  return out;
-}
-
-inline std::string to_hex(ByteView bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string out;
-  for (const std::uint8_t b : bytes) {
-    out.push_back(kDigits[b >> 4]);
-    out.push_back(kDigits[b & 15]);
-  }
   return out;
 }
 

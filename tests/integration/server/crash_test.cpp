@@ -9,14 +9,8 @@
 #include "tests/integration/server/raw_client.hpp"
 #include "tests/integration/server/server_bench.hpp"
 
-namespace runstone {
+namespace runstone::test {
 namespace {
-
-using test::flat_creation;
-using test::quiet_config;
-using test::RawClient;
-using test::start_server;
-using test::TempFolder;
 
 constexpr ClientSequence kEdits = 4'000;
 constexpr ClientInstance kInstance = 33;
@@ -127,4 +121,4 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
 }
 
 }  // namespace
-}  // namespace runstone
+}  // namespace runstone::test

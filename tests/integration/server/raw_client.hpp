@@ -11,6 +11,7 @@
 #include <chrono>
 #include <deque>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -76,6 +77,13 @@ class RawClient {
     }
     return std::nullopt;
   }
+  /// Reads until everything up to `seq` is durable; false if the server closes before.
+  bool sees_durable(Sequence seq) {
+    while (const auto durable = next_of<Durable>()) {
+      if (durable->seq >= seq) return true;
+    }
+    return false;
+  }
   /// Reads until the server closes; the goodbye, if there was one.
   std::optional<Goodbye> goodbye() {
     auto found = next_of<Goodbye>();
@@ -95,7 +103,7 @@ class RawClient {
     Hello h;
     h.key = key_pair_of(seed_).public_key;
     h.instance = instance;
-    h.name = "player" + std::to_string(who);
+    h.name = name.empty() ? "player" + std::to_string(who) : name;
     return h;
   }
   /// The whole handshake; nothing if the server closed.
@@ -112,6 +120,7 @@ class RawClient {
   }
 
   Welcome welcome;
+  std::string name;  // to be called by; empty: "player" and the number
 
  private:
   bool read_some(int deadline_ms) {

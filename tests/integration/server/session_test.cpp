@@ -9,14 +9,8 @@
 #include "tests/integration/server/raw_client.hpp"
 #include "tests/integration/server/server_bench.hpp"
 
-namespace runstone {
+namespace runstone::test {
 namespace {
-
-using test::flat_creation;
-using test::quiet_config;
-using test::RawClient;
-using test::start_server;
-using test::TempFolder;
 
 EditRequest edit(ClientSequence seq, VoxelPos at, Material material) {
   return {seq, 0, {SetVoxel{at}, {}, material}};
@@ -313,16 +307,13 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
     for (ClientSequence seq = 1; seq <= 20; ++seq) {
       client.send(edit(seq, {static_cast<std::int32_t>(seq) * 7 % 40 - 20, 1, 2}, some_material(seq)));
     }
-    while (true) {
-      const auto durable = client.next_of<Durable>();
-      REQUIRE(durable.has_value());
-      if (durable->seq == 20) break;
-    }
+    REQUIRE(client.sees_durable(20));
     const StopReport report = server->stop();
     CHECK(report.is_clean);
     CHECK(report.error.empty());
     CHECK(report.digests.seq == 20);
     CHECK(report.digests.chunks.size() >= 2);
+    CHECK(report.live_chunks == report.digests.chunks.size());
     before = report.world_digest;
     const auto goodbye = client.goodbye();
     REQUIRE(goodbye.has_value());
@@ -346,8 +337,44 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
   CHECK(versions.at({0, {0, 0, 0}}).epoch == 1);
   const StopReport report = server->stop();
   CHECK(report.is_clean);
+  CHECK(report.error.empty());
   CHECK(report.world_digest == before);
 }
 
+TEST_CASE("the last name of a player is the one that is stored, edit or no edit", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  const auto stored_names = [&] {
+    std::vector<std::string> names;
+    const auto store = open_world(config.world, StoreAccess::read_only);
+    REQUIRE(store.has_value());
+    const auto rows = (*store)->players();
+    REQUIRE(rows.has_value());
+    for (const PlayerRow& row : *rows) names.push_back(row.name);
+    return names;
+  };
+  const auto come_as = [&](const std::string& name, bool edits) {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    client.name = name;
+    const auto ready = client.join(1);
+    REQUIRE(ready.has_value());
+    CHECK(ready->author == 1);
+    if (edits) {
+      client.send(edit(ready->decided + 1, {1, 1, 1}, 2));
+      REQUIRE(client.sees_durable(ready->decided + 1));
+    }
+    CHECK(server->stop().is_clean);
+  };
+  come_as("ada", false);
+  CHECK(stored_names().empty());  // who never edited leaves nothing
+  come_as("ada", true);
+  CHECK(stored_names() == std::vector<std::string>{"ada"});
+  come_as("grace", false);
+  CHECK(stored_names() == std::vector<std::string>{"grace"});
+  come_as("edsger", true);
+  CHECK(stored_names() == std::vector<std::string>{"edsger"});
+}
+
 }  // namespace
-}  // namespace runstone
+}  // namespace runstone::test

@@ -1,23 +1,20 @@
 // What a server does when it cannot start, or meets damage: one clear line, and nothing overwritten.
-#include <sqlite3.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
 
 #include "tests/integration/server/raw_client.hpp"
 #include "tests/integration/server/server_bench.hpp"
+#include "tests/support/compact_by_hand.hpp"
+#include "tests/support/raw_sql.hpp"
 
-namespace runstone {
+namespace runstone::test {
 namespace {
-
-using test::flat_creation;
-using test::quiet_config;
-using test::RawClient;
-using test::start_server;
-using test::TempFolder;
 
 std::string start_error(const ServerConfig& config, const WorldCreation& creation) {
   const auto server = Server::start(config, creation);
@@ -30,15 +27,11 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// Changes at least one row of a closed world.
 void run_sql(const std::string& file, const std::string& sql) {
-  sqlite3* database = nullptr;
-  REQUIRE(sqlite3_open(file.c_str(), &database) == SQLITE_OK);
-  char* message = nullptr;
-  const int code = sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &message);
-  INFO((message == nullptr ? "" : message));
-  CHECK(code == SQLITE_OK);
-  CHECK(sqlite3_changes(database) > 0);
-  sqlite3_close(database);
+  const std::string changes = raw_sql(file, sql + "; SELECT changes()");
+  INFO(changes);
+  REQUIRE(std::atoi(changes.c_str()) > 0);
 }
 
 TEST_CASE("a busy port is named, and the world keeps its epoch", "[integration]") {
@@ -141,11 +134,7 @@ void make_edited_world(const ServerConfig& config) {
     const auto x = static_cast<std::int32_t>(seq - 1) * 16;
     client.send(EditRequest{seq, 0, {SetVoxel{{x, 1, 1}}, {}, 2}});
   }
-  while (true) {
-    const auto durable = client.next_of<Durable>();
-    REQUIRE(durable.has_value());
-    if (durable->seq == 3) break;
-  }
+  REQUIRE(client.sees_durable(3));
   REQUIRE(server->stop().is_clean);
 }
 
@@ -191,6 +180,35 @@ TEST_CASE("a damaged log row above the checkpoint stops the start and is named",
   CHECK(contains(start_error(config, flat_creation()), "seq=3"));
 }
 
+TEST_CASE("a world whose log was compacted to its end goes on at its sequence and never before its time",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  constexpr TimeUs kFuture = 9'000'000'000'000'000;  // the wall clock was set back since
+  compact_by_hand(config.world + "/world.sqlite", {{1, 3}, kFuture}, {});
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(EditRequest{4, 0, {SetVoxel{{1, 1, 1}}, {}, 3}});
+    REQUIRE(client.sees_durable(4));
+    CHECK(server->stop().is_clean);
+  }
+  const auto store = open_world(config.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  CHECK(*(*store)->log_range() == LogRange{4, {{2, 4}, kFuture}});
+}
+
+TEST_CASE("a damaged last log row stops the start even if nothing waits above the checkpoint",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 3");
+  CHECK(contains(start_error(config, flat_creation()), "edit_log seq=3"));
+}
+
 TEST_CASE("a world of a newer version is refused", "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
@@ -202,4 +220,4 @@ TEST_CASE("a world of a newer version is refused", "[integration]") {
 }
 
 }  // namespace
-}  // namespace runstone
+}  // namespace runstone::test

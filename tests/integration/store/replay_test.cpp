@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -415,6 +417,93 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
   const Outcome damaged = run_program({"--world", world});
   CHECK(damaged.code == 2);
   CHECK(damaged.err == "runstone-replay: " + world + "/world.sqlite: edit_log seq=9: checksum is wrong\n");
+}
+
+namespace {
+
+std::string bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A closed world of the generator "empty" in `folder`: one edit in each of two chunks, with snapshots.
+/// `tamper` may change a snapshot's voxels before it is stored, digest and checksums included.
+void make_small_world(const std::string& folder,
+                      const std::function<void(const ChunkKey&, RunChunk&)>& tamper) {
+  const auto store = *create_world(folder, sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  std::vector<EditRecord> records;
+  std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots;
+  for (const std::int32_t cx : {0, 3}) {
+    SplitMix64 rng(1);
+    EditRecord record = sample_record(rng, 1, records.size() + 1);
+    record.cause = Cause::player;
+    record.subject = 0;
+    record.edit = {SetVoxel{{cx * kEdge + 1, 2, 3}}, {}, 4};
+    Chunk chunk;
+    chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
+    chunk.version = record.version;
+    fill(chunk.voxels, index_of({1, 2, 3}, chunk.voxels.extent, chunk.voxels.order), 1, 4);
+    const ChunkKey key{0, {cx, 0, 0}};
+    tamper(key, chunk.voxels);
+    chunk.digest = digest_of(chunk.voxels);
+    records.push_back(record);
+    snapshots.emplace_back(key, std::make_shared<const Chunk>(std::move(chunk)));
+  }
+  REQUIRE(store->append({}, records).has_value());
+  REQUIRE(store->save_snapshots(snapshots, 2).has_value());
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot that is sound by itself but not what the log makes exits with 1 and is named",
+          "[store][replay]") {
+  const TempFolder folder;
+  const std::string honest = folder / "honest", tampered = folder / "tampered";
+  make_small_world(honest, [](const ChunkKey&, RunChunk&) {});
+  const Outcome equal = run_program({"--world", honest, "--verify"});
+  INFO(equal.out << equal.err);
+  CHECK(equal.code == 0);
+  CHECK(equal.out.find("snapshots   2 compared") != std::string::npos);
+
+  Digest replayed, stored;
+  make_small_world(tampered, [&](const ChunkKey& key, RunChunk& voxels) {
+    if (key.at.x != 3) return;
+    replayed = digest_of(voxels);
+    fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1, 2);  // a block that nobody placed
+    stored = digest_of(voxels);
+  });
+  const Outcome different = run_program({"--world", tampered, "--verify"});
+  INFO(different.out << different.err);
+  CHECK(different.code == 1);
+  CHECK(different.err.empty());
+  CHECK(different.out.find("rows        all read and sound\n") != std::string::npos);
+  CHECK(different.out.find("result      1 differences\n") != std::string::npos);
+  CHECK(different.out.find("first       snapshot: chunk=3,0,0 version=1:2 digest=" + to_hex(stored) +
+                           ", replay gives digest=" + to_hex(replayed) + "\n") != std::string::npos);
+}
+
+TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is overwritten",
+          "[store][replay]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = world + "/world.sqlite", json = folder / "out.json";
+  make_small_world(world, [](const ChunkKey&, RunChunk&) {});
+  REQUIRE(run_program({"--world", world, "--verify", "--json", json}).code == 0);
+  // The journal is part of the file afterwards, so that its bytes can be compared.
+  REQUIRE(raw_sql(file,
+                  "UPDATE edit_log SET descriptor = zeroblob(9) WHERE seq = 2; "
+                  "PRAGMA wal_checkpoint(TRUNCATE)") == "0");
+  const std::string damaged = bytes_of(file), report = bytes_of(json);
+  REQUIRE(damaged.size() > 4096);
+  for (const char* how : {"--verify", "--at=2"}) {  // found by the check, and by the replay itself
+    const Outcome outcome = run_program({"--world", world, how, "--json", json});
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err == "runstone-replay: " + file + ": edit_log seq=2: checksum is wrong\n");
+  }
+  CHECK(run_program({"--world", world, "--at", "1"}).code == 0);  // what lies before it is sound
+  CHECK(bytes_of(file) == damaged);
+  CHECK(bytes_of(json) == report);
 }
 
 TEST_CASE("a world whose generator this program lacks is not replayed", "[store][replay]") {

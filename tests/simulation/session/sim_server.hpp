@@ -57,12 +57,13 @@ class SimServer final : public WorldPorts {
     store_ = open_();
     WorldStart start;
     start.log.epoch = value(store_->raise_epoch());
-    start.log.last = value(store_->last_sequence());
+    const LogEnd last = value(store_->log_range()).last;
+    start.log.last = last.version.seq;
+    start.log.last_time_us = last.time_us;
     start.checkpoint = value(store_->checkpoint());
     start.snapshots = value(store_->snapshot_keys());
-    for (const PlayerRow& p : value(store_->players())) start.players.push_back({p.author, p.key, p.name});
-    for (const HighWater& h : value(store_->high_waters()))
-      start.decided.push_back({h.author, h.instance, h.decided});
+    start.players = value(store_->players());
+    start.decided = value(store_->high_waters());
     std::vector<EditRecord> tail;
     if (start.log.last > start.checkpoint) {
       done(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
@@ -70,7 +71,6 @@ class SimServer final : public WorldPorts {
         return true;
       }));
     }
-    if (!tail.empty()) start.log.last_time_us = tail.back().time_us;
     world_ = std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
       for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
     });
@@ -214,10 +214,8 @@ class SimServer final : public WorldPorts {
     });
   }
   bool log_has_room(std::size_t) const override { return !log_full; }
-  void log_append(std::vector<NewPlayer> players, std::vector<EditRecord> records) override {
-    std::vector<PlayerRow> rows;
-    for (NewPlayer& p : players) rows.push_back({p.author, p.key, std::move(p.name)});
-    batches_.emplace_back(std::move(rows), std::move(records));
+  void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
+    batches_.emplace_back(std::move(players), std::move(records));
     if (batches_.size() == 1) write_later();
   }
   void write_later() {

@@ -143,7 +143,6 @@ TEST_CASE("a full queue says so until a commit has made room", "[store][log-writ
   writer.append({}, sample_records(rng, 1, 4, 5));
   CHECK(writer.has_room(0));
   CHECK_FALSE(writer.has_room(1));
-  writer.append({sample_player(1)}, {});  // players always find room
   store.gate.release();
   durable.acquire();
   CHECK(writer.has_room(3));
@@ -154,6 +153,29 @@ TEST_CASE("a full queue says so until a commit has made room", "[store][log-writ
   writer.stop();
   CHECK_FALSE(writer.has_room(1));
   CHECK(store.last() == 8);
+}
+
+TEST_CASE("players without records are written, and take the room of one record until then",
+          "[store][log-writer]") {
+  FakeStore store;
+  LogWriter::Limits limits;
+  limits.queued_records_max = 2;
+  LogWriter writer(store, {}, limits);
+  writer.append({}, {});  // nothing: takes no room and makes no commit
+  CHECK(writer.has_room(2));
+  writer.append({sample_player(1), sample_player(2)}, {});
+  store.entered.acquire();
+  CHECK(writer.has_room(1));
+  writer.append({sample_player(3)}, {});
+  CHECK_FALSE(writer.has_room(1));
+  store.open_gate();
+  store.entered.acquire();  // the second commit: the first one's room is free again
+  CHECK(writer.has_room(1));
+  writer.stop();
+  REQUIRE(store.commits.size() == 2);
+  CHECK(store.commits[0].players.size() == 2);
+  CHECK(store.commits[1].players.size() == 1);
+  CHECK(writer.counters().queued_records == 0);
 }
 
 TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-writer]") {

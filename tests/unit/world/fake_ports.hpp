@@ -36,7 +36,7 @@ class FakePorts : public WorldPorts {
   std::vector<Sent> sent;
   std::vector<SentSnapshot> snapshots;
   std::vector<Closed> closed;
-  std::vector<NewPlayer> players;
+  std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
   std::deque<ChunkKey> loads;
   std::vector<Save> saves;
@@ -68,7 +68,7 @@ class FakePorts : public WorldPorts {
     closed.push_back({session, reason, text});
   }
   bool log_has_room(std::size_t /*records*/) const override { return log_room; }
-  void log_append(std::vector<NewPlayer> new_players, std::vector<EditRecord> new_records) override {
+  void log_append(std::vector<PlayerRow> new_players, std::vector<EditRecord> new_records) override {
     players.insert(players.end(), new_players.begin(), new_players.end());
     records.insert(records.end(), new_records.begin(), new_records.end());
   }

@@ -379,7 +379,35 @@ TEST_CASE("ready names what was decided: by the store, by edits and by rejects o
   CHECK(bench.server.head() == 21);
   CHECK(bench.join(2, 1).decided == 14);
   CHECK(bench.join(3, 2).author == 7);
-  CHECK(bench.ports.players.empty());  // author 6 has a row, author 7 has not edited
+  REQUIRE(bench.ports.players.size() == 1);  // author 7 has not edited, author 6 has a new name
+  CHECK(bench.ports.players[0].author == 6);
+}
+
+TEST_CASE("a new name of a known author is handed to the store once, without an edit", "[world]") {
+  WorldStart start;
+  start.players.push_back({6, key_pair_of(seed_of(1)).public_key, "old name"});
+  Bench bench(config(), start);
+  SECTION("at once while the log has room") {
+    bench.join(1, 1);
+    REQUIRE(bench.ports.players.size() == 1);
+    CHECK(bench.ports.records.empty());
+    bench.join(2, 1, 2);  // the same name again
+    bench.edit(1, 1, kAtOrigin);
+    bench.server.commit(bench.now());
+  }
+  SECTION("with the author's next edit otherwise") {
+    bench.ports.log_room = false;
+    bench.join(1, 1);
+    CHECK(bench.ports.players.empty());
+    bench.ports.log_room = true;
+    bench.edit(1, 1, kAtOrigin);
+    bench.server.commit(bench.now());
+  }
+  REQUIRE(bench.ports.players.size() == 1);
+  CHECK(bench.ports.players[0].author == 6);
+  CHECK(bench.ports.players[0].key == key_pair_of(seed_of(1)).public_key);
+  CHECK(bench.ports.players[0].name == "player1");
+  CHECK(bench.ports.records.size() == 1);
 }
 
 TEST_CASE("the durable watermark goes to every open session, and again if it did not fit", "[world]") {

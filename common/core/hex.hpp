@@ -1,0 +1,11 @@
+// Bytes as text: two lower-case hex digits each.
+#pragma once
+#include <string>
+
+#include "common/core/bytes.hpp"
+
+namespace runstone {
+
+std::string to_hex(ByteView bytes);
+
+}  // namespace runstone

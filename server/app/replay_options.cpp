@@ -1,0 +1,27 @@
+#include "server/app/replay_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace runstone {
+
+ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std::ostream& out,
+                                         std::ostream& err) {
+  ReplayOptions options;
+  CLI::App app(
+      "Rebuilds a world from base and edit log and compares digests. Exit code 0: equal, 1: different, "
+      "2: cannot read.",
+      "runstone-replay");
+  app.add_option("--world", options.world, "folder of the world; a server may be running")->required();
+  app.add_option("--at", options.at, "stop after this sequence number");
+  app.add_flag("--verify", options.verify, "also read and verify every row of every table");
+  app.add_option("--json", options.json, "write digests and report to this file");
+  app.add_option("--against", options.against, "compare with digests that a server or client wrote");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error, out, err) == 0 ? 0 : 2};
+  }
+  return {options, 0};
+}
+
+}  // namespace runstone

@@ -1,0 +1,30 @@
+// ReplayOptions: what the command line of runstone-replay says.
+#pragma once
+#include <iosfwd>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/ids.hpp"
+
+namespace runstone {
+
+struct ReplayOptions {
+  std::string world;  // folder
+  bool verify = false;
+  Sequence at = std::numeric_limits<Sequence>::max();
+  std::string json;                  // file; empty: none
+  std::vector<std::string> against;  // files
+};
+
+/// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.
+/// Both were printed, to `out` and `err`.
+struct ParsedReplayOptions {
+  std::optional<ReplayOptions> options;
+  int exit_code = 0;
+};
+ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std::ostream& out,
+                                         std::ostream& err);
+
+}  // namespace runstone

@@ -1,0 +1,44 @@
+#include "server/app/server_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "protocol/limits.hpp"
+#include "server/admin/server_config.hpp"
+
+namespace runstone {
+
+ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
+  ServerOptions out;
+  ImportRequest request;
+  CLI::App app{"Runstone world server"};
+  app.set_version_flag("--version", "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
+  app.add_option("--config", out.config_file, "TOML file of settings; environment and flags win over it");
+  app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
+  app.add_option("--port-file", out.port_file, "write the port here once the server listens");
+  app.add_option("--digests", out.digests_file, "write the digests of all edited chunks here on stop");
+  app.add_option("--generator", out.creation.generator, "new world: empty, flat or terrain");
+  app.add_option("--generator-parameters", out.creation.generator_parameters, "new world: TOML text");
+  app.add_option("--seed", out.creation.seed, "new world: seed of the generator");
+  app.add_option("--edge", out.creation.edge, "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
+  app.add_option("--materials", out.creation.materials_file, "new world: TOML file of materials");
+  for (const ConfigField& field : config_fields()) {
+    app.add_option_function<std::string>(
+           flag_name(field.name),
+           [&out, name = field.name](const std::string& text) { out.settings[name] = text; }, field.help)
+        ->group("Settings");
+  }
+  CLI::App* import = app.add_subcommand("import", "make a new world from a Luanti world");
+  import->add_option("--luanti", request.luanti, "folder that holds map.sqlite")->required();
+  import->add_option("--world", request.world, "folder of the new world")->required();
+  import->add_option("--edge", request.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
+  import->add_flag("--keep-all", request.keep_all, "keep plants, torches and the like as cubes");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
+  }
+  if (import->parsed()) out.import = request;
+  return {out, 0};
+}
+
+}  // namespace runstone

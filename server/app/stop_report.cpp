@@ -1,0 +1,64 @@
+#include "server/app/stop_report.hpp"
+
+#include <map>
+#include <optional>
+
+#include "common/core/key_text.hpp"
+
+namespace runstone {
+namespace {
+
+/// What is wrong with a snapshot (null: there is none) of a chunk that was in memory; nothing if it tells the
+/// same.
+std::optional<std::string> difference(const AuditEntry* stored, const AuditEntry& live) {
+  if (stored == nullptr) return "is missing, but the chunk was edited";
+  if (stored->version != live.version) {
+    return "stands at version=" + text_of(stored->version) +
+           ", the server stood at version=" + text_of(live.version);
+  }
+  if (stored->digest != live.digest) {
+    return "has digest=" + to_hex(stored->digest) + ", the server had digest=" + to_hex(live.digest);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean) {
+  StopReport report;
+  report.is_clean = is_clean;
+  report.live_chunks = live.size();
+  report.digests.world_id = store.meta().world_id;
+  const auto failed = [&](const std::string& what) {
+    if (report.error.empty()) report.error = what;
+  };
+  const auto range = store.log_range();
+  if (range) report.digests.seq = range->last.version.seq;
+  if (!range) failed(range.error().message());
+
+  std::map<ChunkKey, AuditEntry> entries;
+  const auto take_stored = [&](const ChunkKey& key) {
+    const auto stored = store.load_snapshot(key);
+    if (!stored) failed(stored.error().message());
+    if (stored && stored->has_value()) entries[key] = {key, (*stored)->version, (*stored)->digest};
+  };
+  if (const auto keys = store.snapshot_keys()) {
+    for (const auto& [key, version] : *keys) take_stored(key);
+  } else {
+    failed(keys.error().message());
+  }
+  for (const auto& [key, chunk] : live) {
+    const AuditEntry entry{key, chunk->version, digest_of(chunk->voxels)};
+    const auto stored = entries.find(key);
+    const auto differs = difference(stored == entries.end() ? nullptr : &stored->second, entry);
+    if (is_clean && differs) failed(store.file() + ": snapshot chunk=" + text_of(key) + ": " + *differs);
+    entries[key] = entry;
+  }
+  for (const auto& [key, entry] : entries) {
+    report.digests.chunks.push_back(entry);
+    report.world_digest = report.world_digest + world_digest_term(key, entry.digest);
+  }
+  return report;
+}
+
+}  // namespace runstone

@@ -1,0 +1,27 @@
+// StopReport: what a server leaves behind, summed up from what it held in memory when it stopped and what is
+// on disk. Both must tell the same world.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "server/app/digest_list.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+struct StopReport {
+  bool is_clean = false;  // everything ordered is on disk, in the log and in snapshots
+  Digest world_digest;    // over `digests`
+  /// All chunks ever edited: what was in memory recomputed from its runs there, the rest from its snapshot.
+  DigestList digests;
+  std::size_t live_chunks = 0;  // of `digests`: those that were in memory
+  std::string error;            // first row that cannot be read or is not what was in memory; empty if none
+};
+
+/// `live`: the edited chunks that were in memory, ascending. After a clean stop each has an equal snapshot;
+/// any other stop leaves chunks that are newer than theirs. Reads every snapshot.
+StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean);
+
+}  // namespace runstone

@@ -1,0 +1,88 @@
+#include "server/app/stop_report.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+constexpr ChunkKey kHere{0, {0, 0, 0}}, kThere{0, {1, 0, 0}}, kFar{0, {5, 0, 0}};
+
+/// A world with snapshots of two edited chunks.
+struct StoppedWorld {
+  TempFolder folder;
+  SplitMix64 rng{1};
+  ChunkPtr here = sample_chunk(rng, {1, 2}), there = sample_chunk(rng, {1, 3});
+  std::unique_ptr<Store> store = *create_world(folder.path(), sample_meta());
+
+  StoppedWorld() {
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->append({}, sample_records(rng, 1, 1, 3)).has_value());
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{kHere, here}, {kThere, there}};
+    REQUIRE(store->save_snapshots(chunks, 3).has_value());
+  }
+  StopReport with(const ChunkKey& key, const Chunk& live, bool is_clean = true) const {
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{key, std::make_shared<const Chunk>(live)}};
+    return sum_up(*store, chunks, is_clean);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a clean stop lists chunks from memory and the others from their snapshots", "[server]") {
+  const StoppedWorld world;
+  const StopReport report = world.with(kHere, *world.here);
+  CHECK(report.error.empty());
+  CHECK(report.is_clean);
+  CHECK(report.live_chunks == 1);
+  CHECK(report.digests.seq == 3);
+  CHECK(report.digests.world_id == sample_meta().world_id);
+  CHECK(report.digests.chunks == std::vector<AuditEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
+                                                         {kThere, {1, 3}, digest_of(world.there->voxels)}});
+  CHECK(report.world_digest ==
+        world_digest_term(kHere, world.here->digest) + world_digest_term(kThere, world.there->digest));
+}
+
+TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and named", "[server]") {
+  const StoppedWorld world;
+  Chunk live = *world.here;
+  ChunkKey key = kHere;
+  std::string error;
+  SECTION("other voxels behind an unchanged digest") {
+    const Material there = material_at(live.voxels, {5, 5, 5});
+    fill(live.voxels, index_of({5, 5, 5}, live.voxels.extent, live.voxels.order), 1, there == 1 ? 2 : 1);
+    error = "has digest=" + to_hex(world.here->digest) +
+            ", the server had digest=" + to_hex(digest_of(live.voxels));
+  }
+  SECTION("another version") {
+    live.version = {1, 3};
+    error = "stands at version=1:2, the server stood at version=1:3";
+  }
+  SECTION("no snapshot at all") {
+    key = kFar;
+    error = "is missing, but the chunk was edited";
+  }
+  const StopReport report = world.with(key, live);
+  CHECK(report.error ==
+        world.store->file() + ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
+  const AuditEntry entry{key, live.version, digest_of(live.voxels)};
+  CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
+  // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to complain of.
+  CHECK(world.with(key, live, false).error.empty());
+}
+
+TEST_CASE("a snapshot that cannot be read is named, and the sum goes on", "[server]") {
+  const StoppedWorld world;
+  REQUIRE(
+      raw_sql(world.folder / "world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1").empty());
+  const StopReport report = world.with(kHere, *world.here);
+  CHECK(report.error.find("world.sqlite: snapshot chunk=1,0,0: ") != std::string::npos);
+  CHECK(report.digests.chunks.size() == 1);
+}
