@@ -27,18 +27,19 @@ struct Shape {
   unsigned layer_shift, bit_shift, word_shift, bits_shift, words_shift;
 };
 
-/// One pass over the faces of one visibility class.
+/// One pass over the faces of one visibility class. kOne: all its voxels are of one material, so that nothing
+/// has to be compared.
+template <bool kTransparent, bool kOne>
 class Pass {
  public:
-  Pass(const DenseGrid& grid, const OccupancyMask& mask, bool transparent, BinaryScratch& scratch,
-       QuadLayers& out)
+  Pass(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch, QuadLayers& out)
       : grid_(grid),
         mask_(mask),
         e_(grid.sides()),
         axes_(axes_of(grid.order())),
-        own_(transparent ? mask.transparent : mask.opaque),
-        transparent_(transparent),
-        one_(transparent ? mask.one_transparent : mask.one_opaque),
+        own_(kTransparent ? mask.transparent.data() : mask.opaque.data()),
+        opaque_(mask.opaque.data()),
+        one_material_(kTransparent ? mask.transparent_material : mask.opaque_material),
         scratch_(scratch),
         out_(out) {}
 
@@ -47,9 +48,11 @@ class Pass {
       const auto direction = static_cast<Direction>(d);
       const Axis axis = axis_of(direction);
       if (axis == axes_[0]) {
-        across_bits(direction);
+        across_fast(direction);
+      } else if (axis == axes_[1]) {
+        across_middle(direction);
       } else {
-        across_words(direction, axis == axes_[1]);
+        across_slow(direction);
       }
     }
     out_.first[kDirectionCount * kSideMax] = count_;
@@ -63,71 +66,79 @@ class Pass {
 
   /// What hides faces of this pass whatever it is made of.
   Word hiding(std::size_t word) const {
-    return transparent_ ? mask_.opaque[word] | (one_ ? mask_.transparent[word] : 0) : mask_.opaque[word];
+    if constexpr (kTransparent && kOne) return opaque_[word] | own_[word];
+    return opaque_[word];
   }
 
-  /// Faces of line m, s towards the line `step` further: a word of bits along the fastest axis.
+  /// Faces of line m, s towards the line `word_step` words, `voxel_step` voxels further, as bits along the
+  /// line.
   Word faces(std::uint32_t m, std::uint32_t s, std::ptrdiff_t word_step, std::ptrdiff_t voxel_step) const {
     const std::size_t word = word_at(m, s);
     const std::size_t other = word + static_cast<std::size_t>(word_step);
     const Word shown = own_[word] & ~hiding(other);
-    if (!transparent_ || one_ || (shown & mask_.transparent[other]) == 0) return shown;
+    if constexpr (!kTransparent || kOne) return shown;
+    if ((shown & own_[other]) == 0) return shown;
     const Material* const line = grid_.line(m, s);
-    return shown & (~mask_.transparent[other] | differing_bits(line, line + voxel_step, e_.f));
+    return shown & (~own_[other] | differing_bits(line, line + voxel_step, e_.f));
   }
 
-  /// Layers whose words lie in them: of the middle or the slowest axis.
-  void across_words(Direction direction, bool middle) {
-    const std::uint32_t layers = middle ? e_.m : e_.s;
-    const std::uint32_t words = middle ? e_.s : e_.m;
-    const Shape shape(direction, axes_[0], middle ? axes_[2] : axes_[1]);
+  /// Layers of the slowest axis: their words lie together.
+  void across_slow(Direction direction) {
+    const Shape shape(direction, axes_[0], axes_[1]);
     const std::ptrdiff_t sign = is_positive(direction) ? 1 : -1;
-    const std::ptrdiff_t word_step = sign * (middle ? 1 : static_cast<std::ptrdiff_t>(e_.m) + 2);
-    const std::ptrdiff_t voxel_step = sign * (middle ? grid_.line_stride() : grid_.layer_stride());
-    const std::ptrdiff_t layer_stride = middle ? grid_.line_stride() : grid_.layer_stride();
-    const std::ptrdiff_t line_stride = middle ? grid_.layer_stride() : grid_.line_stride();
     Plane plane;
-    for (std::uint32_t layer = 0; layer < layers; ++layer) {
-      start_layer(direction, layer);
+    for (std::uint32_t s = 0; s < e_.s; ++s) {
+      start_layer(direction, s);
       Word any = 0;
-      for (std::uint32_t i = 0; i < words; ++i) {
-        plane[i] = middle ? faces(layer, i, word_step, voxel_step) : faces(i, layer, word_step, voxel_step);
-        any |= plane[i];
+      for (std::uint32_t m = 0; m < e_.m; ++m) {
+        plane[m] = faces(m, s, sign * (static_cast<std::ptrdiff_t>(e_.m) + 2), sign * grid_.layer_stride());
+        any |= plane[m];
       }
-      if (any != 0) {
-        merge<true>(plane.data(), words, grid_.origin() + layer * layer_stride, 1, line_stride, shape, layer);
+      if (any != 0) merge<true>(plane.data(), e_.m, grid_.line(0, s), 1, grid_.line_stride(), shape, s);
+    }
+    end_layers(direction, e_.s);
+  }
+
+  /// Layers of the middle axis, as many at a time as words share a cache line.
+  void across_middle(Direction direction) {
+    constexpr std::uint32_t kAtOnce = 8;
+    const Shape shape(direction, axes_[0], axes_[2]);
+    const std::ptrdiff_t sign = is_positive(direction) ? 1 : -1;
+    std::array<Plane, kAtOnce> planes;
+    for (std::uint32_t first = 0; first < e_.m; first += kAtOnce) {
+      const std::uint32_t layers = std::min(kAtOnce, e_.m - first);
+      std::array<Word, kAtOnce> any{};
+      for (std::uint32_t s = 0; s < e_.s; ++s) {
+        for (std::uint32_t i = 0; i < layers; ++i) {
+          planes[i][s] = faces(first + i, s, sign, sign * grid_.line_stride());
+          any[i] |= planes[i][s];
+        }
+      }
+      for (std::uint32_t i = 0; i < layers; ++i) {
+        const std::uint32_t m = first + i;
+        start_layer(direction, m);
+        if (any[i] != 0)
+          merge<true>(planes[i].data(), e_.s, grid_.line(m, 0), 1, grid_.layer_stride(), shape, m);
       }
     }
-    end_layers(direction, layers);
+    end_layers(direction, e_.m);
   }
 
-  /// Layers across the bits: each slow layer's words are turned, so that a bit becomes a layer.
-  void across_bits(Direction direction) {
+  /// Layers of the fastest axis, across the bits: each slow layer's words are turned, so that a bit becomes a
+  /// layer.
+  void across_fast(Direction direction) {
     const bool positive = is_positive(direction);
     const Shape shape(direction, axes_[1], axes_[2]);
     std::vector<Word>& planes = scratch_.planes;  // word s of layer f: planes[f * kBinarySideMax + s]
     planes.assign(std::size_t{kBinarySideMax} * kBinarySideMax, 0);
-    const Word before_bit = transparent_ ? 5 : 1;  // of `ends`; voxels of one transparent material hide too
     Plane slab;
+    Word any = 0;
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       std::uint32_t faces_left = kScatteredMax;
       for (std::uint32_t m = 0; m < e_.m; ++m) {
-        const std::size_t word = word_at(m, s);
-        const Word ends = mask_.ends[word] & (before_bit << (positive ? 1 : 0));
-        const auto step = [&](Word w, bool end) {
-          return positive ? w >> 1 | Word{end} << (e_.f - 1) : w << 1 | Word{end};
-        };
-        const bool end_hides = transparent_ && !one_ ? (ends & 3) != 0 : ends != 0;
-        Word shown = own_[word] & ~step(hiding(word), end_hides);
-        if (transparent_ && !one_) {
-          const Word beside = step(mask_.transparent[word], ends > 3);
-          if ((shown & beside) != 0) {
-            const Material* const line = grid_.line(m, s);
-            shown &= ~beside | differing_bits(line, line + (positive ? 1 : -1), e_.f);
-          }
-        }
-        slab[m] = shown;
-        for (Word left = shown; left != 0 && faces_left != 0; left &= left - 1, --faces_left) {
+        slab[m] = faces_along(m, s, positive);
+        any |= slab[m];
+        for (Word left = slab[m]; left != 0 && faces_left != 0; left &= left - 1, --faces_left) {
           planes[static_cast<std::size_t>(std::countr_zero(left)) * kBinarySideMax + s] |= Word{1} << m;
         }
       }
@@ -139,6 +150,7 @@ class Pass {
     }
     for (std::uint32_t f = 0; f < e_.f; ++f) {
       start_layer(direction, f);
+      if ((any >> f & 1) == 0) continue;
       merge<false>(planes.data() + f * kBinarySideMax, e_.s, grid_.origin() + f, grid_.line_stride(),
                    grid_.layer_stride(), shape, f);
     }
@@ -146,17 +158,34 @@ class Pass {
   }
   static constexpr std::uint32_t kScatteredMax = 192;  // about what a transposition costs
 
-  /// Materials from `at` on that equal `material`, `count` at most.
+  /// Faces of line m, s towards the next or the last voxel of the same line.
+  Word faces_along(std::uint32_t m, std::uint32_t s, bool positive) const {
+    const std::size_t word = word_at(m, s);
+    const unsigned ends = mask_.ends[word] >> (positive ? 1 : 0);  // bit 0: opaque beyond, bit 2: transparent
+    const auto moved = [&](Word w, bool end) {
+      return positive ? w >> 1 | Word{end} << (e_.f - 1) : w << 1 | Word{end};
+    };
+    const Word shown = own_[word] & ~moved(hiding(word), (ends & (kTransparent && kOne ? 5u : 1u)) != 0);
+    if constexpr (!kTransparent || kOne) return shown;
+    const Word beside = moved(own_[word], (ends & 4) != 0);
+    if ((shown & beside) == 0) return shown;
+    const Material* const line = grid_.line(m, s);
+    return shown & (~beside | differing_bits(line, line + (positive ? 1 : -1), e_.f));
+  }
+
+  /// How many of `count` materials from `at` on equal `material`, before the first that does not.
   template <bool kContiguous>
   static std::uint32_t equal_run(const Material* at, std::ptrdiff_t stride, std::uint32_t count,
                                  Material material) {
+    if constexpr (kOne) return count;
     if constexpr (kContiguous) return equal_prefix(at, count, material);
     std::uint32_t i = 0;
     while (i < count && at[i * stride] == material) ++i;
     return i;
   }
 
-  /// Covers the set bits of a plane by rectangles. `at` is the voxel of bit 0 of word 0.
+  /// Covers the set bits of a plane by rectangles, and clears the plane's later words. `at` is the voxel of
+  /// bit 0 of word 0.
   template <bool kContiguous>
   void merge(Word* plane, std::uint32_t words, const Material* at, std::ptrdiff_t bit_stride,
              std::ptrdiff_t word_stride, const Shape& shape, std::uint32_t layer) {
@@ -166,16 +195,16 @@ class Pass {
       Word bits = plane[w];
       while (bits != 0) {
         const auto from = static_cast<std::uint32_t>(std::countr_zero(bits));
-        auto length = static_cast<std::uint32_t>(std::countr_one(bits >> from));
         const Material* const voxel = at + from * bit_stride;
-        const Material material = *voxel;
-        if (!one_) length = equal_run<kContiguous>(voxel, bit_stride, length, material);
+        const Material material = kOne ? one_material_ : *voxel;
+        const std::uint32_t length = equal_run<kContiguous>(
+            voxel, bit_stride, static_cast<std::uint32_t>(std::countr_one(bits >> from)), material);
         const Word run = low_bits(length) << from;
         bits ^= run;
         const Material* above = voxel + word_stride;
         std::uint32_t end = w + 1;
         for (; end < words && (plane[end] & run) == run; ++end, above += word_stride) {
-          if (!one_ && equal_run<kContiguous>(above, bit_stride, length, material) != length) break;
+          if (equal_run<kContiguous>(above, bit_stride, length, material) != length) break;
           plane[end] ^= run;
         }
         *out++ = {base | std::uint64_t{from} << shape.bit_shift | std::uint64_t{w} << shape.word_shift |
@@ -201,12 +230,25 @@ class Pass {
   const OccupancyMask& mask_;
   OrderedExtent e_;
   std::array<Axis, 3> axes_;
-  const std::vector<Word>& own_;
-  bool transparent_, one_;
+  const Word* own_;
+  const Word* opaque_;
+  Material one_material_;
   BinaryScratch& scratch_;
   QuadLayers& out_;
   std::uint32_t count_ = 0;
 };
+
+template <bool kTransparent>
+void run_pass(const DenseGrid& grid, const OccupancyMask& mask, bool any, bool one, BinaryScratch& scratch,
+              QuadLayers& out) {
+  if (!any) {
+    out.clear();
+  } else if (one) {
+    Pass<kTransparent, true>(grid, mask, scratch, out).run();
+  } else {
+    Pass<kTransparent, false>(grid, mask, scratch, out).run();
+  }
+}
 
 }  // namespace
 
@@ -215,16 +257,8 @@ void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, Binary
   const OrderedExtent e = grid.sides();
   RUNSTONE_ASSERT(e.f <= kBinarySideMax && e.m <= kBinarySideMax && e.s <= kBinarySideMax);
   RUNSTONE_ASSERT(mask.opaque.size() == std::size_t{e.m + 2} * (e.s + 2));
-  if (mask.any_opaque) {
-    Pass(grid, mask, false, scratch, out.opaque).run();
-  } else {
-    out.opaque.clear();
-  }
-  if (mask.any_transparent) {
-    Pass(grid, mask, true, scratch, out.transparent).run();
-  } else {
-    out.transparent.clear();
-  }
+  run_pass<false>(grid, mask, mask.any_opaque, mask.one_opaque, scratch, out.opaque);
+  run_pass<true>(grid, mask, mask.any_transparent, mask.one_transparent, scratch, out.transparent);
 }
 
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility, BinaryScratch& scratch,

@@ -26,7 +26,7 @@ struct BinaryScratch {
 void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, BinaryScratch& scratch,
                         ChunkMesh& out);
 
-/// The same from the grid alone: builds the mask first.
+/// The same from a grid alone: builds the mask first.
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility, BinaryScratch& scratch,
                         ChunkMesh& out);
 

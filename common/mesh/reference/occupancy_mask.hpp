@@ -21,10 +21,18 @@ struct OccupancyMask {
   /// No two opaque (transparent) materials occur, so that faces merge and cull without a look at the grid.
   bool one_opaque = true, one_transparent = true;
   bool any_opaque = false, any_transparent = false;
+  Material opaque_material = kEmpty,
+           transparent_material = kEmpty;  // one that occurs: the only one, if it is
+  friend bool operator==(const OccupancyMask&, const OccupancyMask&) = default;
 };
 
 /// Replaces `mask` by that of `grid`. Materials are looked up where they change along a line. O(volume / 8).
 /// Requires sides up to kBinarySideMax.
 void occupancy_of(const DenseGrid& grid, const VisibilityTable& visibility, OccupancyMask& mask);
+
+/// The same for a grid that was decoded from `chunk` and `neighbours`, with the words inside made from the
+/// runs. O(runs + lines).
+void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours, const DenseGrid& grid,
+                          const VisibilityTable& visibility, OccupancyMask& mask);
 
 }  // namespace runstone::reference

@@ -150,6 +150,29 @@ TEST_CASE("a ready mask gives the same mesh as the grid alone", "[mesh][referenc
   }
 }
 
+TEST_CASE("a mask made from runs is the mask of the decoded grid", "[mesh][reference]") {
+  SplitMix64 rng(8);
+  OccupancyMask from_runs, from_grid;
+  int run_dense = 0;
+  for (int round = 0; round < 1000; ++round) {
+    MeshScene scene = random_scene(rng, 64);
+    if (rng.below(2) == 0) {  // what lies beyond the lines' ends is then known without a look
+      const auto fast = 2 * static_cast<std::size_t>(axes_of(scene.chunk.order)[0]);
+      for (const std::size_t d : {fast, fast + 1}) {
+        if (scene.neighbours[d]) scene.neighbours[d] = uniform_chunk(scene.neighbours[d]->extent, kGlass);
+      }
+    }
+    const DenseGrid grid = grid_of(scene);
+    occupancy_of(grid, mesh_visibility(), from_grid);
+    occupancy_of_decoded(scene.chunk, scene.pointers(), grid, mesh_visibility(), from_runs);
+    CAPTURE(round);
+    REQUIRE(from_runs == from_grid);
+    const OrderedExtent e = grid.sides();
+    run_dense += scene.chunk.runs.size() > std::size_t{6} * e.m * e.s ? 1 : 0;
+  }
+  CHECK(run_dense > 0);
+}
+
 TEST_CASE("decoding counts as a dense expansion, and so does sampling an octree", "[mesh][reference]") {
   const MeshScene scene{uniform_chunk(kSmall, kStone), {}};
   std::uint64_t before = dense_expansions();
