@@ -3,7 +3,7 @@
 FROM debian:bookworm-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends \
       ca-certificates cmake ninja-build g++ pkg-config libasio-dev libflatbuffers-dev flatbuffers-compiler \
-      flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libzstd-dev libxxhash-dev libsodium-dev \
+      flatbuffers-compiler-dev libspdlog-dev libfmt-dev libsqlite3-dev libzstd-dev libxxhash-dev libhwy-dev libsodium-dev \
       libcli11-dev libtomlplusplus-dev nlohmann-json3-dev && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./

@@ -26,6 +26,8 @@ class RdmScratch {
   RdmScratch& operator=(RdmScratch&&) noexcept;
   struct State;
   State& state() { return *state_; }
+  /// Meshes a row at a time, without vector instructions: same quads, for tests and measurements.
+  void use_plain_path(bool plain);
 
  private:
   std::unique_ptr<State> state_;

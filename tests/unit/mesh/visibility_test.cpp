@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/mesh/rdm/mesh_run.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {
@@ -30,19 +29,6 @@ TEST_CASE("materials beyond the table count as opaque and air as empty", "[mesh]
   CHECK(mesh_visibility()[kMeshMaterialCount] == Visibility::opaque);
   CHECK(mesh_visibility()[65535] == Visibility::opaque);
   CHECK(mesh_visibility()[kEmpty] == Visibility::empty);
-}
-
-TEST_CASE("the mesher's look-up for two runs is the rule of the table, both ways", "[mesh]") {
-  const VisibilityTable& v = mesh_visibility();
-  for (Material a = 0; a < kMeshMaterialCount + 2; ++a) {
-    for (Material b = 0; b < kMeshMaterialCount + 2; ++b) {
-      const unsigned faces = rdm::faces_between({1, a, v[a]}, {1, b, v[b]});
-      CAPTURE(a, b);
-      CHECK(((faces & 1u) != 0) == v.face_drawn(a, b));
-      CHECK(((faces & 2u) != 0) == v.face_drawn(b, a));
-      CHECK(faces < 4);
-    }
-  }
 }
 
 }  // namespace

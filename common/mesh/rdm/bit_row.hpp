@@ -1,0 +1,59 @@
+// Bit rows: one line of a layer as bits, in the narrowest integer that holds it. Sides up to 64 need a Row64,
+// longer ones a Row128; code that works on rows is a template over the two.
+#pragma once
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/core/assert.hpp"
+
+namespace runstone::rdm {
+
+using Row64 = std::uint64_t;
+__extension__ using Row128 = unsigned __int128;
+
+template <class Row>
+inline constexpr unsigned kRowBits = sizeof(Row) * 8;
+
+/// Bits [0, count) set. Requires count <= kRowBits.
+template <class Row>
+constexpr Row bits_below(unsigned count) {
+  return count == kRowBits<Row> ? ~Row{0} : (Row{1} << count) - 1;
+}
+
+/// Place of the lowest set bit. Requires row != 0.
+constexpr unsigned lowest_bit(Row64 row) { return static_cast<unsigned>(std::countr_zero(row)); }
+constexpr unsigned lowest_bit(Row128 row) {
+  const auto low = static_cast<Row64>(row);
+  return low != 0 ? lowest_bit(low) : 64 + lowest_bit(static_cast<Row64>(row >> 64));
+}
+
+/// Place of the highest set bit. Requires row != 0.
+constexpr unsigned highest_bit(Row64 row) { return 63u - static_cast<unsigned>(std::countl_zero(row)); }
+constexpr unsigned highest_bit(Row128 row) {
+  const auto high = static_cast<Row64>(row >> 64);
+  return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<Row64>(row));
+}
+
+/// Bit i of the result is the parity of bits [0, i] of `row`: bits that mark changes become the state itself.
+template <class Row>
+constexpr Row prefix_xor(Row row) {
+  for (unsigned shift = 1; shift < kRowBits<Row>; shift *= 2) row ^= row << shift;
+  return row;
+}
+
+/// Swaps rows and bits of a square of kRowBits rows. Source: recursive block swap (Hacker's Delight, 7-3).
+template <class Row>
+void transpose(std::array<Row, kRowBits<Row>>& rows) {
+  Row mask = bits_below<Row>(kRowBits<Row> / 2);
+  for (unsigned width = kRowBits<Row> / 2; width != 0; width /= 2, mask ^= mask << width) {
+    for (unsigned r = 0; r < kRowBits<Row>; r = (r + width + 1) & ~width) {
+      const Row swap = ((rows[r] >> width) ^ rows[r + width]) & mask;
+      rows[r] ^= swap << width;
+      rows[r + width] ^= swap;
+    }
+  }
+}
+
+}  // namespace runstone::rdm

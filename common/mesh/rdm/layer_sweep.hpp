@@ -1,0 +1,97 @@
+// The layer sweep: meshes a chunk in one pass over the layers of its slowest axis. Only two layers are ever
+// there as rows of bits (one row per line, one bit per voxel, one plane per bit of a material's code), made
+// from the runs that lie in them. Internal to rdm; docs/meshing.md draws it.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "common/mesh/rdm/bit_row.hpp"
+#include "common/mesh/rdm/material_codes.hpp"
+#include "common/mesh/rdm/quad_buckets.hpp"
+#include "common/mesh/rdm/quad_shape.hpp"
+#include "common/runs/axis_order.hpp"
+
+namespace runstone::rdm {
+
+/// Covers [end of the run before it, end) of the flattened chunk.
+struct CodedRun {
+  std::uint32_t end = 0;
+  Code code = 0;
+};
+
+/// Bits of a code: one for opaque, one for transparent, up to 16 for the number.
+inline constexpr unsigned kPlanesMax = 18;
+
+/// A side of the chunk by the rank of its axis: slow, middle, fast; negative before positive.
+enum class Side : std::uint8_t {
+  slow_neg = 0,
+  slow_pos = 1,
+  mid_neg = 2,
+  mid_pos = 3,
+  fast_neg = 4,
+  fast_pos = 5
+};
+
+/// What lies beyond the chunk, by Side, as rows of bits: plane 0 says which voxels hide a face whatever it is
+/// of; the others are the neighbour's planes, there only where a transparent voxel may meet its own kind.
+/// Rows and bits: slow sides a row per middle coordinate and a bit per fast one; middle sides slow, fast;
+/// fast sides slow, middle.
+template <class Row>
+struct Borders {
+  using Rows = std::array<Row, kRowBits<Row>>;
+  std::array<std::array<Rows, kPlanesMax>, 6> plane;
+  std::array<bool, 6> clear{};  // whether plane by plane comparison is needed there
+};
+
+/// Rows of one layer, with room before and behind for steps of whole vectors.
+template <class Row>
+struct alignas(64) LayerRows {
+  static constexpr std::size_t kBefore = 64 / sizeof(Row);
+  static constexpr std::size_t kBehind = 64 / sizeof(Row);
+  std::array<Row, kBefore + kRowBits<Row> + kBehind> slots{};
+  Row* data() { return slots.data() + kBefore; }
+  const Row* data() const { return slots.data() + kBefore; }
+};
+
+/// Faces of one side in one layer, and where their strips start and end.
+template <class Row>
+struct FaceRows {
+  LayerRows<Row> face, start, end;
+};
+
+template <class Row>
+struct SweepState {
+  using Rows = LayerRows<Row>;
+  // Two layers each, the one at hand and the one before it.
+  std::array<std::array<Rows, kPlanesMax>, 2> plane;
+  std::array<Rows, 2> solid;   // voxels with faces
+  std::array<Rows, 2> hiding;  // voxels that hide a face, with the middle neighbours' in the slots around
+  std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
+  Rows cut_slow;
+  std::array<std::array<FaceRows<Row>, 2>, 6> faces;
+  Rows changed, closing, opening;
+  /// The row in which the rectangle that is open here began: by side, then end of the strip (slow), row and
+  /// end (mid), end and bit (fast).
+  std::array<std::array<std::uint8_t, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 6> row_first;
+};
+
+struct SweepInput {
+  std::span<const CodedRun> runs;
+  OrderedExtent extent{};
+  const MaterialCodes* codes = nullptr;
+  std::array<Direction, 6> direction{};  // by Side
+  std::array<QuadShape, 6> shape;        // by Side
+  QuadBuckets* opaque = nullptr;
+  QuadBuckets* transparent = nullptr;
+};
+
+/// Puts the quads of the chunk into the buckets. Requires sides up to kRowBits<Row>, runs that tile the
+/// extent and at least one material that is not empty. By the best instructions the machine has.
+void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
+void sweep_layers(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state);
+
+/// The same, a row at a time: the plain path that the others must agree with.
+void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
+
+}  // namespace runstone::rdm
