@@ -2,12 +2,13 @@
 
 #include "common/generate/flat_generator.hpp"
 #include "common/generate/generator_parameters.hpp"
+#include "common/generate/scenarios/scenario_world.hpp"
 #include "common/generate/terrain_generator.hpp"
 
 namespace runstone {
 
 Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin, const MaterialTable& materials) {
-  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain") {
+  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain" && pin.name != "scenario") {
     return fail(ErrorCode::not_found, "generator name is unknown to this build");
   }
   if (pin.version != 1) return fail(ErrorCode::bad_version, "generator version is unknown to this build");
@@ -19,6 +20,11 @@ Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin, const
     const auto parameters = parse_flat_parameters(pin.parameters);
     if (!parameters) return Unexpected<Error>{parameters.error()};
     return FlatGenerator::make(*parameters, materials);
+  }
+  if (pin.name == "scenario") {
+    const auto parameters = parse_scenario_parameters(pin.parameters);
+    if (!parameters) return Unexpected<Error>{parameters.error()};
+    return ScenarioWorld::make(*parameters, materials);
   }
   const auto parameters = parse_terrain_parameters(pin.parameters);
   if (!parameters) return Unexpected<Error>{parameters.error()};

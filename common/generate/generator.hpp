@@ -16,7 +16,7 @@ namespace runstone {
 /// What pins a generator. `parameters` is canonical TOML of that generator alone (empty for its defaults);
 /// see generator_parameters.hpp, whose to_toml() writes it.
 struct GeneratorPin {
-  std::string name;  // "empty", "flat", "terrain"
+  std::string name;  // "empty", "flat", "terrain", "scenario"
   std::uint32_t version = 1;
   std::uint64_t seed = 0;
   std::string parameters;

@@ -33,6 +33,13 @@ void each_field(P& p, const TerrainParameters& d, Visit&& visit) {
   visit("peak_level", p.peak_level, d.peak_level, kHeightMin, kHeightMax);
 }
 
+template <class P, class Visit>
+void each_field(P& p, const ScenarioParameters& d, Visit&& visit) {
+  visit("number", p.number, d.number, 1, 37);
+  visit("edge", p.edge, d.edge, 8, 128);
+  visit("material", p.material, d.material, 0, 0);
+}
+
 struct FieldReader {
   const toml::table& table;
   std::size_t known = 0;
@@ -116,8 +123,12 @@ Result<FlatParameters> parse_flat_parameters(std::string_view toml) {
 Result<TerrainParameters> parse_terrain_parameters(std::string_view toml) {
   return parse<TerrainParameters>(toml);
 }
+Result<ScenarioParameters> parse_scenario_parameters(std::string_view toml) {
+  return parse<ScenarioParameters>(toml);
+}
 
 std::string to_toml(const FlatParameters& parameters) { return write(parameters); }
 std::string to_toml(const TerrainParameters& parameters) { return write(parameters); }
+std::string to_toml(const ScenarioParameters& parameters) { return write(parameters); }
 
 }  // namespace runstone

@@ -39,13 +39,23 @@ struct TerrainParameters {
   friend bool operator==(const TerrainParameters&, const TerrainParameters&) = default;
 };
 
+/// "scenario": one of the thesis' 37 profiling scenarios but the 5th, 3 x 3 x 3 times the same model.
+struct ScenarioParameters {
+  std::int32_t number = 1;  // 1 .. 37, not 5
+  std::int32_t edge = 32;   // voxels of a model: 8, 16, 32, 64 or 128
+  std::string material = "stone";
+  friend bool operator==(const ScenarioParameters&, const ScenarioParameters&) = default;
+};
+
 /// Fail with bad_value on bytes that are no TOML, an unknown key, a wrong type or a number outside its range.
 /// Empty text gives the defaults.
 Result<FlatParameters> parse_flat_parameters(std::string_view toml);
 Result<TerrainParameters> parse_terrain_parameters(std::string_view toml);
+Result<ScenarioParameters> parse_scenario_parameters(std::string_view toml);
 
 /// The canonical text: equal parameters have equal text, and the parse of it gives them back.
 std::string to_toml(const FlatParameters& parameters);
 std::string to_toml(const TerrainParameters& parameters);
+std::string to_toml(const ScenarioParameters& parameters);
 
 }  // namespace runstone

@@ -16,7 +16,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
   app.add_option("--port-file", out.port_file, "write the port here once the server listens");
   app.add_option("--digests", out.digests_file, "write the digests of all edited chunks here on stop");
-  app.add_option("--generator", out.creation.generator, "new world: empty, flat or terrain");
+  app.add_option("--generator", out.creation.generator, "new world: empty, flat, terrain or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters, "new world: TOML text");
   app.add_option("--seed", out.creation.seed, "new world: seed of the generator");
   app.add_option("--edge", out.creation.edge, "new world: edge of a chunk, 16, 32, 64 or 128 voxels");

@@ -41,6 +41,16 @@ RunChunk scenario_chunk(const ScenarioModel& model, Material material) {
   return out.finish();
 }
 
+Result<std::unique_ptr<Generator>> ScenarioWorld::make(const ScenarioParameters& parameters,
+                                                       const MaterialTable& materials) {
+  const auto model =
+      scenario_model(static_cast<unsigned>(parameters.number), static_cast<unsigned>(parameters.edge));
+  if (!model) return Unexpected<Error>{model.error()};
+  const auto material = materials.find(parameters.material);
+  if (!material) return fail(ErrorCode::not_found, "the scenario's material is none of the table");
+  return std::unique_ptr<Generator>(std::make_unique<ScenarioWorld>(*model, *material));
+}
+
 ColumnBits ScenarioWorld::column(std::int32_t x, std::int32_t z) const {
   const auto inside = [this](std::int32_t at) {
     return static_cast<unsigned>(at - floor_div(at, edge()) * edge());

@@ -6,6 +6,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/generate/generator.hpp"
+#include "common/generate/generator_parameters.hpp"
 #include "common/generate/scenarios/scenario_model.hpp"
 
 namespace runstone {
@@ -16,6 +17,9 @@ RunChunk scenario_chunk(const ScenarioModel& model, Material material);
 
 class ScenarioWorld final : public Generator {
  public:
+  /// Fails as scenario_model() does, and with not_found if the material is none of the table.
+  static Result<std::unique_ptr<Generator>> make(const ScenarioParameters& parameters,
+                                                 const MaterialTable& materials);
   ScenarioWorld(const ScenarioModel& model, Material material) : model_(model), material_(material) {}
 
   /// Any place and extent, not only whole models. Order yzx.

@@ -57,6 +57,40 @@ TEST_CASE("a player stands on the highest voxel of a scenario's world", "[genera
   CHECK(full.y_max() == 256);
 }
 
+TEST_CASE("a pin makes a scenario's world, or says why not", "[generate][scenarios]") {
+  const auto made = [](const char* parameters) {
+    MaterialTable materials;
+    for (const char* name : {"dirt", "stone"}) {
+      MaterialInfo info;
+      info.name = name;
+      REQUIRE(materials.add(info).has_value());
+    }
+    return make_generator({"scenario", 1, 0, parameters}, materials);
+  };
+  const auto code = [&](const char* parameters) {
+    const auto world = made(parameters);
+    REQUIRE_FALSE(world.has_value());
+    return world.error().code;
+  };
+  const auto world = made("number = 7\nedge = 16\n");
+  REQUIRE(world.has_value());
+  CHECK((*world)->generate({-16, 0, 16}, Extent::cube(16)) == scenario_chunk(*scenario_model(7, 16), 2));
+  CHECK(made("").has_value());
+  CHECK(made("material = \"dirt\"").has_value());
+  CHECK(code("material = \"cheese\"") == ErrorCode::not_found);
+  CHECK(code("number = 5") == ErrorCode::not_found);
+  for (const char* bad : {"number = 0", "number = 38", "number = -1", "edge = 0", "edge = 24", "edge = 256",
+                          "height = 3", "number = \"7\"", "number ="}) {
+    CAPTURE(bad);
+    CHECK(code(bad) == ErrorCode::bad_value);
+  }
+  const ScenarioParameters odd{14, 64, "dirt"};
+  CHECK(to_toml(odd) == "number = 14\nedge = 64\nmaterial = \"dirt\"\n");
+  const auto read = parse_scenario_parameters(to_toml(odd));
+  REQUIRE(read.has_value());
+  CHECK(*read == odd);
+}
+
 TEST_CASE("around a scenario's world is nothing, in one run", "[generate][scenarios]") {
   const ScenarioWorld full(*scenario_model(1, 32), kSolid);
   CHECK(full.generate({64, 0, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
