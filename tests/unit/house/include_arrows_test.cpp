@@ -73,6 +73,7 @@ const std::map<std::string, std::vector<std::string>, std::less<>>& arrows() {
 struct Ban {
   std::vector<std::string> folders;
   std::vector<std::string> headers;
+  const char* rule = "this folder does no I/O, reads no clock and starts no thread";
 };
 
 const std::vector<Ban>& bans() {
@@ -84,6 +85,9 @@ const std::vector<Ban>& bans() {
       {{"server/world", "server/interest", "client/replica"},
        {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread", "fstream",
         "random", "unistd.h", "sys/time.h", "sys/socket.h"}},
+      {{"protocol", "server", "client", "common/mesh/rdm"},
+       {"common/mesh/reference/"},
+       "the reference meshers are dense: benchmarks and tests only"},
   };
   return kBans;
 }
@@ -113,7 +117,7 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
                                          [&](const auto& f) { return below(file.path, f); });
         if (applies && std::any_of(ban.headers.begin(), ban.headers.end(),
                                    [&](const auto& banned) { return names(include.path, banned); })) {
-          complain("this folder does no I/O, reads no clock and starts no thread");
+          complain(ban.rule);
         }
       }
       const bool ours = std::any_of(std::begin(kRoots), std::end(kRoots), [&](std::string_view root) {
@@ -192,6 +196,9 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   }
   CHECK(is_wrong("server/world/authority.cpp", "#include <chrono>"));
   CHECK(is_wrong("client/replica/replica.cpp", "#include <asio.hpp>"));
+  // Out of the product.
+  CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"common/mesh/reference/binary_greedy.hpp\""));
+  CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/mesh/reference/dense_grid.hpp\""));
   // Written in other ways.
   CHECK(is_wrong("common/core/ids.hpp", "  #  include\t\"common/runs/run_list.hpp\""));
   CHECK(is_wrong("common/core/ids.hpp", "#include <common/core/hash.hpp>"));
