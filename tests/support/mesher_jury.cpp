@@ -44,7 +44,7 @@ std::string MesherJury::fault(const MeshScene& scene) {
   mesh_.clear();
   const auto sides = scene.chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) > kBinarySideMax) return {};
-  mesh_binary_greedy(grid_, mesh_visibility(), binary_, mesh_);
+  mesh_binary_greedy(scene.chunk, scene.pointers(), mesh_visibility(), binary_, mesh_);
   if (auto wrong = mesh_difference(mesh_, scene.chunk.extent, mesh_materials(), exposed)) {
     return "binary greedy: " + *wrong;
   }

@@ -267,4 +267,11 @@ void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility
   mesh_binary_greedy(grid, scratch.mask, scratch, out);
 }
 
+void mesh_binary_greedy(const RunChunk& chunk, const GridNeighbours& neighbours,
+                        const VisibilityTable& visibility, BinaryScratch& scratch, ChunkMesh& out) {
+  decode(chunk, neighbours, scratch.layer, scratch.grid);
+  occupancy_of_decoded(chunk, neighbours, scratch.grid, visibility, scratch.mask);
+  mesh_binary_greedy(scratch.grid, scratch.mask, scratch, out);
+}
+
 }  // namespace runstone::reference

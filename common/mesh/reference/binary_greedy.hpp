@@ -15,7 +15,9 @@ namespace runstone::reference {
 
 /// Buffers reused between calls; steady state allocates nothing. Belongs to one thread.
 struct BinaryScratch {
-  OccupancyMask mask;                 // of the entry point that makes its own
+  OccupancyMask mask;                 // of the entry points that make their own
+  DenseGrid grid;                     // of the one that decodes
+  std::vector<Material> layer;        // likewise: one border layer
   std::vector<std::uint64_t> planes;  // faces across the words' axis, a plane of words a layer
   std::vector<Quad> quads;
 };
@@ -29,5 +31,10 @@ void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, Binary
 /// The same from a grid alone: builds the mask first.
 void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility, BinaryScratch& scratch,
                         ChunkMesh& out);
+
+/// The same from runs: decodes a grid, makes its mask from the runs as well, and meshes. What "decode +
+/// binary greedy" means wherever meshers are compared. Counts a dense expansion.
+void mesh_binary_greedy(const RunChunk& chunk, const GridNeighbours& neighbours,
+                        const VisibilityTable& visibility, BinaryScratch& scratch, ChunkMesh& out);
 
 }  // namespace runstone::reference

@@ -133,20 +133,26 @@ TEST_CASE("tail culling: a full chunk keeps all but the first layers' backs", "[
   CHECK(quads_of(scene).rle == 64 * 4 + 8 + 8);
 }
 
-TEST_CASE("a ready mask gives the same mesh as the grid alone", "[mesh][reference]") {
+TEST_CASE("binary greedy makes the same mesh from runs, from a grid and with its mask ready",
+          "[mesh][reference]") {
   SplitMix64 rng(5);
   BinaryScratch scratch;
   OccupancyMask mask;
-  ChunkMesh ready, alone;
+  ChunkMesh ready, from_grid, from_runs;
+  const auto same = [](const QuadLayers& a, const QuadLayers& b) {
+    return a.quads == b.quads && a.first == b.first;
+  };
   for (int round = 0; round < 100; ++round) {
-    const DenseGrid grid = grid_of(random_scene(rng, 20));
+    const MeshScene scene = random_scene(rng, 20);
+    const DenseGrid grid = grid_of(scene);
     occupancy_of(grid, mesh_visibility(), mask);
     mesh_binary_greedy(grid, mask, scratch, ready);
-    mesh_binary_greedy(grid, mesh_visibility(), scratch, alone);
-    REQUIRE(ready.opaque.quads == alone.opaque.quads);
-    REQUIRE(ready.opaque.first == alone.opaque.first);
-    REQUIRE(ready.transparent.quads == alone.transparent.quads);
-    REQUIRE(ready.transparent.first == alone.transparent.first);
+    mesh_binary_greedy(grid, mesh_visibility(), scratch, from_grid);
+    mesh_binary_greedy(scene.chunk, scene.pointers(), mesh_visibility(), scratch, from_runs);
+    REQUIRE(same(ready.opaque, from_grid.opaque));
+    REQUIRE(same(ready.transparent, from_grid.transparent));
+    REQUIRE(same(ready.opaque, from_runs.opaque));
+    REQUIRE(same(ready.transparent, from_runs.transparent));
   }
 }
 
