@@ -43,6 +43,20 @@ TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
   CHECK(out["replica"]["drifted"] == 0);
 }
 
+TEST_CASE("frames stand in the report with their durations, and in the table of a client that draws",
+          "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  ClientReport report = sample();
+  CHECK(json::parse(to_json(report, session))["frames"]["presented"] == 0);
+  CHECK_THAT(to_table(report, session), !Catch::Contains("frames:"));
+  report.frames.presented = 3;
+  for (const int us : {200, 250, 90'000}) report.frames.draw_us.add(us);
+  const json frames = json::parse(to_json(report, session))["frames"];
+  CHECK(frames["presented"] == 3);
+  CHECK(frames["draw_us"]["p50"] == 250);
+  CHECK_THAT(to_table(report, session), Catch::Contains("frames: 3, each 0.25 ms (p50)\n"));
+}
+
 TEST_CASE("the table names what matters on lines of their own", "[client_app]") {
   const ClientSession session(SessionConfig{});
   const std::string table = to_table(sample(), session);
