@@ -14,7 +14,10 @@
 namespace runstone::reference {
 
 /// The lowest `count` bits. Requires 0 < count <= 64.
-constexpr std::uint64_t low_bits(std::uint32_t count) { return ~std::uint64_t{0} >> (64 - count); }
+constexpr std::uint64_t low_bits(std::uint32_t count) {
+  return ~std::uint64_t{0} >>
+         ((64 - count) & 63);  // the mask costs nothing and bounds the shift for analysers
+}
 
 /// Materials that differing_bits() may read beyond the last one it compares.
 inline constexpr std::size_t kCompareSlack = 16;
