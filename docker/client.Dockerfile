@@ -20,7 +20,7 @@ FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
       libspdlog1.10 libfmt9 libzstd1 libhwy1 libsodium23 libtomlplusplus3 libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 libglfw3 \
       && rm -rf /var/lib/apt/lists/* && \
-    useradd --system --uid 10001 runstone && install -d -o runstone -g runstone /out
+    groupadd --gid 10001 runstone && useradd --uid 10001 --gid 10001 runstone && install -d -o runstone -g runstone /out
 COPY --from=build /src/build/release/bin/runstone-client /usr/local/bin/
 USER runstone
 WORKDIR /out

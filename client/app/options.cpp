@@ -40,6 +40,8 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
 ParsedOptions parse_options(int argc, const char* const* argv) {
   ClientOptions out;
   CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
+  // The last one wins, so that arguments added to a fixed command line (a container's) change it.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version",
                        std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
   std::string address, size, encoding = "auto";

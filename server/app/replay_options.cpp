@@ -11,6 +11,7 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
       "Rebuilds a world from base and edit log and compares digests. Exit code 0: equal, 1: different, "
       "2: cannot read.",
       "runstone-replay");
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // as the other programs
   app.add_option("--world", options.world, "folder of the world; a server may be running")->required();
   app.add_option("--at", options.at, "stop after this sequence number");
   app.add_flag("--verify", options.verify, "also read and verify every row of every table");

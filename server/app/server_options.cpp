@@ -11,6 +11,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   ServerOptions out;
   ImportRequest request;
   CLI::App app{"Runstone world server"};
+  // The last one wins, so that arguments added to a fixed command line (a container's) change it.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version", "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
   app.add_option("--config", out.config_file, "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");

@@ -37,6 +37,10 @@ TEST_CASE("the address is host and port, also in v6 form", "[client_app]") {
   CHECK(refused({}) == 2);
 }
 
+TEST_CASE("of two equal flags the last one counts", "[client_app]") {
+  CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).host == "b");
+}
+
 TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
   const ClientOptions options = accepted(
       {"--connect", "a:1", "--size", "640x360", "--view", "9", "--encoding", "packed", "--headless"});
