@@ -1,4 +1,5 @@
-// Reads the thesis' tables in tests/data/thesis: a line of column names, then rows of values. A value in quotes may hold commas.
+// Reads the thesis' tables in tests/data/thesis: a line of column names, then rows of values. A value in
+// quotes may hold commas.
 #pragma once
 #include <map>
 #include <string>
