@@ -121,6 +121,53 @@ TEST_CASE("the oracle sees quads in the wrong group", "[mesh]") {
   CHECK_THAT(verdict(mesh), Contains("wrong pass"));
 }
 
+TEST_CASE("the oracle names what is wrong with a raw list of quads", "[mesh]") {
+  const MeshScene scene = block();
+  const ChunkMesh mesh = block_mesh();
+  std::vector<Quad> right = mesh.transparent.quads;  // in any order, of any pass
+  right.insert(right.end(), mesh.opaque.quads.rbegin(), mesh.opaque.quads.rend());
+  const auto verdict_of = [&](const std::function<void(std::vector<Quad>&)>& change) {
+    std::vector<Quad> quads = right;
+    change(quads);
+    return quads_difference(quads, scene.chunk.extent, mesh_materials(), expected_faces(scene))
+        .value_or("right");
+  };
+  CHECK(verdict_of([](auto&) {}) == "right");
+  CHECK_THAT(verdict_of([](auto& q) { q.pop_back(); }), Contains("is missing"));
+  CHECK_THAT(verdict_of([](auto& q) { q.push_back(q[3]); }), Contains("covered twice"));
+  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 0, 0, 1, 1, Direction::pos_y, kStone})); }),
+             Contains("is too many"));
+  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 1, 2, Direction::pos_x, kStone})); }),
+             !Contains("leaves"));  // v of an x face is z
+  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 2, 1, Direction::pos_x, kStone})); }),
+             Contains("leaves the extent"));
+  CHECK_THAT(verdict_of([](auto& q) { q[0].bits |= 1ULL << 60; }), Contains("reserved bits"));
+  CHECK_THAT(verdict_of([](auto& q) { q[0] = pack({5, 5, 5, 1, 1, static_cast<Direction>(6), kWater}); }),
+             Contains("looks in no direction"));
+  CHECK_THAT(verdict_of([](auto& q) { q[0] = pack({5, 5, 5, 1, 1, Direction::neg_x, kBarrier}); }),
+             Contains("empty material"));
+}
+
+TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand", "[mesh]") {
+  CHECK(all_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 25 * 6);
+  // Six lines of four stones along z, and one water: all sides but the inner ends.
+  CHECK(tail_culled_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 6 * (4 * 4 + 2) + 6);
+  // A full chunk is one run: -x only on the first slow layer, -y only on its first line and on the lines at y
+  // = 0 of the others, which none hides in their layer.
+  const auto faces =
+      tail_culled_faces(DenseChunk::of(uniform_chunk(Extent::cube(8), kStone)), mesh_materials());
+  const auto count = [&faces](Direction direction) {
+    return std::count_if(faces.begin(), faces.end(),
+                         [&](const UnitFace& f) { return f.direction == direction; });
+  };
+  CHECK(count(Direction::pos_x) == 512);
+  CHECK(count(Direction::pos_y) == 512);
+  CHECK(count(Direction::neg_x) == 64);
+  CHECK(count(Direction::neg_y) == 64);
+  CHECK(count(Direction::pos_z) == 64);
+  CHECK(count(Direction::neg_z) == 64);
+}
+
 TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is caught", "[mesh]") {
   // The mesher gets another scene than the oracle: what a mesher with that mistake would make of it.
   SplitMix64 rng(17);
