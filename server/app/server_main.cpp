@@ -52,24 +52,37 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   return config;
 }
 
-/// Runs until a signal comes or the failure callback stops the loop.
-void wait_for_the_end(asio::io_context& main_loop, Server& server) {
-  asio::signal_set stop(main_loop, SIGINT, SIGTERM);
-  stop.async_wait([&](const asio::error_code& error, int /*signal*/) {
-    if (!error) main_loop.stop();
-  });
-  asio::signal_set counters(main_loop, SIGUSR1);
-  std::function<void()> wait_for_counters = [&] {
-    counters.async_wait([&](const asio::error_code& error, int /*signal*/) {
+/// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes meanwhile
+/// waits for its turn (and would be lost on the first process of a container).
+class Signals {
+ public:
+  explicit Signals(asio::io_context& loop)
+      : loop_(loop), stop_(loop, SIGINT, SIGTERM), counters_(loop, SIGUSR1) {}
+
+  /// Runs until a signal comes or the failure callback stops the loop.
+  void wait_for_the_end(Server& server) {
+    stop_.async_wait([this](const asio::error_code& error, int /*signal*/) {
+      if (!error) loop_.stop();
+    });
+    wait_for_counters(server);
+    loop_.run();
+    // The signals get their default effect again: a second one ends the process at once.
+    stop_.clear();
+    counters_.clear();
+  }
+
+ private:
+  void wait_for_counters(Server& server) {
+    counters_.async_wait([this, &server](const asio::error_code& error, int /*signal*/) {
       if (error) return;
       server.log_counters();
-      wait_for_counters();
+      wait_for_counters(server);
     });
-  };
-  wait_for_counters();
-  main_loop.run();
-  // The signals have their default effect again: a second one ends the process at once.
-}
+  }
+
+  asio::io_context& loop_;
+  asio::signal_set stop_, counters_;
+};
 
 int run(const ServerOptions& options) {
   const auto config = read_config(options);
@@ -85,6 +98,7 @@ int run(const ServerOptions& options) {
     }
   }
   asio::io_context main_loop;
+  Signals signals(main_loop);
   auto server = Server::start(*config, options.creation,
                               [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); });
   if (!server) return cannot_start(server.error());
@@ -92,7 +106,7 @@ int run(const ServerOptions& options) {
     const auto written = write_text_file(options.port_file, std::to_string((*server)->port()) + "\n");
     if (!written) return cannot_start(written.error().message());
   }
-  wait_for_the_end(main_loop, **server);
+  signals.wait_for_the_end(**server);
   logger("app").info("stopping");
   const StopReport report = (*server)->stop();
   if (!report.error.empty()) logger("store").error("{}", report.error);
