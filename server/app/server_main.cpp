@@ -52,8 +52,8 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   return config;
 }
 
-/// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes meanwhile
-/// waits for its turn (and would be lost on the first process of a container).
+/// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes
+/// meanwhile waits for its turn (and would be lost on the first process of a container).
 class Signals {
  public:
   explicit Signals(asio::io_context& loop)
