@@ -18,6 +18,8 @@ class VisibilityTable {
   }
   /// Ids beyond the table count as opaque.
   Visibility operator[](Material id) const { return of_[id]; }
+  /// By id, kMaterialCountMax of them: for inner loops that write bytes.
+  const Visibility* data() const { return of_.data(); }
   bool face_drawn(Material of, Material towards) const {
     return of_[of] != Visibility::empty && of_[towards] != Visibility::opaque && of != towards;
   }

@@ -1,6 +1,7 @@
 // Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's orientation,
 // read straight from the neighbour's runs whatever its axis order is. Internal to rdm.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -83,18 +84,19 @@ class LayerReader {
 
   template <class Runs>
   void read_middle(const Runs& runs, std::uint32_t at) {
-    RunCursor cursor(runs);
+    constexpr std::size_t kBlock = 8;  // a layer holds some dozens of runs: too few for a search to pay
+    const std::size_t size = runs.size();
+    std::size_t i = 0;
     Code carried = 0;  // of the last voxel of the row before
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       const std::uint32_t begin = s * e_.layer() + at * e_.f;
-      cursor.seek(begin);
-      Code code = code_of_(cursor.material());
+      while (i + kBlock < size && runs.end(i + kBlock - 1) <= begin) i += kBlock;
+      while (runs.end(i) <= begin) ++i;
+      Code code = code_of_(runs.material(i));
       if (code != carried) mark(s, 0, code ^ carried);
-      while (cursor.end() < begin + e_.f) {
-        const std::uint32_t voxel = cursor.end() - begin;
-        cursor.next();
-        const Code next = code_of_(cursor.material());
-        mark(s, voxel, code ^ next);
+      for (; runs.end(i) < begin + e_.f; ++i) {
+        const Code next = code_of_(runs.material(i + 1));
+        mark(s, runs.end(i) - begin, code ^ next);
         code = next;
       }
       carried = code;
@@ -105,21 +107,42 @@ class LayerReader {
   template <class Runs>
   void read_fast(const Runs& runs, std::uint32_t at) {
     const Divider line_of(e_.f);
-    const Divider row_of(e_.m);
-    const std::uint32_t lines = e_.m * e_.s;
-    Code code = code_of_(runs.material(0));
-    mark(0, 0, code);
-    for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
-      const Code next = code_of_(runs.material(i + 1));
-      const Code change = code ^ next;
-      code = next;
-      // The first line whose voxel `at` lies behind the end of run i.
-      const std::uint32_t line = line_of(runs.end(i) + e_.f - 1 - at);
-      if (change == 0 || line >= lines) continue;
-      const std::uint32_t row = row_of(line);
-      mark(row, line - row * e_.m, change);
+    const std::uint32_t ahead = e_.f - 1 - at;
+    const std::size_t last = runs.size() - 1;
+    for (unsigned k = 0; k < count_; ++k) {
+      // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
+      std::array<Row64, kSideMax * kSideMax / 64 + 2> marks;
+      std::fill_n(marks.begin(), e_.m * e_.s / 64 + 2, Row64{0});
+      const CodeOf code_of = code_of_;
+      Code code = code_of(runs.material(0)) >> k & 1;
+      marks[0] = code;
+      for (std::size_t i = 0; i < last; ++i) {
+        const Code next = code_of(runs.material(i + 1)) >> k & 1;
+        const std::uint32_t line = line_of(runs.end(i) + ahead);
+        marks[line / 64] ^= Row64{code ^ next} << (line % 64);
+        code = next;
+      }
+      cut_rows(marks.data(), planes_[k]);
     }
-    fill(e_.s, e_.m);
+  }
+  /// Turns marks of change, a bit a line, into rows of e_.m bits.
+  void cut_rows(Row64* marks, Rows& rows) const {
+    Row64 carry = 0;
+    for (std::uint32_t w = 0; w <= e_.m * e_.s / 64; ++w) {
+      marks[w] = prefix_xor(marks[w]) ^ carry;
+      carry = Row64{0} - (marks[w] >> 63);
+    }
+    const Row valid = bits_below<Row>(e_.m);
+    for (std::uint32_t s = 0, first = 0; s < e_.s; ++s, first += e_.m) {
+      Row row = 0;
+      for (unsigned bit = 0; bit < e_.m; bit += 64) {
+        const std::uint32_t at = first + bit;
+        const Row64 low = marks[at / 64] >> (at % 64);
+        const Row64 high = at % 64 == 0 ? 0 : marks[at / 64 + 1] << (64 - at % 64);
+        row |= Row{low | high} << bit;
+      }
+      rows[s] = row & valid;
+    }
   }
 
   const OrderedExtent e_;

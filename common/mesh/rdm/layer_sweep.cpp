@@ -44,10 +44,6 @@ struct OneRow {
   static std::uint64_t tops(V a) { return static_cast<std::uint64_t>(a >> (kRowBits<Row> - 1)); }
   /// `row` in the lanes whose bit is set.
   static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
-  /// slots[i] = value where bit i is set.
-  static void mark(std::uint8_t* slots, Row bits, std::uint8_t value) {
-    for (; bits != 0; bits &= bits - 1) slots[lowest_bit(bits)] = value;
-  }
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
@@ -84,15 +80,6 @@ struct VectorRows {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
     return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
   }
-  static HWY_INLINE void mark(std::uint8_t* slots, Row bits, std::uint8_t value) {
-    const hn::CappedTag<std::uint8_t, 64> d;
-    std::uint8_t bytes[16] = {};
-    std::memcpy(bytes, &bits, sizeof bits);
-    for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
-      const auto mask = hn::LoadMaskBits(d, bytes + i / 8);
-      hn::StoreU(hn::IfThenElse(mask, hn::Set(d, value), hn::LoadU(d, slots + i)), d, slots + i);
-    }
-  }
 };
 #else
 using VectorRows = OneRow<Row64>;
@@ -106,6 +93,7 @@ class Sweep {
   using V = typename Lanes::V;
   using Rows = LayerRows<Row>;
   static constexpr unsigned kLanes = Lanes::kLanes;
+  static constexpr std::size_t kStride = sizeof(Rows) / sizeof(Row);  // from a plane to the next
 
  public:
   Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
@@ -128,12 +116,7 @@ class Sweep {
       if (s != 0 && repeats(s)) continue;
       build(s);
       if (s == 0) hide_slow(Side::slow_neg, there_, here_);
-      slow_faces<Side::slow_neg>(s, here_, there_);
-      if (s != 0) slow_faces<Side::slow_pos>(s - 1, there_, here_);
-      level_faces<Side::mid_neg>(s);
-      level_faces<Side::mid_pos>(s);
-      upright_faces<Side::fast_neg>(s);
-      upright_faces<Side::fast_pos>(s);
+      find_faces(s);
       std::swap(here_, there_);
     }
     finish();
@@ -144,23 +127,31 @@ class Sweep {
   static constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
   Row* plane(unsigned ring, unsigned k) { return st_.plane[ring][k].data(); }
 
+  /// A set of rows in which something happens: a bit each.
+  using RowSet = Row;
+  static HWY_INLINE void add_rows(RowSet& set, std::uint64_t lanes, std::uint32_t m) {
+    set |= Row{lanes} << m;
+  }
+
   /// Calls step(first row) for every step of whole vectors over the rows of a layer.
   template <class F>
   HWY_INLINE void for_rows(F&& step) const {
-    for (std::uint32_t m = 0; m < e_.m; m += kLanes) step(m);
+    const std::uint32_t count = e_.m;
+    for (std::uint32_t m = 0; m < count; m += kLanes) step(m);
   }
 
   void start() {
     const auto clear = [this](Rows& rows) { std::fill_n(rows.data(), e_.m + Rows::kBehind, Row{0}); };
     clear(st_.solid[there_]);
     for (unsigned side = at(Side::mid_neg); side <= at(Side::fast_pos); ++side) {
-      FaceRows<Row>& before = st_.faces[side][there_];
-      clear(before.face);
-      clear(before.start);
-      clear(before.end);
-      clear(st_.faces[side][here_].face);
+      clear(st_.face[side][there_]);
+      clear(st_.face[side][here_]);
     }
     for (unsigned k = 0; k < planes_; ++k) clear(st_.plane[there_][k]);
+    if constexpr (kNumbered) {
+      clear(st_.cut_fast[there_]);
+      clear(st_.cut_mid[there_]);
+    }
   }
 
   /// Whether the layer is of one material and so was the one before, with equal borders: nothing begins or
@@ -227,7 +218,6 @@ class Sweep {
   template <unsigned kPlanes>
   void mark_changes(std::uint32_t begin, std::uint32_t end) {
     const CodedRun* run = runs() + run_;
-    constexpr std::size_t kStride = sizeof(Rows) / sizeof(Row);
     Row* const rows = plane(here_, 0);
     const unsigned planes = kPlanes == kPlanesMax ? planes_ : kPlanes;
     const unsigned top_bit = code_bit(planes - 1);
@@ -245,8 +235,9 @@ class Sweep {
 
   /// Turns marks of change into the bits themselves, from the first voxel's on.
   void fill_plane(Row* rows, bool first) {
-    std::array<std::uint64_t, 2> tops{};
-    for_rows([&](std::uint32_t m) {
+    const std::uint32_t count = e_.m;
+    RowSet tops = 0;
+    for (std::uint32_t m = 0; m < count; m += kLanes) {
       V v = Lanes::load(rows + m);
       v = Lanes::differing(v, Lanes::template up<1>(v));
       v = Lanes::differing(v, Lanes::template up<2>(v));
@@ -256,21 +247,15 @@ class Sweep {
       v = Lanes::differing(v, Lanes::template up<32>(v));
       if constexpr (kRowBits<Row> == 128) v = Lanes::differing(v, Lanes::template up<64>(v));
       Lanes::store(v, rows + m);
-      tops[m / 64] |= Lanes::tops(v) << (m % 64);
-    });
-    // Bit m: whether row m starts with ones.
-    std::array<std::uint64_t, 2> starts{};
-    std::uint64_t carry = first ? ~std::uint64_t{0} : 0;
-    for (std::size_t w = 0; w * 64 < e_.m; ++w) {
-      const std::uint64_t through = prefix_xor(tops[w]);
-      starts[w] = through << 1 ^ carry;
-      carry ^= std::uint64_t{0} - (through >> 63);
+      add_rows(tops, Lanes::tops(v), m);
     }
+    // Bit m: whether row m starts with ones.
+    const Row starts = prefix_xor(tops) << 1 ^ (first ? ~Row{0} : Row{0});
     const V valid = Lanes::all(valid_);
-    for_rows([&](std::uint32_t m) {
-      const V flip = Lanes::where(starts[m / 64] >> (m % 64), ~Row{0});
+    for (std::uint32_t m = 0; m < count; m += kLanes) {
+      const V flip = Lanes::where(static_cast<std::uint64_t>(starts >> m), ~Row{0});
       Lanes::store(Lanes::both(Lanes::differing(Lanes::load(rows + m), flip), valid), rows + m);
-    });
+    }
   }
 
   void join_planes() {
@@ -341,7 +326,7 @@ class Sweep {
         hide |= same_beyond(side, s, [&](unsigned k) {
           Row column = 0;
           for_rows([&](std::uint32_t m) {
-            column |= Row{Lanes::any(Lanes::both(Lanes::load(plane(here_, k) + m), bit))} << m;
+            add_rows(column, Lanes::any(Lanes::both(Lanes::load(plane(here_, k) + m), bit)), m);
           });
           return column;
         });
@@ -355,7 +340,6 @@ class Sweep {
     Row* const fast = st_.cut_fast[here_].data();
     Row* const mid = st_.cut_mid[here_].data();
     Row* const slow = st_.cut_slow.data();
-    constexpr std::size_t kStride = sizeof(Rows) / sizeof(Row);
     const Row* const here = plane(here_, 0);
     const Row* const there = plane(there_, 0);
     for_rows([&](std::uint32_t m) {
@@ -376,276 +360,337 @@ class Sweep {
     if (s == 0) std::fill_n(slow, e_.m, ~Row{0});
   }
 
-  /// Starts and ends of strips along the bits of a row, cut where `cut` says.
-  static HWY_INLINE V starts_of(V face, V cut) {
-    const V before = Lanes::template up<1>(face);
-    return Lanes::without(face, kNumbered ? Lanes::without(before, cut) : before);
+  /// Finds the faces of layer s across the middle and the fastest axis, and those between it and the layer
+  /// before it; then follows the strips in the rows that differ from the row before.
+  void find_faces(std::uint32_t s) {
+    const std::uint32_t count = e_.m;
+    const Row* const solid = st_.solid[here_].data();
+    const Row* const hiding = st_.hiding[here_].data();
+    const Row* const solid_there = st_.solid[there_].data();
+    const Row* const hiding_there = st_.hiding[there_].data();
+    const Row* const cut_fast = st_.cut_fast[here_].data();
+    const Row* const cut_fast_there = st_.cut_fast[there_].data();
+    const Row* const cut_mid = st_.cut_mid[here_].data();
+    const Row* const cut_mid_there = st_.cut_mid[there_].data();
+    const Row* const cut_slow = st_.cut_slow.data();
+    const auto face = [this](Side side, unsigned ring) { return st_.face[at(side)][ring].data(); };
+    Row* const slow_neg = face(Side::slow_neg, 0);
+    Row* const slow_pos = face(Side::slow_pos, 0);
+    Row* const mid_neg = face(Side::mid_neg, here_);
+    Row* const mid_pos = face(Side::mid_pos, here_);
+    Row* const fast_neg = face(Side::fast_neg, here_);
+    Row* const fast_pos = face(Side::fast_pos, here_);
+    const Row* const mid_neg_there = face(Side::mid_neg, there_);
+    const Row* const mid_pos_there = face(Side::mid_pos, there_);
+    const Row* const fast_neg_there = face(Side::fast_neg, there_);
+    const Row* const fast_pos_there = face(Side::fast_pos, there_);
+    const Row hide_neg = hide_fast(Side::fast_neg, s);
+    const Row hide_pos = hide_fast(Side::fast_pos, s);
+    const Row last = last_;
+    std::array<RowSet, 6> rows{};
+    for (std::uint32_t m = 0; m < count; m += kLanes) {
+      const V own = Lanes::load(solid + m);
+      const V hide = Lanes::load(hiding + m);
+      V f_mid_neg = Lanes::without(own, Lanes::load(hiding + m - 1));
+      V f_mid_pos = Lanes::without(own, Lanes::load(hiding + m + 1));
+      V f_fast_neg = Lanes::without(
+          own, Lanes::either(Lanes::template up<1>(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
+      V f_fast_pos =
+          Lanes::without(own, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
+      V f_slow_neg = Lanes::without(own, Lanes::load(hiding_there + m));
+      V f_slow_pos = Lanes::without(Lanes::load(solid_there + m), hide);
+      // The same faces a row before, for the slow sides.
+      V g_slow_neg = Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_there + m - 1));
+      V g_slow_pos = Lanes::without(Lanes::load(solid_there + m - 1), Lanes::load(hiding + m - 1));
+      V along = own;    // bits at which strips along a row are cut other than in the layer before
+      V across = own;   // ... strips from row to row ...
+      V between = own;  // where the material differs from the layer before
+      V along_neg = own, along_pos = own;
+      if constexpr (kNumbered) {
+        const V fast = Lanes::load(cut_fast + m);
+        const V mid = Lanes::load(cut_mid + m);
+        between = Lanes::load(cut_slow + m);
+        const V slow_before = Lanes::load(cut_slow + m - 1);
+        const V fast_there = Lanes::load(cut_fast_there + m);
+        const V mid_there = Lanes::load(cut_mid_there + m);
+        f_mid_neg = Lanes::both(f_mid_neg, mid);
+        f_mid_pos = Lanes::both(f_mid_pos, Lanes::load(cut_mid + m + 1));
+        f_fast_neg = Lanes::both(f_fast_neg, fast);
+        f_fast_pos = Lanes::both(f_fast_pos, Lanes::either(Lanes::down(fast), Lanes::all(last)));
+        f_slow_neg = Lanes::both(f_slow_neg, between);
+        f_slow_pos = Lanes::both(f_slow_pos, between);
+        g_slow_neg = Lanes::both(g_slow_neg, slow_before);
+        g_slow_pos = Lanes::both(g_slow_pos, slow_before);
+        along = Lanes::either(between, Lanes::differing(fast, fast_there));
+        across = Lanes::either(between, Lanes::differing(mid, mid_there));
+        along_neg = Lanes::either(mid, Lanes::differing(fast, Lanes::load(cut_fast + m - 1)));
+        along_pos =
+            Lanes::either(mid_there, Lanes::differing(fast_there, Lanes::load(cut_fast_there + m - 1)));
+      }
+      Lanes::store(f_slow_neg, slow_neg + m);
+      Lanes::store(f_slow_pos, slow_pos + m);
+      Lanes::store(f_mid_neg, mid_neg + m);
+      Lanes::store(f_mid_pos, mid_pos + m);
+      Lanes::store(f_fast_neg, fast_neg + m);
+      Lanes::store(f_fast_pos, fast_pos + m);
+      add_rows(rows[0], differ(f_slow_neg, g_slow_neg, along_neg), m);
+      add_rows(rows[1], differ(f_slow_pos, g_slow_pos, along_pos), m);
+      add_rows(rows[2], differ(f_mid_neg, Lanes::load(mid_neg_there + m), along), m);
+      add_rows(rows[3], differ(f_mid_pos, Lanes::load(mid_pos_there + m), along), m);
+      add_rows(rows[4], differ(f_fast_neg, Lanes::load(fast_neg_there + m), across), m);
+      add_rows(rows[5], differ(f_fast_pos, Lanes::load(fast_pos_there + m), across), m);
+    }
+    // Rows behind the last one have no faces, so the first of them closes what is open, if it was met.
+    const Row valid = bits_below<Row>(count);
+    for (RowSet& set : rows) set &= valid;
+    slow_strips<Side::slow_neg>(rows[0], s, here_);
+    if (s != 0) slow_strips<Side::slow_pos>(rows[1], s - 1, there_);
+    level_strips<Side::mid_neg>(rows[2], s);
+    level_strips<Side::mid_pos>(rows[3], s);
+    upright_strips<Side::fast_neg>(rows[4], s);
+    upright_strips<Side::fast_pos>(rows[5], s);
   }
-  static HWY_INLINE V ends_of(V face, V cut) {
-    const V behind = Lanes::down(face);
-    return Lanes::without(face, kNumbered ? Lanes::without(behind, Lanes::down(cut)) : behind);
+  static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
+    return static_cast<std::uint64_t>(set >> m);
+  }
+  /// Lanes in which faces now and before differ, or are cut otherwise.
+  static HWY_INLINE std::uint64_t differ(V now, V before, [[maybe_unused]] V cut) {
+    V x = Lanes::differing(now, before);
+    if constexpr (kNumbered) x = Lanes::either(x, Lanes::both(now, cut));
+    return Lanes::any(x);
   }
 
-  /// Bits of strips in `now` or `before` where the two rows do not agree.
-  struct Change {
-    V closing, opening;  // the last bits of the strips that end and begin between the two rows
+  /// A row of faces as strips.
+  struct Strips {
+    Row face, start, end;
   };
-  static HWY_INLINE V changed(const FaceRows<Row>& now, std::ptrdiff_t m, const FaceRows<Row>& before,
-                              std::ptrdiff_t n, V cut) {
-    const V f = Lanes::load(now.face.data() + m);
-    const V g = Lanes::load(before.face.data() + n);
-    V x = Lanes::either(
-        Lanes::differing(f, g),
-        Lanes::either(
-            Lanes::differing(Lanes::load(now.start.data() + m), Lanes::load(before.start.data() + n)),
-            Lanes::differing(Lanes::load(now.end.data() + m), Lanes::load(before.end.data() + n))));
-    if constexpr (kNumbered) x = Lanes::either(x, Lanes::both(Lanes::both(f, g), cut));
+  /// Strips along the bits of a row, cut before the bits of `cut`.
+  static HWY_INLINE Strips strips_along(Row face, [[maybe_unused]] const Row* cut) {
+    Row before = face << 1;
+    Row behind = face >> 1;
+    if constexpr (kNumbered) {
+      before &= ~*cut;
+      behind &= ~(*cut >> 1);
+    }
+    return {face, face & ~before, face & ~behind};
+  }
+  /// Bits of the strips of two rows where these do not agree.
+  static HWY_INLINE Row changed(const Strips& now, const Strips& before, [[maybe_unused]] const Row* cut) {
+    Row x = (now.face ^ before.face) | (now.start ^ before.start) | (now.end ^ before.end);
+    if constexpr (kNumbered) x |= now.face & before.face & *cut;
     return x;
   }
   /// Ends of the strips with a changed bit. A carry runs from the lowest changed bit of a strip to its end:
   /// all other bits of a strip are ones, and the end itself is left out.
-  static HWY_INLINE V ends_with(V face, V end, V x) {
-    x = Lanes::both(x, face);
-    const V inner = Lanes::without(face, end);
-    return Lanes::both(end, Lanes::either(x, Lanes::sum(inner, Lanes::both(x, inner))));
-  }
-  static HWY_INLINE Change change_of(const FaceRows<Row>& now, std::ptrdiff_t m, const FaceRows<Row>& before,
-                                     std::ptrdiff_t n, V cut) {
-    const V x = changed(now, m, before, n, cut);
-    return {ends_with(Lanes::load(before.face.data() + n), Lanes::load(before.end.data() + n), x),
-            ends_with(Lanes::load(now.face.data() + m), Lanes::load(now.end.data() + m), x)};
+  static HWY_INLINE Row ends_with(const Strips& strips, Row x) {
+    x &= strips.face;
+    const Row inner = strips.face & ~strips.end;
+    return strips.end & (x | (inner + (x & inner)));
   }
 
-  /// Rows in which something happens.
-  using RowSet = std::array<std::uint64_t, 2>;
-  template <class F>
-  HWY_INLINE void for_set(const RowSet& set, F&& visit) const {
-    for (std::uint32_t w = 0; w * 64 < e_.m; ++w) {
-      for (std::uint64_t bits = set[w]; bits != 0; bits &= bits - 1) visit(w * 64 + lowest_bit(bits));
-    }
-  }
-  void keep_rows(RowSet& set) const {
-    set[e_.m / 64 % 2] &= e_.m % 64 == 0 ? ~std::uint64_t{0} : bits_below<std::uint64_t>(e_.m % 64);
+  /// What the rectangles of one side need to become quads. A value, so that the compiler may keep it in
+  /// registers while bytes are written.
+  struct Outlet {
+    QuadShape shape;
+    QuadBuckets::Bucket* opaque;
+    QuadBuckets::Bucket* transparent;
+    const Row* planes;  // of the layer that holds the strips' voxels: plane k at k * kStride
+    std::array<const Material*, 2> materials;  // opaque and transparent, by number
+    unsigned number_bits;
+    bool mixed;
+    Material single;  // the material, if there is but one
+  };
+  HWY_INLINE Outlet outlet(Side side, unsigned ring) {
+    const Direction direction = in_.direction[at(side)];
+    const bool clear = !kNumbered && in_.codes->has_transparent();
+    return {in_.shape[at(side)],
+            (clear ? in_.transparent : in_.opaque)->of(direction),
+            in_.transparent->of(direction),
+            plane(ring, 0),
+            {in_.codes->materials(false), in_.codes->materials(true)},
+            number_bits_,
+            mixed_,
+            kNumbered ? kEmpty : in_.codes->material(clear, 0)};
   }
 
-  /// Faces across the slowest axis of layer `layer`, in ring `own`, towards ring `other`. A row is a line.
-  template <Side kSide>
-  void slow_faces(std::uint32_t layer, unsigned own, unsigned other) {
-    FaceRows<Row>& faces = st_.faces[at(kSide)][0];
-    const Row* const solid = st_.solid[own].data();
-    const Row* const hiding = st_.hiding[other].data();
-    const Row* const cut_fast = st_.cut_fast[own].data();
-    const Row* const cut_slow = st_.cut_slow.data();
-    std::uint64_t any = 0;
-    for_rows([&](std::uint32_t m) {
-      V f = Lanes::without(Lanes::load(solid + m), Lanes::load(hiding + m));
-      V cut = f;
-      if constexpr (kNumbered) {
-        f = Lanes::both(f, Lanes::load(cut_slow + m));
-        cut = Lanes::load(cut_fast + m);
+  /// Says in an open quad that it is for the transparent pass; zero in a closed one.
+  static constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;
+
+  /// The quad of a strip whose material is that of bit `bit` of row `line`.
+  static HWY_INLINE Quad open_quad(const Outlet& out, const Strip& strip, [[maybe_unused]] std::uint32_t line,
+                                   [[maybe_unused]] unsigned bit) {
+    if constexpr (!kNumbered) {
+      return out.shape.open(strip, out.single);
+    } else {
+      const Row* const row = out.planes + line;
+      std::size_t number = 0;
+      for (unsigned k = 0; k < out.number_bits; ++k) {
+        number |= static_cast<std::size_t>(row[(1 + k) * kStride] >> bit & 1) << k;
       }
-      Lanes::store(f, faces.face.data() + m);
-      Lanes::store(starts_of(f, cut), faces.start.data() + m);
-      Lanes::store(ends_of(f, cut), faces.end.data() + m);
-      any |= Lanes::any(f);
-    });
-    if (any == 0) return;
-    RowSet rows{};
-    const Row* const cut_mid = st_.cut_mid[own].data();
-    for_rows([&](std::uint32_t m) {
-      const Change c = change_of(faces, m, faces, static_cast<std::ptrdiff_t>(m) - 1,
-                                 kNumbered ? Lanes::load(cut_mid + m) : Lanes::all(0));
-      Lanes::store(c.closing, st_.closing.data() + m);
-      Lanes::store(c.opening, st_.opening.data() + m);
-      rows[m / 64] |= Lanes::any(Lanes::either(c.closing, c.opening)) << (m % 64);
-    });
-    keep_rows(rows);
-    std::uint8_t* const first = st_.row_first[at(kSide)].data();
-    const Row* const start = faces.start.data();
-    for_set(rows, [&](std::uint32_t m) {
-      close_strips<kSide>(st_.closing.data()[m], start[static_cast<std::ptrdiff_t>(m) - 1], first, layer, m,
-                          own, m - 1);
-      Lanes::mark(first, st_.opening.data()[m], static_cast<std::uint8_t>(m));
-    });
-    close_strips<kSide>(faces.end.data()[e_.m - 1], start[e_.m - 1], first, layer, e_.m, own, e_.m - 1);
+      const bool transparent = out.mixed && (row[(1 + out.number_bits) * kStride] >> bit & 1) != 0;
+      Quad quad = out.shape.open(strip, out.materials[transparent ? 1 : 0][number]);
+      if (transparent) quad.bits ^= kTransparentQuad;
+      return quad;
+    }
+  }
+  static HWY_INLINE void close_quad(const Outlet& out, Quad open, std::uint32_t layer, std::uint32_t row) {
+    Quad quad = out.shape.close(open, row);
+    QuadBuckets::Bucket* buckets = out.opaque;
+    if (kNumbered && (quad.bits & kTransparentQuad) != 0) {
+      quad.bits ^= kTransparentQuad;
+      buckets = out.transparent;
+    }
+    QuadBuckets::put(buckets[layer], quad);
   }
 
-  /// Emits the strips that end at the bits of `closing`: they began at bits of `start`, in the rows that
-  /// `first` says, and ended before row `row`. Their material is that of row `line` in ring `ring`.
-  template <Side kSide>
-  HWY_INLINE void close_strips(Row closing, Row start, const std::uint8_t* first, std::uint32_t layer,
-                               std::uint32_t row, unsigned ring, std::uint32_t line) {
-    for (; closing != 0; closing &= closing - 1) {
-      const unsigned end = lowest_bit(closing);
-      const unsigned begin = highest_bit(start & (closing ^ (closing - 1)));
-      put<kSide>({layer, begin, end - begin + 1, first[end], row - first[end]}, ring, line, begin);
+  /// Closes the strips that end at the bits of `closing` before row `row`.
+  static HWY_INLINE void close_strips(const Outlet& out, Row closing, const Quad* open, std::uint32_t layer,
+                                      std::uint32_t row) {
+    for (; closing != 0; closing &= closing - 1) close_quad(out, open[lowest_bit(closing)], layer, row);
+  }
+  /// Opens the strips that end at the bits of `opening` and begin at bits of `start`, in row `row`. Their
+  /// material is that of row `line`.
+  static HWY_INLINE void open_strips(const Outlet& out, Row opening, Row start, Quad* open,
+                                     std::uint32_t layer, std::uint32_t row, std::uint32_t line) {
+    for (; opening != 0; opening &= opening - 1) {
+      const unsigned end = lowest_bit(opening);
+      const unsigned begin = highest_bit(start & (opening ^ (opening - 1)));
+      open[end] = open_quad(out, {layer, begin, end - begin + 1, row}, line, begin);
     }
+  }
+
+  /// Faces across the slowest axis of layer `layer`, in ring `own`. A row is a line.
+  template <Side kSide>
+  void slow_strips(RowSet rows, std::uint32_t layer, unsigned own) {
+    const Row* const face = st_.face[at(kSide)][0].data();
+    const std::uint32_t count = e_.m;
+    const Row bottom = face[count - 1];
+    if (rows == 0 && bottom == 0) return;
+    const Row* const cut_fast = st_.cut_fast[own].data();
+    const Row* const cut_mid = st_.cut_mid[own].data();
+    const Outlet out = outlet(kSide, own);
+    Quad* const open = st_.open[at(kSide)].data();
+    for (; rows != 0; rows &= rows - 1) {
+      const std::uint32_t m = lowest_bit(rows);
+      const Strips now = strips_along(face[m], cut_fast + m);
+      const Strips before = m == 0 ? Strips{} : strips_along(face[m - 1], cut_fast + m - 1);
+      const Row x = changed(now, before, cut_mid + m);
+      close_strips(out, ends_with(before, x), open, layer, m);
+      open_strips(out, ends_with(now, x), now.start, open, layer, m, m);
+    }
+    const Strips over = strips_along(bottom, cut_fast + count - 1);
+    close_strips(out, over.end, open, layer, count);
   }
 
   /// Faces across the middle axis in layer s. A row is the line of a layer, its next one that of the next.
   template <Side kSide>
-  void level_faces(std::uint32_t s) {
-    constexpr std::ptrdiff_t kBeyond = kSide == Side::mid_neg ? -1 : 1;
-    FaceRows<Row>& now = st_.faces[at(kSide)][here_];
-    const FaceRows<Row>& before = st_.faces[at(kSide)][there_];
-    const Row* const solid = st_.solid[here_].data();
-    const Row* const hiding = st_.hiding[here_].data() + kBeyond;
+  void level_strips(RowSet rows, std::uint32_t s) {
+    if (rows == 0) return;
+    const Row* const face = st_.face[at(kSide)][here_].data();
+    const Row* const face_before = st_.face[at(kSide)][there_].data();
     const Row* const cut_fast = st_.cut_fast[here_].data();
-    const Row* const cut_mid = st_.cut_mid[here_].data() + (kSide == Side::mid_neg ? 0 : 1);
+    const Row* const cut_fast_before = st_.cut_fast[there_].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    RowSet rows{};
-    for_rows([&](std::uint32_t m) {
-      V f = Lanes::without(Lanes::load(solid + m), Lanes::load(hiding + m));
-      V cut = f;
-      if constexpr (kNumbered) {
-        f = Lanes::both(f, Lanes::load(cut_mid + m));
-        cut = Lanes::load(cut_fast + m);
-      }
-      Lanes::store(f, now.face.data() + m);
-      Lanes::store(starts_of(f, cut), now.start.data() + m);
-      Lanes::store(ends_of(f, cut), now.end.data() + m);
-      const Change c = change_of(now, m, before, m, kNumbered ? Lanes::load(cut_slow + m) : Lanes::all(0));
-      Lanes::store(c.closing, st_.closing.data() + m);
-      Lanes::store(c.opening, st_.opening.data() + m);
-      rows[m / 64] |= Lanes::any(Lanes::either(c.closing, c.opening)) << (m % 64);
-    });
-    keep_rows(rows);
-    for_set(rows, [&](std::uint32_t m) {
-      std::uint8_t* const first = st_.row_first[at(kSide)].data() + std::size_t{m} * kRowBits<Row>;
-      close_strips<kSide>(st_.closing.data()[m], before.start.data()[m], first, m, s, there_, m);
-      Lanes::mark(first, st_.opening.data()[m], static_cast<std::uint8_t>(s));
-    });
+    const Outlet out = outlet(kSide, here_);
+    Quad* const open = st_.open[at(kSide)].data();
+    for (; rows != 0; rows &= rows - 1) {
+      const std::uint32_t m = lowest_bit(rows);
+      const Strips now = strips_along(face[m], cut_fast + m);
+      const Strips before = strips_along(face_before[m], cut_fast_before + m);
+      const Row x = changed(now, before, cut_slow + m);
+      Quad* const slots = open + std::size_t{m} * kRowBits<Row>;
+      close_strips(out, ends_with(before, x), slots, m, s);
+      open_strips(out, ends_with(now, x), now.start, slots, m, s, m);
+    }
+  }
+
+  /// Row m of strips that run from row to row, cut before row m where `cut` says.
+  static HWY_INLINE Strips strips_across(const Row* face, [[maybe_unused]] const Row* cut, std::uint32_t m) {
+    Row before = (face + m)[-1];
+    Row behind = face[m + 1];
+    if constexpr (kNumbered) {
+      before &= ~cut[m];
+      behind &= ~cut[m + 1];
+    }
+    return {face[m], face[m] & ~before, face[m] & ~behind};
   }
 
   /// Faces across the fastest axis in layer s: every bit is a layer of its own, and strips run from line to
-  /// line.
+  /// line. Follows those with changed bits from the first such line to their end.
   template <Side kSide>
-  void upright_faces(std::uint32_t s) {
-    FaceRows<Row>& now = st_.faces[at(kSide)][here_];
-    const FaceRows<Row>& before = st_.faces[at(kSide)][there_];
-    const Row* const solid = st_.solid[here_].data();
-    const Row* const hiding = st_.hiding[here_].data();
-    const Row* const cut_fast = st_.cut_fast[here_].data();
-    const Row hide = hide_fast(kSide, s);
-    for_rows([&](std::uint32_t m) {
-      const auto lanes = static_cast<std::uint64_t>(hide >> m);
-      const V h = Lanes::load(hiding + m);
-      V cut = h;
-      if constexpr (kNumbered) cut = Lanes::load(cut_fast + m);
-      V beyond;
-      if constexpr (kSide == Side::fast_neg) {
-        beyond = Lanes::either(Lanes::template up<1>(h), Lanes::where(lanes, Row{1}));
-      } else {
-        beyond = Lanes::either(Lanes::down(h), Lanes::where(lanes, last_));
-        if constexpr (kNumbered) cut = Lanes::either(Lanes::down(cut), Lanes::all(last_));
-      }
-      V f = Lanes::without(Lanes::load(solid + m), beyond);
-      if constexpr (kNumbered) f = Lanes::both(f, cut);
-      Lanes::store(f, now.face.data() + m);
-    });
-    RowSet rows{};
-    const Row* const face = now.face.data();
+  void upright_strips(RowSet rows, std::uint32_t s) {
+    if (rows == 0) return;
+    const Row* const face = st_.face[at(kSide)][here_].data();
+    const Row* const face_before = st_.face[at(kSide)][there_].data();
     const Row* const cut_mid = st_.cut_mid[here_].data();
-    for_rows([&](std::uint32_t m) {
-      const V f = Lanes::load(face + m);
-      V low = Lanes::load(face + m - 1);
-      V high = Lanes::load(face + m + 1);
-      if constexpr (kNumbered) {
-        low = Lanes::without(low, Lanes::load(cut_mid + m));
-        high = Lanes::without(high, Lanes::load(cut_mid + m + 1));
-      }
-      Lanes::store(Lanes::without(f, low), now.start.data() + m);
-      Lanes::store(Lanes::without(f, high), now.end.data() + m);
-      const V x =
-          changed(now, m, before, m, kNumbered ? Lanes::load(st_.cut_slow.data() + m) : Lanes::all(0));
-      Lanes::store(x, st_.changed.data() + m);
-      rows[m / 64] |= Lanes::any(x) << (m % 64);
-    });
-    keep_rows(rows);
-    std::uint32_t done = 0;
-    for_set(rows, [&](std::uint32_t m) {
-      if (m >= done) done = follow_strips<kSide>(now, before, m, s);
-    });
+    const Row* const cut_mid_before = st_.cut_mid[there_].data();
+    const Row* const cut_slow = st_.cut_slow.data();
+    const Outlet out = outlet(kSide, here_);
+    Quad* const open = st_.open[at(kSide)].data();
+    // Where a strip starts or ends depends on the rows beside it, too.
+    rows |= (rows << 1 | rows >> 1) & bits_below<Row>(e_.m);
+    while (rows != 0) {
+      std::uint32_t m = lowest_bit(rows);
+      Row closing = 0;
+      Row opening = 0;
+      do {
+        const Strips now = strips_across(face, cut_mid, m);
+        const Strips before = strips_across(face_before, cut_mid_before, m);
+        const Row x = changed(now, before, cut_slow + m);
+        closing = ((closing & ~before.start) | x) & before.face;
+        opening = ((opening & ~now.start) | x) & now.face;
+        const Row ends = closing & before.end;
+        const Row begins = opening & now.end;
+        Quad* const slots = open + std::size_t{m} * kRowBits<Row>;
+        for (Row bits = ends; bits != 0; bits &= bits - 1) {
+          const unsigned bit = lowest_bit(bits);
+          close_quad(out, slots[bit], bit, s);
+        }
+        for (Row bits = begins; bits != 0; bits &= bits - 1) {
+          const unsigned bit = lowest_bit(bits);
+          std::uint32_t begin = m;
+          while (goes_on(face, cut_mid, begin, bit)) --begin;
+          slots[bit] = open_quad(out, {bit, begin, m - begin + 1, s}, m, bit);
+        }
+        closing &= ~ends;
+        opening &= ~begins;
+        ++m;
+      } while ((closing | opening) != 0);
+      rows &= m < kRowBits<Row> ? ~Row{0} << m : Row{0};
+    }
+  }
+  /// Whether the strip at bit `bit` of row m came from the row before.
+  static HWY_INLINE bool goes_on(const Row* face, [[maybe_unused]] const Row* cut, std::uint32_t m,
+                                 unsigned bit) {
+    Row before = (face + m)[-1];
+    if constexpr (kNumbered) before &= ~cut[m];
+    return (before >> bit & 1) != 0;
   }
 
-  /// Follows the strips with changed bits from line m on, closes and opens them where they end, and returns
-  /// the line behind the last of them.
-  template <Side kSide>
-  std::uint32_t follow_strips(const FaceRows<Row>& now, const FaceRows<Row>& before, std::uint32_t m,
-                              std::uint32_t s) {
-    Row closing = 0;
-    Row opening = 0;
-    const Row* const start_before = before.start.data();
-    do {
-      const Row x = st_.changed.data()[m];
-      closing = ((closing & ~start_before[m]) | x) & before.face.data()[m];
-      opening = ((opening & ~now.start.data()[m]) | x) & now.face.data()[m];
-      const Row ends = closing & before.end.data()[m];
-      const Row begins = opening & now.end.data()[m];
-      std::uint8_t* const first = st_.row_first[at(kSide)].data() + std::size_t{m} * kRowBits<Row>;
-      for (Row bits = ends; bits != 0; bits &= bits - 1) {
-        const unsigned bit = lowest_bit(bits);
-        const Row here = bits & (Row{0} - bits);
-        std::uint32_t begin = m;
-        while ((start_before[begin] & here) == 0) --begin;
-        put<kSide>({bit, begin, m - begin + 1, first[bit], s - first[bit]}, there_, m, bit);
-      }
-      if (begins != 0) Lanes::mark(first, begins, static_cast<std::uint8_t>(s));
-      closing &= ~ends;
-      opening &= ~begins;
-      ++m;
-    } while ((closing | opening) != 0 && m < e_.m);
-    return m;
-  }
-
-  /// Closes what reaches the last layer.
+  /// Closes what reaches the last layer: as if one without faces followed it.
   void finish() {
     hide_slow(Side::slow_pos, here_, there_);
-    if constexpr (kNumbered) std::fill_n(st_.cut_slow.data(), e_.m, ~Row{0});
-    slow_faces<Side::slow_pos>(e_.s - 1, there_, here_);
-    finish_level<Side::mid_neg>();
-    finish_level<Side::mid_pos>();
-    finish_upright<Side::fast_neg>();
-    finish_upright<Side::fast_pos>();
-  }
-  template <Side kSide>
-  void finish_level() {
-    const FaceRows<Row>& last = st_.faces[at(kSide)][there_];
+    Row* const slow_pos = st_.face[at(Side::slow_pos)][0].data();
+    const Row* const solid = st_.solid[there_].data();
+    const Row* const hiding = st_.hiding[here_].data();
+    for (std::uint32_t m = 0; m < e_.m; ++m) slow_pos[m] = solid[m] & ~hiding[m];
+    std::array<RowSet, 6> rows{};
     for (std::uint32_t m = 0; m < e_.m; ++m) {
-      const std::uint8_t* const first = st_.row_first[at(kSide)].data() + std::size_t{m} * kRowBits<Row>;
-      close_strips<kSide>(last.end.data()[m], last.start.data()[m], first, m, e_.s, there_, m);
+      rows[at(Side::slow_pos)] |= Row{slow_pos[m] != 0 || (m != 0 && slow_pos[m - 1] != 0)} << m;
     }
-  }
-  template <Side kSide>
-  void finish_upright() {
-    const FaceRows<Row>& last = st_.faces[at(kSide)][there_];
-    FaceRows<Row>& none = st_.faces[at(kSide)][here_];
-    std::fill_n(none.face.data(), e_.m, Row{0});
-    std::fill_n(none.start.data(), e_.m, Row{0});
-    std::fill_n(none.end.data(), e_.m, Row{0});
-    std::copy_n(last.face.data(), e_.m, st_.changed.data());
-    for (std::uint32_t m = 0; m < e_.m;) {
-      m = last.face.data()[m] == 0 ? m + 1 : follow_strips<kSide>(none, last, m, e_.s);
-    }
-  }
-
-  /// Packs a rectangle whose material is that of bit `bit` of row `line` in `ring`.
-  template <Side kSide>
-  HWY_INLINE void put(const Rectangle& r, unsigned ring, std::uint32_t line, unsigned bit) {
-    QuadBuckets* bucket = in_.opaque;
-    bool transparent = false;
-    std::size_t number = 0;
-    if constexpr (kNumbered) {
-      for (unsigned k = 0; k < number_bits_; ++k) {
-        number |= static_cast<std::size_t>(plane(ring, 1 + k)[line] >> bit & 1) << k;
+    for (unsigned side = at(Side::mid_neg); side <= at(Side::fast_pos); ++side) {
+      const Row* const before = st_.face[side][there_].data();
+      Row* const none = st_.face[side][here_].data();
+      for (std::uint32_t m = 0; m < e_.m; ++m) {
+        rows[side] |= Row{before[m] != 0} << m;
+        none[m] = 0;
       }
-      transparent = mixed_ && (plane(ring, planes_ - 1)[line] >> bit & 1) != 0;
-    } else {
-      transparent = in_.codes->has_transparent();
     }
-    if (transparent) bucket = in_.transparent;
-    bucket->put(in_.direction[at(kSide)], r.layer,
-                in_.shape[at(kSide)].quad(r, in_.codes->material(transparent, number)));
+    slow_strips<Side::slow_pos>(rows[at(Side::slow_pos)], e_.s - 1, there_);
+    level_strips<Side::mid_neg>(rows[at(Side::mid_neg)], e_.s);
+    level_strips<Side::mid_pos>(rows[at(Side::mid_pos)], e_.s);
+    upright_strips<Side::fast_neg>(rows[at(Side::fast_neg)], e_.s);
+    upright_strips<Side::fast_pos>(rows[at(Side::fast_pos)], e_.s);
   }
 
   const SweepInput& in_;

@@ -54,12 +54,6 @@ struct alignas(64) LayerRows {
   const Row* data() const { return slots.data() + kBefore; }
 };
 
-/// Faces of one side in one layer, and where their strips start and end.
-template <class Row>
-struct FaceRows {
-  LayerRows<Row> face, start, end;
-};
-
 template <class Row>
 struct SweepState {
   using Rows = LayerRows<Row>;
@@ -69,11 +63,9 @@ struct SweepState {
   std::array<Rows, 2> hiding;  // voxels that hide a face, with the middle neighbours' in the slots around
   std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
   Rows cut_slow;
-  std::array<std::array<FaceRows<Row>, 2>, 6> faces;
-  Rows changed, closing, opening;
-  /// The row in which the rectangle that is open here began: by side, then end of the strip (slow), row and
-  /// end (mid), end and bit (fast).
-  std::array<std::array<std::uint8_t, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 6> row_first;
+  std::array<std::array<Rows, 2>, 6> face;  // voxels whose face shows, by side
+  /// Quads that are open, by side; then by end of the strip (slow), row and end (middle), end and bit (fast).
+  std::array<std::array<Quad, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 6> open;
 };
 
 struct SweepInput {

@@ -50,6 +50,8 @@ class MaterialCodes {
     for (const auto& numbered : of_class_) last |= numbered.empty() ? 0 : numbered.size() - 1;
     return static_cast<unsigned>(std::bit_width(last));
   }
+  /// Those of a class, by number.
+  const Material* materials(bool transparent) const { return of_class_[transparent ? 1 : 0].data(); }
   Material material(bool transparent, std::size_t number) const {
     return of_class_[transparent ? 1 : 0][number];
   }

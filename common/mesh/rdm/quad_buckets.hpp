@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
+#include <utility>
 
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/quad.hpp"
@@ -15,8 +17,16 @@ namespace runstone::rdm {
 
 class QuadBuckets {
  public:
-  void put(Direction direction, std::uint32_t layer, Quad quad) {
-    Bucket& bucket = buckets_[static_cast<std::size_t>(direction) * kSideMax + layer];
+  /// The quads of one layer.
+  struct Bucket {
+    std::unique_ptr<Quad[]> quads;
+    std::uint32_t count = 0;
+    std::uint32_t room = 0;  // a multiple of kStep
+  };
+
+  /// The buckets of one direction, by layer.
+  Bucket* of(Direction direction) { return buckets_.data() + static_cast<std::size_t>(direction) * kSideMax; }
+  static void put(Bucket& bucket, Quad quad) {
     if (bucket.count == bucket.room) grow(bucket);
     bucket.quads[bucket.count++] = quad;
   }
@@ -25,45 +35,40 @@ class QuadBuckets {
   /// O(quads + layers).
   void finish(const std::array<std::uint8_t, 3>& sides, QuadLayers& out) {
     std::size_t total = 0;
-    for_each_layer(sides, [&](std::size_t at) { total += buckets_[at].count; });
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      for (std::size_t i = d * kSideMax; i < d * kSideMax + sides[d / 2]; ++i) total += buckets_[i].count;
+    }
     out.quads.resize(total + kStep);  // room for whole steps; the vector keeps it
     Quad* to = out.quads.data();
-    std::size_t filled = 0;
-    std::size_t next = 0;
-    for_each_layer(sides, [&](std::size_t at) {
-      for (; next <= at; ++next) out.first[next] = static_cast<std::uint32_t>(filled);
-      Bucket& bucket = buckets_[at];
-      for (std::size_t i = 0; i < bucket.count; i += kStep) {
-        std::copy_n(bucket.quads.get() + i, kStep, to + filled + i);
+    std::uint32_t* const first = out.first.data();
+    std::uint32_t filled = 0;
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      const std::size_t end = d * kSideMax + sides[d / 2];
+      for (std::size_t at = d * kSideMax; at < end; ++at) {
+        first[at] = filled;
+        Bucket& bucket = buckets_[at];
+        const std::uint32_t count = bucket.count;
+        const Quad* const from = bucket.quads.get();
+        for (std::uint32_t i = 0; i < count; i += kStep) {
+          std::memcpy(to + filled + i, from + i, kStep * sizeof(Quad));
+        }
+        filled += count;
+        bucket.count = 0;
       }
-      filled += bucket.count;
-      bucket.count = 0;
-    });
-    for (; next < out.first.size(); ++next) out.first[next] = static_cast<std::uint32_t>(filled);
+      std::fill(first + end, first + (d + 1) * kSideMax, filled);
+    }
+    first[kDirectionCount * kSideMax] = filled;
     out.quads.resize(total);
   }
 
  private:
   static constexpr std::size_t kStep = 4;  // quads copied at once
-  struct Bucket {
-    std::unique_ptr<Quad[]> quads;
-    std::uint32_t count = 0;
-    std::uint32_t room = 0;  // a multiple of kStep
-  };
-
   static void grow(Bucket& bucket) {
     const std::uint32_t room = bucket.room == 0 ? 32 : bucket.room * 2;
     auto quads = std::make_unique<Quad[]>(room);
     std::copy_n(bucket.quads.get(), bucket.count, quads.get());
     bucket.quads = std::move(quads);
     bucket.room = room;
-  }
-
-  template <class F>
-  static void for_each_layer(const std::array<std::uint8_t, 3>& sides, F&& visit) {
-    for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      for (std::size_t layer = 0; layer < sides[d / 2]; ++layer) visit(d * kSideMax + layer);
-    }
   }
 
   std::array<Bucket, kDirectionCount * kSideMax> buckets_;

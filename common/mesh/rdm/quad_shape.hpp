@@ -1,5 +1,6 @@
 // QuadShape: how the quads of one direction lie: which axis their strips run along, which axis their rows go
-// up. Turns a rectangle of faces into packed bits with shifts alone.
+// up. Turns a rectangle of faces into packed bits with shifts alone, in two steps: a strip opens when
+// it is first met and closes behind its last row.
 #pragma once
 #include <cstdint>
 
@@ -8,10 +9,9 @@
 
 namespace runstone::rdm {
 
-/// A rectangle of faces in one layer: strips of `length` faces from `begin`, repeated in `rows` rows from
-/// `row`.
-struct Rectangle {
-  std::uint32_t layer, begin, length, row, rows;
+/// A strip of `length` faces from `begin` in one row of a layer.
+struct Strip {
+  std::uint32_t layer, begin, length, row;
 };
 
 class QuadShape {
@@ -26,10 +26,16 @@ class QuadShape {
         length_shift_(u_axis_of(axis_of(direction)) == strip ? 21 : 28),
         rows_shift_(u_axis_of(axis_of(direction)) == strip ? 28 : 21) {}
 
-  constexpr Quad quad(const Rectangle& r, Material material) const {
-    return {base_ | std::uint64_t{r.layer} << layer_shift_ | std::uint64_t{r.begin} << strip_shift_ |
-            std::uint64_t{r.row} << row_shift_ | std::uint64_t{r.length - 1} << length_shift_ |
-            std::uint64_t{r.rows - 1} << rows_shift_ | std::uint64_t{material} << 38};
+  /// The quad of a strip whose last row is not known yet; close() adds it.
+  constexpr Quad open(const Strip& s, Material material) const {
+    return {(base_ | std::uint64_t{s.layer} << layer_shift_ | std::uint64_t{s.begin} << strip_shift_ |
+             std::uint64_t{s.row} << row_shift_ | std::uint64_t{s.length - 1} << length_shift_ |
+             std::uint64_t{material} << 38) -
+            (std::uint64_t{s.row + 1} << rows_shift_)};
+  }
+  /// The same strip in all rows before `row_end`.
+  constexpr Quad close(Quad open, std::uint32_t row_end) const {
+    return {open.bits + (std::uint64_t{row_end} << rows_shift_)};
   }
 
  private:

@@ -63,16 +63,28 @@ constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
 void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
   scratch.codes.clear();
   scratch.runs.resize(chunk.runs.size());
-  rdm::CodedRun* const out = scratch.runs.data();
-  chunk.runs.visit([&](const auto& runs) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      out[i] = {runs.end(i), scratch.codes.number(runs.material(i), visibility)};
-    }
+  chunk.runs.visit([&, out = scratch.runs.data()](const auto& runs) {
+    rdm::MaterialCodes& codes = scratch.codes;
+    const std::size_t size = runs.size();
+    for (std::size_t i = 0; i < size; ++i) out[i] = {runs.end(i), codes.number(runs.material(i), visibility)};
   });
   // A single transparent material is meshed as a single opaque one would be.
   if (scratch.codes.solid_count() == 1 && scratch.codes.has_transparent()) {
     for (rdm::CodedRun& run : scratch.runs) run.code = run.code != 0 ? 1 : 0;
   }
+}
+
+template <class Rows, class CodeOf>
+void read_planes(const RunChunk& neighbour, rdm::LayerPlace place, unsigned count, Rows* planes,
+                 CodeOf code_of) {
+  if (neighbour.is_uniform()) {
+    const Code code = code_of(neighbour.runs.material(0));
+    for (unsigned k = 0; k < count; ++k) {
+      planes[k].fill(typename Rows::value_type{0} - (code >> k & 1));
+    }
+    return;
+  }
+  rdm::LayerReader<typename Rows::value_type, CodeOf>(neighbour, place, planes, count, code_of);
 }
 
 template <class Row>
@@ -93,25 +105,30 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
                   side_of(*neighbour, axes.row) == side_of(chunk, axes.row));
   const bool single = codes.solid_count() == 1;
   const bool mixed = !single && codes.has_transparent();
-  const unsigned number_bits = codes.number_bits();
-  const unsigned count = mixed ? number_bits + 2 : 1;
-  // One material hides itself, whatever its class.
-  const Code hiding = single ? rdm::kOpaqueBit | rdm::kTransparentBit : rdm::kOpaqueBit;
-  const auto code_of = [&](Material material) -> Code {
-    const Code code = codes.code(material, visibility);
-    if (!mixed) return (code & hiding) != 0 ? 1 : 0;
-    return (code & ~rdm::kTransparentBit) | ((code & rdm::kTransparentBit) != 0 ? Code{1} << (count - 1) : 0);
-  };
-  if (neighbour->is_uniform()) {
-    const Code code = code_of(neighbour->runs.material(0));
-    for (unsigned k = 0; k < count; ++k) planes[k].fill((code >> k & 1) != 0 ? ~Row{0} : Row{0});
-    borders.clear[at] = mixed && (code >> (count - 1) & 1) != 0;
+  const std::uint32_t layer = is_positive(direction) ? 0u : side_of(*neighbour, axes.layer) - 1u;
+  const rdm::LayerPlace place{axes.layer, axes.bit, layer};
+  if (!mixed) {
+    // One material hides itself, whatever its class; it stands here as an opaque one does otherwise.
+    const Material own = single ? codes.material(codes.has_transparent(), 0) : kEmpty;
+    const Material hiding = own == kEmpty || visibility[own] == Visibility::opaque ? kEmpty : own;
+    if (hiding == kEmpty) {
+      read_planes(*neighbour, place, 1, planes.data(),
+                  [table = visibility.data()](Material material) -> Code {
+                    return table[material] == Visibility::opaque ? 1 : 0;
+                  });
+    } else {
+      read_planes(*neighbour, place, 1, planes.data(),
+                  [table = visibility.data(), hiding](Material material) -> Code {
+                    return table[material] == Visibility::opaque || material == hiding ? 1 : 0;
+                  });
+    }
     return;
   }
-  const std::uint32_t layer = is_positive(direction) ? 0u : side_of(*neighbour, axes.layer) - 1u;
-  rdm::LayerReader<Row, decltype(code_of)>(*neighbour, {axes.layer, axes.bit, layer}, planes.data(), count,
-                                           code_of);
-  if (!mixed) return;
+  const unsigned count = codes.number_bits() + 2;
+  read_planes(*neighbour, place, count, planes.data(), [&](Material material) -> Code {
+    const Code code = codes.code(material, visibility);
+    return (code & ~rdm::kTransparentBit) | ((code & rdm::kTransparentBit) != 0 ? Code{1} << (count - 1) : 0);
+  });
   const auto& clear = planes[count - 1];
   borders.clear[at] = std::any_of(clear.begin(), clear.end(), [](Row row) { return row != 0; });
 }
@@ -158,7 +175,11 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Vis
     mesh_chunk(chunk, neighbours, visibility, state, state.wide);
   }
   state.opaque.finish(sides, out.opaque);
-  state.transparent.finish(sides, out.transparent);
+  if (state.codes.has_transparent()) {
+    state.transparent.finish(sides, out.transparent);
+  } else {
+    out.transparent.clear();
+  }
 }
 
 }  // namespace runstone
