@@ -1,0 +1,75 @@
+#include "tests/bench/bench_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <set>
+
+#include "tests/bench/contestant.hpp"
+#include "tests/bench/measured_worlds.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr const char* kSmallLuanti = RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small";
+
+std::set<std::string> meshers() {
+  const auto names = contestant_names();
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
+                                       std::ostream& err) {
+  BenchOptions options;
+  options.luanti = kSmallLuanti;
+  bool quick = false;
+  CLI::App app("Measures meshing, on one core, and prints tables of Markdown.", "runstone-bench");
+  app.require_subcommand(1);
+  const auto common = [&](CLI::App* command, const std::set<std::string>& worlds) {
+    command->add_option("--worlds", options.worlds, "worlds to measure; all by default")
+        ->delimiter(',')
+        ->check(CLI::IsMember(worlds));
+    command->add_option("--luanti", options.luanti, "folder of a Luanti world")
+        ->capture_default_str()
+        ->check(CLI::ExistingDirectory);
+    command->add_option("--edges", options.edges, "sides of the volumes, in voxels")
+        ->delimiter(',')
+        ->check(CLI::Range(8, 128));
+    command->add_option("--csv", options.csv, "write all rows to this file");
+    command->add_option("--json", options.json, "write all rows and the summary to this file");
+  };
+  CLI::App* mesh =
+      app.add_subcommand("mesh", "meshers against each other: mesher x world x edge x axis order");
+  common(mesh, measured_world_names());
+  mesh->add_option("--meshers", options.meshers, "meshers to measure; all by default")
+      ->delimiter(',')
+      ->check(CLI::IsMember(meshers()));
+  mesh->add_option("--orders", options.orders, "axis orders of the chunk, by their runs")
+      ->capture_default_str()
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::set<std::string>{"best", "worst", "all"}));
+  mesh->add_option("--min-runs", options.repetitions, "repetitions of each mesher in each cell")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  mesh->add_flag("--quick", quick, "three repetitions, edge 16 and best orders, unless said otherwise");
+
+  CLI::App* chunk_edge = app.add_subcommand("chunk-edge", "what the edge of world chunks costs and saves");
+  common(chunk_edge, landscape_names());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error, out, err) == 0 ? 0 : 2};
+  }
+  if (chunk_edge->parsed()) options.command = BenchOptions::Command::chunk_edge;
+  if (quick) {
+    if (mesh->count("--min-runs") == 0) options.repetitions = 3;
+    if (mesh->count("--edges") == 0) options.edges = {16};
+    if (mesh->count("--orders") == 0) options.orders = {"best"};
+  }
+  if (options.edges.empty()) {
+    options.edges = chunk_edge->parsed() ? std::vector<unsigned>{16, 32, 64} : std::vector<unsigned>{32, 62};
+  }
+  return {options, 0};
+}
+
+}  // namespace runstone::bench

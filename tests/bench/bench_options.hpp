@@ -1,0 +1,31 @@
+// BenchOptions: what the command line of runstone-bench says.
+#pragma once
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace runstone::bench {
+
+struct BenchOptions {
+  enum class Command { mesh, chunk_edge };
+  Command command = Command::mesh;
+  std::vector<std::string> worlds;   // empty: all
+  std::vector<std::string> meshers;  // contestants; empty: all
+  std::vector<unsigned> edges;
+  std::vector<std::string> orders = {"best", "worst"};  // or "all"
+  std::string luanti;                                   // folder of a world
+  std::string csv, json;                                // files; empty: none
+  unsigned repetitions = 30;
+};
+
+/// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.
+/// Both were printed, to `out` and `err`.
+struct ParsedBenchOptions {
+  std::optional<BenchOptions> options;
+  int exit_code = 0;
+};
+ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
+                                       std::ostream& err);
+
+}  // namespace runstone::bench

@@ -1,0 +1,65 @@
+#include "tests/bench/bench_program.hpp"
+
+#include <fmt/ostream.h>
+
+#include <fstream>
+#include <functional>
+
+#include "tests/bench/bench_options.hpp"
+#include "tests/bench/chunk_edge.hpp"
+#include "tests/bench/mesh_bench.hpp"
+
+namespace runstone::bench {
+namespace {
+
+/// Nothing if `file` is empty. Returns whether all went well.
+bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write, std::ostream& err) {
+  if (file.empty()) return true;
+  std::ofstream out(file);
+  write(out);
+  out.flush();
+  if (out) return true;
+  fmt::print(err, "runstone-bench: cannot write {}\n", file);
+  return false;
+}
+
+int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_mesh_bench(options, err);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_machine(result->machine, out);
+  fmt::print(out, "{} repetitions of each mesher in each cell, shuffled\n", result->repetitions);
+  write_tables(*result, out);
+  for (const std::string& cell : result->skipped) fmt::print(out, "\nskipped: {}", cell);
+  fmt::print(out, "\n\n");
+  write_bars(result->bars, out);
+  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
+  return csv && json ? 0 : 1;
+}
+
+int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto rows = run_chunk_edge(options, err);
+  if (!rows) {
+    fmt::print(err, "runstone-bench: {}\n", rows.error());
+    return 1;
+  }
+  write_machine(this_machine(), out);
+  write_table(*rows, out);
+  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*rows, to); }, err);
+  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*rows, to); }, err);
+  return csv && json ? 0 : 1;
+}
+
+}  // namespace
+
+int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  const ParsedBenchOptions parsed = parse_bench_options(argc, argv, out, err);
+  if (!parsed.options) return parsed.exit_code;
+  if (parsed.options->command == BenchOptions::Command::mesh) return mesh(*parsed.options, out, err);
+  return chunk_edge(*parsed.options, out, err);
+}
+
+}  // namespace runstone::bench

@@ -1,0 +1,190 @@
+#include "tests/bench/contestant.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "common/core/assert.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/reference/binary_greedy.hpp"
+#include "common/mesh/reference/culled_mesher.hpp"
+#include "common/mesh/reference/grid_rdm.hpp"
+#include "common/mesh/reference/material_octree.hpp"
+#include "common/mesh/reference/rle_rdm.hpp"
+#include "common/mesh/reference/simple_mesher.hpp"
+#include "common/runs/reorder.hpp"
+
+namespace runstone::bench {
+namespace {
+
+using namespace reference;
+
+constexpr std::array<std::string_view, 9> kNames = {"rdm",         "rdm_plain",   "decode_binary",
+                                                    "grid_binary", "mask_binary", "culled",
+                                                    "simple",      "grid_rdm",    "rle_rdm"};
+
+/// Adds the time since `start` to a phase; returns the time now.
+std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
+  const std::uint64_t now = now_ns();
+  phases[static_cast<std::size_t>(phase)] += now - start;
+  return now;
+}
+
+Contestant rdm(const Volume& volume, const VisibilityTable& visibility, bool plain) {
+  struct State {
+    RdmScratch scratch;
+    ChunkMesh mesh;
+    MeshNeighbours neighbours;
+  };
+  auto state = std::make_shared<State>();
+  state->scratch.use_plain_path(plain);
+  state->neighbours = volume.scene.pointers();
+  const auto mesh = [state, &volume, &visibility](PhaseTimes&) {
+    mesh_rdm(volume.scene.chunk, state->neighbours, visibility, state->scratch, state->mesh);
+  };
+  return {"", mesh, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
+}
+
+Contestant binary(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    GridNeighbours neighbours;
+    std::vector<Material> layer;
+    DenseGrid grid;
+    OccupancyMask mask;
+    BinaryScratch scratch;
+    ChunkMesh mesh;
+  };
+  auto state = std::make_shared<State>();
+  state->neighbours = volume.scene.pointers();
+  const RunChunk& chunk = volume.scene.chunk;
+  decode(chunk, state->neighbours, state->layer, state->grid);
+  occupancy_of(state->grid, visibility, state->mask);
+  Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, state->grid.byte_size()};
+  if (name == "mask_binary") {
+    out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
+    out.mesh = [state](PhaseTimes&) {
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  } else if (name == "grid_binary") {
+    out.mesh = [state, &visibility](PhaseTimes& phases) {
+      const std::uint64_t start = now_ns();
+      occupancy_of(state->grid, visibility, state->mask);
+      book(phases, Phase::mask, start);
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  } else {
+    out.storage_bytes = chunk.runs.byte_size();
+    out.mesh = [state, &chunk, &visibility](PhaseTimes& phases) {
+      std::uint64_t time = now_ns();
+      decode(chunk, state->neighbours, state->layer, state->grid);
+      time = book(phases, Phase::decode, time);
+      occupancy_of_decoded(chunk, state->neighbours, state->grid, visibility, state->mask);
+      book(phases, Phase::mask, time);
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  }
+  return out;
+}
+
+/// An octree deep enough for a cube of `side` voxels.
+MaterialOctree octree_over(VoxelPos origin, std::int32_t side) {
+  const auto bricks =
+      static_cast<unsigned>((side + MaterialOctree::kBrickSide - 1) / MaterialOctree::kBrickSide);
+  return {origin, static_cast<unsigned>(std::bit_width(bricks - 1))};
+}
+
+Contestant culled(const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    MaterialOctree octree;
+    DenseGrid grid;
+    std::vector<Quad> quads;
+  };
+  const auto side = static_cast<std::int32_t>(volume.edge);
+  // The chunk at 0 0 0, what is next to it around.
+  auto state = std::make_shared<State>(State{octree_over({-side, -side, -side}, 3 * side), {}, {}});
+  MaterialOctree alone = octree_over({}, side);
+  state->octree.insert({}, volume.scene.chunk);
+  alone.insert({}, volume.scene.chunk);
+  for (unsigned d = 0; d < kDirectionCount; ++d) {
+    const auto& beside = volume.scene.neighbours[d];
+    const VoxelPos at = origin_of(neighbour({}, static_cast<Direction>(d)), side);
+    if (beside) state->octree.insert(at, *beside);
+  }
+  state->octree.compact();
+  alone.compact();
+  const auto mesh = [state, &volume, &visibility](PhaseTimes& phases) {
+    const CulledPhases spent = mesh_culled(state->octree, {}, volume.scene.chunk.extent, visibility, now_ns,
+                                           state->grid, state->quads);
+    phases[static_cast<std::size_t>(Phase::octree)] += spent.octree;
+  };
+  return {"", mesh, [state] { return state->quads.size(); }, alone.byte_size()};
+}
+
+/// A mesher of a ready grid: mesh(grid, quads).
+template <class Mesh>
+Contestant of_grid(const Volume& volume, Mesh mesh) {
+  struct State {
+    DenseGrid grid;
+    std::vector<Quad> quads;
+    GridRdmScratch scratch;
+  };
+  auto state = std::make_shared<State>();
+  std::vector<Material> layer;
+  decode(volume.scene.chunk, volume.scene.pointers(), layer, state->grid);
+  return {"", [state, mesh](PhaseTimes&) { mesh(*state); }, [state] { return state->quads.size(); },
+          state->grid.byte_size()};
+}
+
+Contestant rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    RunChunk chunk;
+    std::vector<Quad> quads;
+  };
+  auto state = std::make_shared<State>(State{reorder(volume.scene.chunk, AxisOrder::zyx), {}});
+  return {"", [state, &visibility](PhaseTimes&) { mesh_rle_rdm(state->chunk, visibility, state->quads); },
+          [state] { return state->quads.size(); }, state->chunk.runs.byte_size()};
+}
+
+Contestant of_name(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  if (name == "rdm" || name == "rdm_plain") return rdm(volume, visibility, name == "rdm_plain");
+  if (name.ends_with("_binary")) return binary(name, volume, visibility);
+  if (name == "culled") return culled(volume, visibility);
+  if (name == "simple") {
+    return of_grid(volume, [&](auto& s) { mesh_simple(s.grid, visibility, s.quads); });
+  }
+  if (name == "grid_rdm") {
+    return of_grid(volume, [&](auto& s) { mesh_grid_rdm(s.grid, visibility, s.scratch, s.quads); });
+  }
+  return rle_rdm(volume, visibility);
+}
+
+}  // namespace
+
+std::uint64_t now_ns() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+}
+
+std::uint64_t core_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
+}
+
+std::span<const std::string_view> contestant_names() { return kNames; }
+
+std::optional<Contestant> make_contestant(std::string_view name, const Volume& volume,
+                                          const VisibilityTable& visibility) {
+  const auto known = std::find(kNames.begin(), kNames.end(), name);
+  RUNSTONE_ASSERT(known != kNames.end());
+  if (name.ends_with("_binary") && volume.edge > kBinarySideMax) return std::nullopt;
+  Contestant out = of_name(name, volume, visibility);
+  out.name = *known;
+  return out;
+}
+
+}  // namespace runstone::bench

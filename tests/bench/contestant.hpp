@@ -1,0 +1,52 @@
+// Contestant: a mesher set before one volume, with its input made ready and its buffers warm, so that calling
+// it times what the name says and nothing else.
+//   rdm               the product, from runs
+//   rdm_plain         the same without vector instructions
+//   decode_binary     binary greedy from runs: decode, mask (from the runs), mesh
+//   grid_binary       binary greedy with the dense grid ready: mask, mesh
+//   mask_binary       binary greedy with grid and occupancy mask ready: mesh
+//   culled            culled faces over samples of an octree: octree, mesh
+//   simple            six quads a voxel, dense grid ready: mesh
+//   grid_rdm          the thesis' Grid RDM, dense grid ready: mesh
+//   rle_rdm           the thesis' RLE RDM, from runs in its own order: mesh
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "tests/bench/voxel_world.hpp"
+
+namespace runstone::bench {
+
+enum class Phase : std::uint8_t { decode, octree, mask, mesh };
+inline constexpr std::size_t kPhaseCount = 4;
+inline constexpr std::array<std::string_view, kPhaseCount> kPhaseNames = {"decode", "octree", "mask", "mesh"};
+
+/// Nanoseconds by Phase. Whoever has phases before `mesh` adds to them; the rest of a call is `mesh`.
+using PhaseTimes = std::array<std::uint64_t, kPhaseCount>;
+
+/// Monotonic, ns.
+std::uint64_t now_ns();
+/// What this thread has had of a core, ns: time that others have it does not count. A system call.
+std::uint64_t core_ns();
+
+struct Contestant {
+  std::string_view name;
+  std::function<void(PhaseTimes&)> mesh;  // one mesh into its own buffers
+  std::function<std::size_t()> quads;     // of the last mesh
+  std::size_t storage_bytes = 0;          // voxels as it keeps them between meshes
+};
+
+/// All names, in the order above.
+std::span<const std::string_view> contestant_names();
+
+/// None if the mesher cannot take the volume: binary greedy stops at sides of 64. `volume` and `visibility`
+/// must outlive it. Aborts on an unknown name.
+std::optional<Contestant> make_contestant(std::string_view name, const Volume& volume,
+                                          const VisibilityTable& visibility);
+
+}  // namespace runstone::bench

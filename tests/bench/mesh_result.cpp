@@ -1,0 +1,168 @@
+#include "tests/bench/mesh_result.hpp"
+
+#include <fmt/ostream.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "tests/bench/statistics.hpp"
+
+namespace runstone::bench {
+namespace {
+
+std::string ratio_text(const std::optional<double>& ratio) {
+  return ratio ? fmt::format("{:.3f}", *ratio) : "";
+}
+
+nlohmann::ordered_json json_of(const MeshRow& row) {
+  nlohmann::ordered_json out = {{"world", row.world},
+                                {"part", row.part},
+                                {"edge", row.edge},
+                                {"order", row.order},
+                                {"rank", row.rank},
+                                {"mesher", row.mesher},
+                                {"runs", row.runs},
+                                {"median_ns", row.timing.median_ns},
+                                {"min_ns", row.timing.min_ns},
+                                {"p90_ns", row.timing.p90_ns}};
+  for (std::size_t p = 0; p < kPhaseCount; ++p) {
+    out[std::string(kPhaseNames[p]) + "_ns"] = row.timing.phase_ns[p];
+  }
+  out["ns_per_run"] = row.ns_per_run();
+  out["quads"] = row.timing.quads;
+  out["vertices"] = row.vertices();
+  out["storage_bytes"] = row.timing.storage_bytes;
+  out["allocations"] = row.timing.allocations;
+  out["copy_ns"] = row.timing.copy_ns;
+  if (row.against_decode) out["against_decode"] = *row.against_decode;
+  if (row.against_grid) out["against_grid"] = *row.against_grid;
+  return out;
+}
+
+/// Sums of rows of one mesher over the volumes of a world.
+struct Total {
+  std::size_t volumes = 0, runs = 0, quads = 0, storage = 0, allocations = 0;
+  double median = 0, min = 0, p90 = 0, copy = 0;
+  std::array<double, kPhaseCount> phase{};
+  std::vector<double> against_decode, against_grid;
+  double decode = 0, grid = 0;  // medians of the two baselines, over the rows that have ratios
+
+  void add(const MeshRow& row) {
+    ++volumes;
+    runs += row.runs;
+    quads += row.timing.quads;
+    storage += row.timing.storage_bytes;
+    allocations += row.timing.allocations;
+    median += row.timing.median_ns;
+    min += row.timing.min_ns;
+    p90 += row.timing.p90_ns;
+    copy += row.timing.copy_ns;
+    for (std::size_t p = 0; p < kPhaseCount; ++p) phase[p] += row.timing.phase_ns[p];
+    if (row.against_decode) {
+      against_decode.push_back(*row.against_decode);
+      decode += *row.against_decode * row.timing.median_ns;
+    }
+    if (row.against_grid) {
+      against_grid.push_back(*row.against_grid);
+      grid += *row.against_grid * row.timing.median_ns;
+    }
+  }
+};
+
+/// Geometric mean, and ratio of sums where that is another figure.
+std::string ratios(const std::vector<double>& each, double sum, double ours) {
+  if (each.empty()) return "–";
+  const std::string mean = fmt::format("{:.2f}", geometric_mean(each));
+  return each.size() == 1 ? mean : fmt::format("{}; {:.2f}", mean, sum / ours);
+}
+
+void write_total(const std::string& mesher, const Total& total, std::ostream& out) {
+  const auto volumes = static_cast<double>(total.volumes);
+  const auto us = [&](double sum) { return fmt::format("{:.2f}", sum / volumes / 1000); };
+  const auto mean = [&](std::size_t sum) {
+    return fmt::format("{:.0f}", static_cast<double>(sum) / volumes);
+  };
+  fmt::print(out, "| {} | {} | {} | {} |", mesher, us(total.median), us(total.min), us(total.p90));
+  for (const double phase : total.phase) fmt::print(out, " {} |", phase == 0 ? "–" : us(phase));
+  fmt::print(out, " {:.1f} | {} | {} | {} | {} | {} | {} | {:.1f} |\n",
+             total.median / static_cast<double>(total.runs), mean(total.quads), mean(4 * total.quads),
+             mean(total.storage), mean(total.allocations),
+             ratios(total.against_decode, total.decode, total.median),
+             ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
+}
+
+}  // namespace
+
+std::string MeshRow::cell() const {
+  return fmt::format("{} {} edge {} order {} {}", world, part, edge, order, mesher);
+}
+
+void write_csv(const MeshResult& result, std::ostream& out) {
+  fmt::print(
+      out,
+      "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,mask_ns,mesh_ns,"
+      "ns_per_run,quads,vertices,storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
+  for (const MeshRow& row : result.rows) {
+    const Timing& t = row.timing;
+    fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge, row.order,
+               row.rank, row.mesher, row.runs, t.median_ns, t.min_ns, t.p90_ns);
+    for (const double phase : t.phase_ns) fmt::print(out, "{:.1f},", phase);
+    fmt::print(out, "{:.2f},{},{},{},{},{:.1f},{},{}\n", row.ns_per_run(), t.quads, row.vertices(),
+               t.storage_bytes, t.allocations, t.copy_ns, ratio_text(row.against_decode),
+               ratio_text(row.against_grid));
+  }
+}
+
+void write_json(const MeshResult& result, std::ostream& out) {
+  const Machine& m = result.machine;
+  nlohmann::ordered_json json = {{"machine",
+                                  {{"cpu", m.cpu},
+                                   {"cores", m.cores},
+                                   {"compiler", m.compiler},
+                                   {"commit", m.commit},
+                                   {"simd", m.simd}}},
+                                 {"repetitions", result.repetitions},
+                                 {"rows", nlohmann::ordered_json::array()},
+                                 {"skipped", result.skipped},
+                                 {"summary", nlohmann::ordered_json::array()}};
+  for (const MeshRow& row : result.rows) json["rows"].push_back(json_of(row));
+  for (const Bar& bar : result.bars) {
+    json["summary"].push_back({{"case", bar.what},
+                               {"bar", bar.wanted},
+                               {"measured", bar.measured},
+                               {"verdict", name_of(bar.verdict)}});
+  }
+  out << json.dump(1) << '\n';
+}
+
+void write_tables(const MeshResult& result, std::ostream& out) {
+  using Key = std::tuple<std::string, unsigned, std::string>;
+  std::vector<Key> keys;                                             // in the order measured
+  std::map<Key, std::vector<std::pair<std::string, Total>>> by_key;  // meshers in the order measured
+  for (const MeshRow& row : result.rows) {
+    const Key key = {row.world, row.edge, row.rank == "between" ? row.order : row.rank};
+    if (!by_key.contains(key)) keys.push_back(key);
+    auto& meshers = by_key[key];
+    const auto known = std::find_if(meshers.begin(), meshers.end(),
+                                    [&](const auto& entry) { return entry.first == row.mesher; });
+    Total& total = known != meshers.end() ? known->second : meshers.emplace_back(row.mesher, Total{}).second;
+    total.add(row);
+  }
+  for (const Key& key : keys) {
+    const auto& [world, edge, order] = key;
+    const auto& meshers = by_key[key];
+    const Total& first = meshers.front().second;
+    fmt::print(out, "\n**{}**, edge {}, {} order, {} volume{}, {} runs{}\n\n", world, edge, order,
+               first.volumes, first.volumes == 1 ? "" : "s", first.runs / first.volumes,
+               first.volumes == 1 ? "" : " on average");
+    fmt::print(
+        out,
+        "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads | vertices | "
+        "storage B | allocations | x decode + binary | x grid ready | copies |\n");
+    fmt::print(out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const auto& [mesher, total] : meshers) write_total(mesher, total, out);
+  }
+}
+
+}  // namespace runstone::bench

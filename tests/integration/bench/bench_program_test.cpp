@@ -1,0 +1,186 @@
+// The benchmark as a program: what it was asked for is in its files, and what it counts is right. Nothing is
+// said of times.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/bench/bench_program.hpp"
+#include "tests/bench/contestant.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::bench;
+
+namespace {
+
+struct Output {
+  int exit_code = 0;
+  std::string out, err;
+};
+
+Output run(const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv = {"runstone-bench"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  std::ostringstream out, err;
+  const int exit_code = bench_program(static_cast<int>(argv.size()), argv.data(), out, err);
+  return {exit_code, out.str(), err.str()};
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+using CsvRow = std::map<std::string, std::string>;
+
+/// Rows by the names in the first line.
+std::vector<CsvRow> read_csv(const std::string& file) {
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> out;
+    std::istringstream in(line + ',');
+    for (std::string cell; std::getline(in, cell, ',');) out.push_back(cell);
+    return out;
+  };
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> names = cells(line);
+  std::vector<CsvRow> out;
+  while (std::getline(in, line)) {
+    const std::vector<std::string> values = cells(line);
+    REQUIRE(values.size() == names.size());
+    CsvRow& row = out.emplace_back();
+    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "mesh.csv", json = folder / "mesh.json";
+  const Output output =
+      run({"mesh", "--quick", "--worlds", "hills,town,checkerboard,uniform,scenarios,luanti", "--edges", "32",
+           "--csv", csv, "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+
+  const std::vector<CsvRow> rows = read_csv(csv);
+  std::map<std::string, std::set<std::string>> meshers;  // by world and part
+  std::map<std::string, std::set<std::string>> parts;    // by world
+  std::map<std::string, std::map<std::string, std::size_t>> quads;
+  for (const CsvRow& row : rows) {
+    const std::string cell = row.at("world") + " " + row.at("part");
+    CAPTURE(cell, row.at("mesher"));
+    CHECK(meshers[cell].insert(row.at("mesher")).second);
+    parts[row.at("world")].insert(row.at("part"));
+    quads[cell][row.at("mesher")] = std::stoul(row.at("quads"));
+    CHECK(row.at("edge") == "32");
+    CHECK(row.at("rank") == "best");
+    CHECK(row.at("allocations") == "0");
+    CHECK(std::stoul(row.at("vertices")) == 4 * std::stoul(row.at("quads")));
+    CHECK(std::stod(row.at("median_ns")) > 0);
+    CHECK(std::stod(row.at("min_ns")) <= std::stod(row.at("median_ns")));
+    CHECK_FALSE(row.at("against_decode").empty());
+  }
+  CHECK(parts["scenarios"].size() == 37);
+  CHECK(parts["luanti"].size() > 20);
+  for (const char* world : {"hills", "town", "checkerboard", "uniform"}) CHECK(parts[world].size() == 1);
+
+  const auto all = contestant_names();
+  std::map<std::string, std::size_t> sums;
+  for (const auto& [cell, names] : meshers) {
+    CAPTURE(cell);
+    CHECK(names.size() == all.size());
+    const auto& of = quads[cell];
+    CHECK(of.at("rdm") == of.at("rdm_plain"));
+    CHECK(of.at("decode_binary") == of.at("grid_binary"));
+    CHECK(of.at("decode_binary") == of.at("mask_binary"));
+    CHECK(of.at("rdm") <= of.at("culled"));
+    CHECK(of.at("culled") <= of.at("simple"));
+    for (const auto& [mesher, count] : of) sums[mesher] += count;
+  }
+  CHECK(static_cast<double>(sums["rdm"]) <= 1.03 * static_cast<double>(sums["decode_binary"]));
+  CHECK(quads["checkerboard 0 -16 0"]["culled"] == 32 * 32 * 32 / 2 * 6);
+  CHECK(quads["uniform 0 -16 0"]["rdm"] == 0);
+
+  const auto document = nlohmann::json::parse(text_of(json));
+  CHECK(document.at("rows").size() == rows.size());
+  CHECK(document.at("repetitions") == 3);
+  CHECK(document.at("summary").size() == 11);
+  CHECK(output.out.find("| rdm |") != std::string::npos);
+}
+
+TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
+  const Output output = run({"mesh", "--quick", "--worlds", "empty,scenarios", "--edges", "65,8", "--meshers",
+                             "rdm,decode_binary"});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  for (const char* cell : {"skipped: empty 0 -32 0 edge 65 order xyz decode_binary: sides above 64",
+                           "skipped: scenarios edge 65: the models have edges of 8, 16, 32, 64 and 128",
+                           "skipped: scenarios edge 8: scenario 5 is data of edge 32"}) {
+    CAPTURE(cell);
+    CHECK(output.out.find(cell) != std::string::npos);
+  }
+}
+
+TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "orders.csv";
+  REQUIRE(run({"mesh", "--quick", "--worlds", "hills", "--orders", "all", "--meshers", "rdm", "--csv", csv})
+              .exit_code == 0);
+  const std::vector<CsvRow> rows = read_csv(csv);
+  REQUIRE(rows.size() == 6);
+  std::set<std::string> orders;
+  std::map<std::string, std::size_t> runs;
+  for (const CsvRow& row : rows) {
+    orders.insert(row.at("order"));
+    const std::size_t count = std::stoul(row.at("runs"));
+    auto& known = runs.try_emplace(row.at("rank"), count).first->second;
+    known = row.at("rank") == "best" ? std::min(known, count) : std::max(known, count);
+  }
+  CHECK(orders == std::set<std::string>{"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"});
+  CHECK(runs.at("best") < runs.at("between"));
+  CHECK(runs.at("between") <= runs.at("worst"));
+}
+
+TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "edges.csv";
+  const Output output = run({"chunk-edge", "--worlds", "town", "--edges", "32,64", "--csv", csv});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const std::vector<CsvRow> rows = read_csv(csv);
+  REQUIRE(rows.size() == 2);
+  for (const CsvRow& row : rows) {
+    CHECK(row.at("voxels") == std::to_string(128 * 128 * 128));
+    CHECK(std::stoul(row.at("chunks")) * std::stoul(row.at("edge")) * std::stoul(row.at("edge")) *
+              std::stoul(row.at("edge")) ==
+          128 * 128 * 128);
+    CHECK(std::stoul(row.at("memory_bytes")) > std::stoul(row.at("run_bytes")));
+  }
+  CHECK(std::stoul(rows[0].at("quads")) > std::stoul(rows[1].at("quads")));  // borders cut them
+}
+
+TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
+  CHECK(run({}).exit_code == 2);
+  CHECK(run({"mesh", "--worlds", "atlantis"}).exit_code == 2);
+  CHECK(run({"mesh", "--meshers", "marching_cubes"}).exit_code == 2);
+  CHECK(run({"mesh", "--edges", "7"}).exit_code == 2);
+  CHECK(run({"mesh", "--help"}).exit_code == 0);
+  const test::TempFolder folder;
+  const Output nothing = run({"mesh", "--quick", "--worlds", "luanti", "--luanti", folder.path()});
+  CHECK(nothing.exit_code == 1);
+  CHECK(nothing.err.find("map.sqlite") != std::string::npos);
+  const Output odd = run({"chunk-edge", "--worlds", "town", "--edges", "62"});
+  CHECK(odd.exit_code == 1);
+  CHECK(odd.err.find("edge 62") != std::string::npos);
+  const std::string nowhere = folder / "no/such.csv";
+  CHECK(run({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
+}
