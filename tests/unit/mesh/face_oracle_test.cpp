@@ -152,8 +152,7 @@ TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand"
   CHECK(all_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 25 * 6);
   // Six lines of four stones along z, and one water: all sides but the inner ends.
   CHECK(tail_culled_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 6 * (4 * 4 + 2) + 6);
-  // A full chunk is one run: -x only on the first slow layer, -y only on its first line and on the lines at y
-  // = 0 of the others, which none hides in their layer.
+  // A full chunk is one run: -x only on the first slow layer, -y only on the first line of each.
   const auto faces =
       tail_culled_faces(DenseChunk::of(uniform_chunk(Extent::cube(8), kStone)), mesh_materials());
   const auto count = [&faces](Direction direction) {
