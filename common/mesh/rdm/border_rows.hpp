@@ -15,6 +15,9 @@
 
 namespace runstone::rdm {
 
+/// Planes that may be asked for: hiding, transparent, and up to 16 bits of a number.
+inline constexpr unsigned kLayerPlanesMax = 18;
+
 /// A layer of a chunk, and which of its two axes runs along the bits of a row.
 struct LayerPlace {
   Axis axis, bit_axis;
@@ -28,7 +31,8 @@ class LayerReader {
  public:
   using Rows = std::array<Row, kRowBits<Row>>;
 
-  /// Planes 0 .. count - 1 are replaced. Requires codes below 2^count and sides up to kRowBits<Row>.
+  /// Planes 0 .. count - 1 are replaced. Requires count <= kLayerPlanesMax, codes below 2^count and sides up
+  /// to kRowBits<Row>.
   LayerReader(const RunChunk& chunk, LayerPlace place, Rows* planes, unsigned count, CodeOf code_of)
       : e_(ordered(chunk.extent, chunk.order)), planes_(planes), count_(count), code_of_(code_of) {
     for (unsigned k = 0; k < count_; ++k) planes_[k].fill(0);
@@ -106,24 +110,25 @@ class LayerReader {
 
   template <class Runs>
   void read_fast(const Runs& runs, std::uint32_t at) {
+    // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
+    using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
+    std::array<Marks, kLayerPlanesMax> marks;
+    for (unsigned k = 0; k < count_; ++k) std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
     const Divider line_of(e_.f);
     const std::uint32_t ahead = e_.f - 1 - at;
+    const CodeOf code_of = code_of_;
     const std::size_t last = runs.size() - 1;
-    for (unsigned k = 0; k < count_; ++k) {
-      // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
-      std::array<Row64, kSideMax * kSideMax / 64 + 2> marks;
-      std::fill_n(marks.begin(), e_.m * e_.s / 64 + 2, Row64{0});
-      const CodeOf code_of = code_of_;
-      Code code = code_of(runs.material(0)) >> k & 1;
-      marks[0] = code;
-      for (std::size_t i = 0; i < last; ++i) {
-        const Code next = code_of(runs.material(i + 1)) >> k & 1;
-        const std::uint32_t line = line_of(runs.end(i) + ahead);
-        marks[line / 64] ^= Row64{code ^ next} << (line % 64);
-        code = next;
-      }
-      cut_rows(marks.data(), planes_[k]);
+    Code code = code_of(runs.material(0));
+    for (unsigned k = 0; k < count_; ++k) marks[k][0] = code >> k & 1;
+    for (std::size_t i = 0; i < last; ++i) {
+      const Code next = code_of(runs.material(i + 1));
+      if (next == code) continue;  // most runs of a world lie between two materials that hide alike
+      const std::uint32_t line = line_of(runs.end(i) + ahead);
+      const Code change = code ^ next;
+      code = next;
+      for (unsigned k = 0; k < count_; ++k) marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
     }
+    for (unsigned k = 0; k < count_; ++k) cut_rows(marks[k].data(), planes_[k]);
   }
   /// Turns marks of change, a bit a line, into rows of e_.m bits.
   void cut_rows(Row64* marks, Rows& rows) const {

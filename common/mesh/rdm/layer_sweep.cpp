@@ -44,6 +44,10 @@ struct OneRow {
   static std::uint64_t tops(V a) { return static_cast<std::uint64_t>(a >> (kRowBits<Row> - 1)); }
   /// `row` in the lanes whose bit is set.
   static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
+  /// Flips `bit` in those of eight rows whose bit in `which` is set.
+  static void flip(Row* eight, unsigned which, Row bit) {
+    for (unsigned k = 0; k < 8; ++k) eight[k] ^= (which >> k & 1) != 0 ? bit : 0;
+  }
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
@@ -79,6 +83,11 @@ struct VectorRows {
   static HWY_INLINE V where(std::uint64_t lanes, Row row) {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
     return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
+  }
+  static HWY_INLINE void flip(Row* eight, unsigned which, Row bit) {
+    for (unsigned k = 0; k < 8; k += kLanes) {
+      store(differing(load(eight + k), where(which >> k, bit)), eight + k);
+    }
   }
 };
 #else
@@ -186,20 +195,8 @@ class Sweep {
         case 3:
           mark_changes<3>(begin, end);
           break;
-        case 4:
-          mark_changes<4>(begin, end);
-          break;
-        case 5:
-          mark_changes<5>(begin, end);
-          break;
-        case 6:
-          mark_changes<6>(begin, end);
-          break;
-        case 7:
-          mark_changes<7>(begin, end);
-          break;
         default:
-          mark_changes<kPlanesMax>(begin, end);
+          planes_ <= 8 ? mark_eight(begin, end) : mark_changes<kPlanesMax>(begin, end);
           break;
       }
     }
@@ -231,6 +228,28 @@ class Sweep {
       *row ^= Row{change >> top_bit & 1} << bit;
     }
     run_ = static_cast<std::size_t>(run - runs());
+  }
+
+  /// The same for up to eight planes, all of them in one step a run.
+  void mark_eight(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t count = e_.m;
+    const unsigned planes = planes_;
+    auto* const marks = st_.marks.data();
+    std::fill_n(marks[0].data(), std::size_t{count} * 8, Row{0});
+    const Code low = mixed_ ? (Code{1} << (planes - 1)) - 1 : 0xff;
+    const unsigned top = code_bit(planes - 1) - (planes - 1);
+    const CodedRun* run = runs() + run_;
+    for (; run->end < end; ++run) {
+      const std::uint32_t at = run->end - begin;
+      const std::uint32_t line = line_of_(at);
+      const Code change = run[0].code ^ run[1].code;
+      Lanes::flip(marks[line].data(), (change & low) | (change & ~low) >> top, Row{1} << (at - line * e_.f));
+    }
+    run_ = static_cast<std::size_t>(run - runs());
+    Row* const rows = plane(here_, 0);
+    for (unsigned k = 0; k < planes; ++k) {
+      for (std::uint32_t m = 0; m < count; ++m) rows[k * kStride + m] = marks[m][k];
+    }
   }
 
   /// Turns marks of change into the bits themselves, from the first voxel's on.
@@ -283,10 +302,11 @@ class Sweep {
   template <class Ours>
   Row same_beyond(Side side, std::uint32_t row, Ours&& ours) const {
     const auto& theirs = borders_.plane[at(side)];
-    Row same = theirs[planes_ - 1][row];
+    const unsigned bits = in_.codes->clear_bits();
+    Row same = theirs[1 + bits][row];
     if (same == 0) return 0;
     same &= ours(planes_ - 1);
-    for (unsigned k = 1; k + 1 < planes_ && same != 0; ++k) same &= ~(theirs[k][row] ^ ours(k));
+    for (unsigned k = 1; k <= bits && same != 0; ++k) same &= ~(theirs[k][row] ^ ours(k));
     return same;
   }
 

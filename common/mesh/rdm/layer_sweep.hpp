@@ -33,15 +33,15 @@ enum class Side : std::uint8_t {
   fast_pos = 5
 };
 
-/// What lies beyond the chunk, by Side, as rows of bits: plane 0 says which voxels hide a face whatever it is
-/// of; the others are the neighbour's planes, there only where a transparent voxel may meet its own kind.
+/// What lies beyond the chunk, by Side, as rows of bits: the planes of MaterialCodes::border_code(). Those
+/// beyond plane 0 are there only where a transparent voxel may meet its own kind.
 /// Rows and bits: slow sides a row per middle coordinate and a bit per fast one; middle sides slow, fast;
 /// fast sides slow, middle.
 template <class Row>
 struct Borders {
   using Rows = std::array<Row, kRowBits<Row>>;
   std::array<std::array<Rows, kPlanesMax>, 6> plane;
-  std::array<bool, 6> clear{};  // whether plane by plane comparison is needed there
+  std::array<bool, 6> clear{};  // whether a transparent material of the chunk lies there
 };
 
 /// Rows of one layer, with room before and behind for steps of whole vectors.
@@ -59,6 +59,8 @@ struct SweepState {
   using Rows = LayerRows<Row>;
   // Two layers each, the one at hand and the one before it.
   std::array<std::array<Rows, kPlanesMax>, 2> plane;
+  /// Marks of change while a layer is made, by line: eight planes side by side.
+  alignas(64) std::array<std::array<Row, 8>, kRowBits<Row> + 1> marks;
   std::array<Rows, 2> solid;   // voxels with faces
   std::array<Rows, 2> hiding;  // voxels that hide a face, with the middle neighbours' in the slots around
   std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis

@@ -34,11 +34,12 @@ class MaterialCodes {
     const Code code = of_[material];
     return code != 0 ? code & ~kSeen : enter(material, visibility[material]);
   }
-  /// The code of any material: one that the chunk lacks is nothing but opaque or not.
-  Code code(Material material, const VisibilityTable& visibility) const {
+  /// What a material beyond the border means for faces of the chunk: bit 0 says that it hides any; a
+  /// transparent material of the chunk has its number from bit 1 on, and bit 1 + clear_bits() set.
+  Code border_code(Material material, const VisibilityTable& visibility) const {
     const Code code = of_[material];
-    if (code != 0) return code & ~kSeen;
-    return visibility[material] == Visibility::opaque ? kOpaqueBit : 0;
+    if ((code & kTransparentBit) != 0) return (code & (kTransparentBit - 2)) | Code{2} << clear_bits();
+    return visibility[material] == Visibility::opaque ? 1 : 0;
   }
 
   bool has_transparent() const { return !of_class_[1].empty(); }
@@ -52,6 +53,10 @@ class MaterialCodes {
   }
   /// Those of a class, by number.
   const Material* materials(bool transparent) const { return of_class_[transparent ? 1 : 0].data(); }
+  /// Bits that tell the transparent ones apart.
+  unsigned clear_bits() const {
+    return of_class_[1].empty() ? 0 : static_cast<unsigned>(std::bit_width(of_class_[1].size() - 1));
+  }
   Material material(bool transparent, std::size_t number) const {
     return of_class_[transparent ? 1 : 0][number];
   }

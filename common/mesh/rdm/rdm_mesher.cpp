@@ -124,11 +124,9 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
     }
     return;
   }
-  const unsigned count = codes.number_bits() + 2;
-  read_planes(*neighbour, place, count, planes.data(), [&](Material material) -> Code {
-    const Code code = codes.code(material, visibility);
-    return (code & ~rdm::kTransparentBit) | ((code & rdm::kTransparentBit) != 0 ? Code{1} << (count - 1) : 0);
-  });
+  const unsigned count = codes.clear_bits() + 2;
+  read_planes(*neighbour, place, count, planes.data(),
+              [&codes, &visibility](Material material) { return codes.border_code(material, visibility); });
   const auto& clear = planes[count - 1];
   borders.clear[at] = std::any_of(clear.begin(), clear.end(), [](Row row) { return row != 0; });
 }

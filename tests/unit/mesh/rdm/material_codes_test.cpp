@@ -32,17 +32,24 @@ TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh
   }
 }
 
-TEST_CASE("a material the chunk lacks is opaque or nothing", "[mesh]") {
+TEST_CASE("beyond the border a material hides, is one of the chunk's transparent ones, or nothing",
+          "[mesh]") {
   const VisibilityTable& v = mesh_visibility();
   rdm::MaterialCodes codes;
   codes.number(kStone, v);
   codes.number(kWater, v);
-  CHECK(codes.code(kStone, v) == rdm::kOpaqueBit);
-  CHECK(codes.code(kDirt, v) == rdm::kOpaqueBit);
-  CHECK(codes.code(kWater, v) == rdm::kTransparentBit);
-  CHECK(codes.code(kGlass, v) == 0);
-  CHECK(codes.code(kEmpty, v) == 0);
-  CHECK(codes.solid_count() == 2);
+  CHECK(codes.clear_bits() == 0);
+  CHECK(codes.border_code(kStone, v) == 1);
+  CHECK(codes.border_code(kDirt, v) == 1);
+  CHECK(codes.border_code(kWater, v) == 2);
+  CHECK(codes.border_code(kGlass, v) == 0);
+  CHECK(codes.border_code(kEmpty, v) == 0);
+  codes.number(kGlass, v);
+  CHECK(codes.clear_bits() == 1);
+  CHECK(codes.border_code(kWater, v) == 4);
+  CHECK(codes.border_code(kGlass, v) == (4 | 1 << 1));
+  CHECK(codes.border_code(kDirt, v) == 1);
+  CHECK(codes.solid_count() == 3);
 }
 
 }  // namespace
