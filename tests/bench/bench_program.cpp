@@ -34,6 +34,8 @@ int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   write_tables(*result, out);
   for (const std::string& cell : result->skipped) fmt::print(out, "\nskipped: {}", cell);
   fmt::print(out, "\n\n");
+  write_overview(*result, out);
+  fmt::print(out, "\n");
   write_bars(result->bars, out);
   const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
   const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);

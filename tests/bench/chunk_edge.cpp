@@ -2,6 +2,7 @@
 
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -55,6 +56,7 @@ ChunkEdgeRow measure(const VoxelWorld& world, unsigned edge) {
     out.runs += chunk.runs.size();
     out.voxels += chunk.volume();
     out.run_bytes += chunk.runs.byte_size();
+    if (!chunk.is_uniform()) out.mixed_bytes += chunk.runs.byte_size();
     out.memory_bytes += chunk.runs.byte_capacity() + sizeof(RunChunk);
     out.packed_bytes += encode_chunk(chunk, ChunkEncoding::packed).size();
   }
@@ -98,30 +100,34 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
 }
 
 void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
-  fmt::print(
-      out,
-      "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed B/voxel | quads | "
-      "mesh ns/voxel | full mesh of an edited chunk µs | edit µs "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(out,
+             "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed B/voxel | "
+             "quads | mesh "
+             "ns/voxel | of a chunk that is not uniform: runs B | full mesh µs | edit µs |\n"
+             "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const ChunkEdgeRow& row : rows) {
     const auto voxels = static_cast<double>(row.voxels);
     const auto per_voxel = [&](std::size_t bytes) { return static_cast<double>(bytes) / voxels; };
-    fmt::print(out, "| {} | {} | {} ({}) | {} | {:.4f} | {:.4f} | {:.4f} | {} | {:.3f} | {:.2f} | {:.2f} |\n",
-               row.world, row.edge, row.chunks, row.uniform, row.runs, per_voxel(row.run_bytes),
-               per_voxel(row.memory_bytes), per_voxel(row.packed_bytes), row.quads, row.mesh_ns / voxels,
-               row.edit_full_mesh_ns / 1000, row.edit_ns / 1000);
+    const auto mixed = static_cast<double>(std::max<std::size_t>(row.chunks - row.uniform, 1));
+    fmt::print(
+        out,
+        "| {} | {} | {} ({}) | {} | {:.4f} | {:.4f} | {:.4f} | {} | {:.3f} | {:.0f} | {:.2f} | {:.2f} |\n",
+        row.world, row.edge, row.chunks, row.uniform, row.runs, per_voxel(row.run_bytes),
+        per_voxel(row.memory_bytes), per_voxel(row.packed_bytes), row.quads, row.mesh_ns / voxels,
+        static_cast<double>(row.mixed_bytes) / mixed, row.edit_full_mesh_ns / 1000, row.edit_ns / 1000);
   }
 }
 
 void write_csv(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(
       out,
-      "world,edge,chunks,uniform,runs,voxels,run_bytes,memory_bytes,packed_bytes,quads,mesh_ns,edit_ns,"
-      "edit_full_mesh_ns\n");
+      "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,packed_bytes,quads,mesh_ns,"
+      "edit_ns,edit_full_mesh_ns\n");
   for (const ChunkEdgeRow& row : rows) {
-    fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{:.0f},{:.0f},{:.0f}\n", row.world, row.edge, row.chunks,
-               row.uniform, row.runs, row.voxels, row.run_bytes, row.memory_bytes, row.packed_bytes,
-               row.quads, row.mesh_ns, row.edit_ns, row.edit_full_mesh_ns);
+    fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{:.0f},{:.0f},{:.0f}\n", row.world, row.edge,
+               row.chunks, row.uniform, row.runs, row.voxels, row.run_bytes, row.mixed_bytes,
+               row.memory_bytes, row.packed_bytes, row.quads, row.mesh_ns, row.edit_ns,
+               row.edit_full_mesh_ns);
   }
 }
 
@@ -135,6 +141,7 @@ void write_json(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
                     {"runs", row.runs},
                     {"voxels", row.voxels},
                     {"run_bytes", row.run_bytes},
+                    {"mixed_bytes", row.mixed_bytes},
                     {"memory_bytes", row.memory_bytes},
                     {"packed_bytes", row.packed_bytes},
                     {"quads", row.quads},

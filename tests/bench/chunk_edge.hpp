@@ -18,6 +18,7 @@ struct ChunkEdgeRow {
   std::size_t chunks = 0, uniform = 0, runs = 0, quads = 0;
   std::size_t voxels = 0;
   std::size_t run_bytes = 0;     // runs alone
+  std::size_t mixed_bytes = 0;   // runs of the chunks that are not uniform
   std::size_t memory_bytes = 0;  // runs with their spare capacity and the chunk around them
   std::size_t packed_bytes = 0;  // on the wire
   double mesh_ns = 0;            // all chunks once: median over passes

@@ -99,9 +99,11 @@ Bar never_below(const std::vector<MeshRow>& rows) {
                 *lowest->against_decode >= 0.95);
 }
 
-/// Quads of ours by those of binary greedy: the highest over a world's volumes together, and of one volume.
+/// Quads of ours by those of binary greedy: the highest over a world's volumes together, which is judged, and
+/// of one volume.
 Bar quads(const std::vector<MeshRow>& rows) {
-  const std::string what = "quads against binary greedy: highest of a world; of a volume";
+  const std::string what =
+      "quads against binary greedy, a world's volumes together: the highest; of a single volume";
   using World = std::pair<std::string, unsigned>;
   struct Counts {
     double ours = 0, theirs = 0;
@@ -127,7 +129,7 @@ Bar quads(const std::vector<MeshRow>& rows) {
                             world->second.ratio(), world->first.first, world->first.second,
                             volume->second.ratio(), std::get<0>(volume->first), std::get<2>(volume->first),
                             std::get<1>(volume->first), volume->second.ours, volume->second.theirs),
-                volume->second.ratio() <= 1.03);
+                world->second.ratio() <= 1.03);
 }
 
 Bar uniform(const std::vector<MeshRow>& rows) {

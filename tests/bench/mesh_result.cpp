@@ -2,9 +2,8 @@
 
 #include <fmt/ostream.h>
 
-#include <map>
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "tests/bench/statistics.hpp"
 
@@ -92,6 +91,31 @@ void write_total(const std::string& mesher, const Total& total, std::ostream& ou
              ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
 }
 
+/// The rows of one mesher over the volumes of a world, at one edge and in one rank of order.
+struct Group {
+  std::string world, order;
+  unsigned edge = 0;
+  std::vector<std::pair<std::string, Total>> meshers;  // in the order measured
+};
+
+std::vector<Group> groups_of(const std::vector<MeshRow>& rows) {
+  std::vector<Group> out;
+  for (const MeshRow& row : rows) {
+    const std::string& order = row.rank == "between" ? row.order : row.rank;
+    const auto same = [&](const Group& g) {
+      return g.world == row.world && g.edge == row.edge && g.order == order;
+    };
+    auto group = std::find_if(out.begin(), out.end(), same);
+    if (group == out.end()) group = out.insert(out.end(), Group{row.world, order, row.edge, {}});
+    auto& meshers = group->meshers;
+    auto mesher =
+        std::find_if(meshers.begin(), meshers.end(), [&](const auto& m) { return m.first == row.mesher; });
+    if (mesher == meshers.end()) mesher = meshers.insert(meshers.end(), {row.mesher, Total{}});
+    mesher->second.add(row);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string MeshRow::cell() const {
@@ -137,31 +161,36 @@ void write_json(const MeshResult& result, std::ostream& out) {
 }
 
 void write_tables(const MeshResult& result, std::ostream& out) {
-  using Key = std::tuple<std::string, unsigned, std::string>;
-  std::vector<Key> keys;                                             // in the order measured
-  std::map<Key, std::vector<std::pair<std::string, Total>>> by_key;  // meshers in the order measured
-  for (const MeshRow& row : result.rows) {
-    const Key key = {row.world, row.edge, row.rank == "between" ? row.order : row.rank};
-    if (!by_key.contains(key)) keys.push_back(key);
-    auto& meshers = by_key[key];
-    const auto known = std::find_if(meshers.begin(), meshers.end(),
-                                    [&](const auto& entry) { return entry.first == row.mesher; });
-    Total& total = known != meshers.end() ? known->second : meshers.emplace_back(row.mesher, Total{}).second;
-    total.add(row);
-  }
-  for (const Key& key : keys) {
-    const auto& [world, edge, order] = key;
-    const auto& meshers = by_key[key];
-    const Total& first = meshers.front().second;
-    fmt::print(out, "\n**{}**, edge {}, {} order, {} volume{}, {} runs{}\n\n", world, edge, order,
-               first.volumes, first.volumes == 1 ? "" : "s", first.runs / first.volumes,
-               first.volumes == 1 ? "" : " on average");
+  for (const Group& group : groups_of(result.rows)) {
+    const Total& first = group.meshers.front().second;
+    const bool one = first.volumes == 1;
+    fmt::print(out, "\n**{}**, edge {}, {} order, {} volume{}, {} runs{}\n\n", group.world, group.edge,
+               group.order, first.volumes, one ? "" : "s", first.runs / first.volumes,
+               one ? "" : " on average");
     fmt::print(
         out,
         "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads | vertices | "
         "storage B | allocations | x decode + binary | x grid ready | copies |\n");
     fmt::print(out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (const auto& [mesher, total] : meshers) write_total(mesher, total, out);
+    for (const auto& [mesher, total] : group.meshers) write_total(mesher, total, out);
+  }
+}
+
+void write_overview(const MeshResult& result, std::ostream& out) {
+  fmt::print(out,
+             "| world | edge | order | volumes | runs | quads | median µs | ns/run | x decode + binary | x "
+             "grid ready "
+             "| copies |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const Group& group : groups_of(result.rows)) {
+    for (const auto& [mesher, total] : group.meshers) {
+      if (mesher != "rdm") continue;
+      fmt::print(out, "| {} | {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {} | {} | {:.0f} |\n", group.world,
+                 group.edge, group.order, total.volumes, total.runs / total.volumes,
+                 total.quads / total.volumes, total.median / static_cast<double>(total.volumes) / 1000,
+                 total.median / static_cast<double>(total.runs),
+                 ratios(total.against_decode, total.decode, total.median),
+                 ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
+    }
   }
 }
 

@@ -46,4 +46,7 @@ void write_json(const MeshResult& result, std::ostream& out);
 /// ratio of sums.
 void write_tables(const MeshResult& result, std::ostream& out);
 
+/// The product alone, a line for each of those tables.
+void write_overview(const MeshResult& result, std::ostream& out);
+
 }  // namespace runstone::bench
