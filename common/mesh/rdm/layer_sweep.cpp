@@ -5,6 +5,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/divider.hpp"
+#include "common/mesh/rdm/row_strips.hpp"
 
 // The rest of this file is compiled once per instruction set; Highway picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -480,33 +481,8 @@ class Sweep {
     return Lanes::any(x);
   }
 
-  /// A row of faces as strips.
-  struct Strips {
-    Row face, start, end;
-  };
-  /// Strips along the bits of a row, cut before the bits of `cut`.
-  static HWY_INLINE Strips strips_along(Row face, [[maybe_unused]] const Row* cut) {
-    Row before = face << 1;
-    Row behind = face >> 1;
-    if constexpr (kNumbered) {
-      before &= ~*cut;
-      behind &= ~(*cut >> 1);
-    }
-    return {face, face & ~before, face & ~behind};
-  }
-  /// Bits of the strips of two rows where these do not agree.
-  static HWY_INLINE Row changed(const Strips& now, const Strips& before, [[maybe_unused]] const Row* cut) {
-    Row x = (now.face ^ before.face) | (now.start ^ before.start) | (now.end ^ before.end);
-    if constexpr (kNumbered) x |= now.face & before.face & *cut;
-    return x;
-  }
-  /// Ends of the strips with a changed bit. A carry runs from the lowest changed bit of a strip to its end:
-  /// all other bits of a strip are ones, and the end itself is left out.
-  static HWY_INLINE Row ends_with(const Strips& strips, Row x) {
-    x &= strips.face;
-    const Row inner = strips.face & ~strips.end;
-    return strips.end & (x | (inner + (x & inner)));
-  }
+  using Strips = RowStrips<Row>;
+  static HWY_INLINE Row cut_at(const Row* cut) { return kNumbered ? *cut : Row{0}; }
 
   /// What the rectangles of one side need to become quads. A value, so that the compiler may keep it in
   /// registers while bytes are written.
@@ -592,13 +568,13 @@ class Sweep {
     Quad* const open = st_.open[at(kSide)].data();
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
-      const Strips now = strips_along(face[m], cut_fast + m);
-      const Strips before = m == 0 ? Strips{} : strips_along(face[m - 1], cut_fast + m - 1);
-      const Row x = changed(now, before, cut_mid + m);
+      const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
+      const Strips before = m == 0 ? Strips{} : strips_along<Row>(face[m - 1], cut_at(cut_fast + m - 1));
+      const Row x = changed<Row>(now, before, cut_at(cut_mid + m));
       close_strips(out, ends_with(before, x), open, layer, m);
       open_strips(out, ends_with(now, x), now.start, open, layer, m, m);
     }
-    const Strips over = strips_along(bottom, cut_fast + count - 1);
+    const Strips over = strips_along<Row>(bottom, cut_at(cut_fast + count - 1));
     close_strips(out, over.end, open, layer, count);
   }
 
@@ -615,9 +591,9 @@ class Sweep {
     Quad* const open = st_.open[at(kSide)].data();
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
-      const Strips now = strips_along(face[m], cut_fast + m);
-      const Strips before = strips_along(face_before[m], cut_fast_before + m);
-      const Row x = changed(now, before, cut_slow + m);
+      const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
+      const Strips before = strips_along<Row>(face_before[m], cut_at(cut_fast_before + m));
+      const Row x = changed<Row>(now, before, cut_at(cut_slow + m));
       Quad* const slots = open + std::size_t{m} * kRowBits<Row>;
       close_strips(out, ends_with(before, x), slots, m, s);
       open_strips(out, ends_with(now, x), now.start, slots, m, s, m);
@@ -656,7 +632,7 @@ class Sweep {
       do {
         const Strips now = strips_across(face, cut_mid, m);
         const Strips before = strips_across(face_before, cut_mid_before, m);
-        const Row x = changed(now, before, cut_slow + m);
+        const Row x = changed<Row>(now, before, cut_at(cut_slow + m));
         closing = ((closing & ~before.start) | x) & before.face;
         opening = ((opening & ~now.start) | x) & now.face;
         const Row ends = closing & before.end;

@@ -9,30 +9,10 @@
 #include "common/mesh/rdm/border_rows.hpp"
 #include "common/mesh/rdm/layer_sweep.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
-#include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
+#include "common/mesh/rdm/scratch_state.hpp"
 
 namespace runstone {
-
-namespace {
-
-/// What depends on the width of a row.
-template <class Row>
-struct RowScratch {
-  rdm::Borders<Row> borders;
-  rdm::SweepState<Row> sweep;
-};
-
-}  // namespace
-
-struct RdmScratch::State {
-  rdm::MaterialCodes codes;
-  std::vector<rdm::CodedRun> runs;
-  rdm::QuadBuckets opaque, transparent;
-  std::unique_ptr<RowScratch<rdm::Row64>> narrow;
-  std::unique_ptr<RowScratch<rdm::Row128>> wide;  // made for the first chunk with a side above 64
-  bool plain = false;
-};
 
 RdmScratch::RdmScratch() : state_(std::make_unique<State>()) {}
 RdmScratch::~RdmScratch() = default;
@@ -46,18 +26,10 @@ using rdm::Code;
 using rdm::Side;
 using Scratch = RdmScratch::State;
 
-constexpr Direction direction_of(Axis axis, bool positive) {
-  return static_cast<Direction>(static_cast<unsigned>(axis) * 2 + (positive ? 1 : 0));
-}
-
-/// How the sides of a chunk lie as rows of bits, by its axis order.
-struct SideAxes {
-  Axis layer, bit, row;
-};
-constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
-  const auto axes = axes_of(order);
-  return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[1], axes[2]}}};
-}
+using rdm::direction_of;
+using rdm::RowScratch;
+using rdm::side_axes;
+using rdm::SideAxes;
 
 /// Numbers the materials of the chunk and lists its runs by code.
 void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {

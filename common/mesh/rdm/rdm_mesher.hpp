@@ -3,6 +3,7 @@
 // then across lines and layers. No dense grid.
 #pragma once
 #include <array>
+#include <bitset>
 #include <memory>
 
 #include "common/core/coords.hpp"
@@ -42,5 +43,14 @@ class RdmScratch {
 /// each.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
               RdmScratch& scratch, ChunkMesh& out);
+
+/// Meshes again what an edit touched: `mesh` is that of the chunk and its neighbours before, `dirty` the
+/// layers in which a voxel of the chunk changed since (ApplyResult::dirty), and `beyond` the directions in
+/// which a voxel that touches the chunk did. Equal to mesh_rdm(), quad for quad. The chunk's axis order must
+/// be the one it was meshed in. Cost: the touched layers and those beside them are decoded and meshed one by
+/// one, O(runs + their voxels), and the kept quads are moved; where that would cost more, it is mesh_rdm().
+void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
+                     const VisibilityTable& visibility, const DirtyLayers& dirty,
+                     const std::bitset<kDirectionCount>& beyond, RdmScratch& scratch, ChunkMesh& mesh);
 
 }  // namespace runstone

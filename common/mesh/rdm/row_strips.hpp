@@ -1,0 +1,37 @@
+// Row strips: the faces of one row as strips, and what differs between two rows. The one rule by which every
+// path of the mesher joins faces: strips are as long as they can be, and go on while the next row repeats
+// them exactly. Internal to rdm.
+#pragma once
+#include "common/mesh/rdm/bit_row.hpp"
+
+namespace runstone::rdm {
+
+/// The faces of a row, and the first and last of each strip.
+template <class Row>
+struct RowStrips {
+  Row face = 0, start = 0, end = 0;
+};
+
+/// Strips along the bits of a row; `cut` says where the material differs from the bit below.
+template <class Row>
+constexpr RowStrips<Row> strips_along(Row face, Row cut) {
+  return {face, face & (~(face << 1) | cut), face & (~(face >> 1) | (cut >> 1))};
+}
+
+/// Bits of strips in which two rows do not agree; `cut` says where the material differs between them.
+template <class Row>
+constexpr Row changed(const RowStrips<Row>& now, const RowStrips<Row>& before, Row cut) {
+  return (now.face ^ before.face) | (now.start ^ before.start) | (now.end ^ before.end) |
+         (now.face & before.face & cut);
+}
+
+/// Ends of the strips with a changed bit. A carry runs from the lowest changed bit of a strip to its end: all
+/// other bits of a strip are ones, and the end itself is left out.
+template <class Row>
+constexpr Row ends_with(const RowStrips<Row>& strips, Row x) {
+  x &= strips.face;
+  const Row inner = strips.face & ~strips.end;
+  return strips.end & (x | (inner + (x & inner)));
+}
+
+}  // namespace runstone::rdm

@@ -1,0 +1,63 @@
+// What RdmScratch keeps between calls. Internal to rdm.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/mesh/rdm/layer_sweep.hpp"
+#include "common/mesh/rdm/layer_voxels.hpp"
+#include "common/mesh/rdm/material_codes.hpp"
+#include "common/mesh/rdm/quad_buckets.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+
+namespace runstone::rdm {
+
+/// What depends on the width of a row.
+template <class Row>
+struct RowScratch {
+  Borders<Row> borders;
+  SweepState<Row> sweep;
+  std::vector<LayerVoxels<Row>> layers;  // of one axis, those to be meshed again and those beside them
+  LayerVoxels<Row> beyond;               // a neighbour's
+};
+
+/// Quads of some layers that take the place of others: new quads of all of them, and where each begins.
+struct LayerPatch {
+  struct Layer {
+    std::size_t index = 0;  // in QuadLayers::first
+    std::uint32_t opaque_end = 0, transparent_end = 0;
+  };
+  std::vector<Layer> layers;  // ascending
+  std::vector<Quad> opaque, transparent;
+  std::vector<Quad> merged;
+};
+
+constexpr Direction direction_of(Axis axis, bool positive) {
+  return static_cast<Direction>(static_cast<unsigned>(axis) * 2 + (positive ? 1 : 0));
+}
+
+/// How the sides of a chunk lie as rows of bits, by its axis order: slow, middle, fast.
+struct SideAxes {
+  Axis layer, bit, row;
+};
+constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
+  const auto axes = axes_of(order);
+  return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[1], axes[2]}}};
+}
+
+}  // namespace runstone::rdm
+
+namespace runstone {
+
+struct RdmScratch::State {
+  rdm::MaterialCodes codes;
+  std::vector<rdm::CodedRun> runs;
+  rdm::QuadBuckets opaque, transparent;
+  rdm::LayerPatch patch;
+  std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
+  std::unique_ptr<rdm::RowScratch<rdm::Row128>> wide;  // made for the first chunk with a side above 64
+  bool plain = false;
+};
+
+}  // namespace runstone

@@ -1,0 +1,86 @@
+// Remeshing dirty layers against a full mesh: equal quad for quad, in the same order.
+#include <catch2/catch.hpp>
+
+#include "common/edits/edit_stack.hpp"
+#include "tests/support/mesh_scene.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+namespace {
+
+void require_equal(const QuadLayers& a, const QuadLayers& b) {
+  REQUIRE(a.quads == b.quads);
+  REQUIRE(a.first == b.first);
+}
+
+/// Changes some voxels: one, or a stretch of the flattened chunk. Returns the layers in which any did change.
+DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
+  const std::uint32_t first = rng.below(chunk.volume());
+  const std::uint32_t longest = std::min(chunk.volume() - first, rng.below(3) == 0 ? 200u : 1u);
+  const std::uint32_t count = 1 + rng.below(longest);
+  const RunChunk before = chunk;
+  fill(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
+  DirtyLayers dirty;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const LocalPos at = pos_of(i, chunk.extent, chunk.order);
+    if (material_at(before, at) == material_at(chunk, at)) continue;
+    dirty.layer[0].set(at.x);
+    dirty.layer[1].set(at.y);
+    dirty.layer[2].set(at.z);
+  }
+  return dirty;
+}
+
+/// Whether the layer of the neighbour in direction `d` that touches the chunk changed.
+bool touches(const DirtyLayers& dirty, Direction d, Extent extent) {
+  const auto axis = static_cast<std::size_t>(axis_of(d));
+  return dirty.layer.at(axis)[is_positive(d) ? 0u : extent.sides().at(axis) - 1u];
+}
+
+void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  ChunkMesh full;
+  mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
+  for (int step = 0; step < steps; ++step) {
+    DirtyLayers dirty;
+    std::bitset<kDirectionCount> beyond;
+    if (rng.below(4) != 0) dirty |= change(rng, scene.chunk);
+    if (rng.below(3) == 0) {
+      const auto d = static_cast<std::size_t>(rng.below(kDirectionCount));
+      auto& neighbour = scene.neighbours.at(d);
+      if (neighbour) {
+        beyond[d] = touches(change(rng, *neighbour), static_cast<Direction>(d), neighbour->extent);
+      }
+    }
+    mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond, scratch, mesh);
+    mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, full);
+    CAPTURE(Catch::rngSeed(), step, scene.chunk.order);
+    require_equal(mesh.opaque, full.opaque);
+    require_equal(mesh.transparent, full.transparent);
+  }
+}
+
+TEST_CASE("remeshed layers equal a full mesh, quad for quad, while chunk and neighbours are edited",
+          "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 8);
+  for (int round = 0; round < 300; ++round) edit_and_compare(rng, random_scene(rng, 33), 12);
+}
+
+TEST_CASE("remeshed layers equal a full mesh in the largest extents", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 9);
+  for (const Extent extent :
+       {Extent{64, 64, 64}, Extent{128, 8, 33}, Extent{9, 128, 65}, Extent{33, 8, 128}}) {
+    for (const AxisOrder order : kAxisOrders) {
+      MeshScene scene;
+      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
+      for (auto& neighbour : scene.neighbours) {
+        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
+      }
+      edit_and_compare(rng, scene, 8);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace runstone::test
