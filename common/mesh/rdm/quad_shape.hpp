@@ -38,6 +38,25 @@ class QuadShape {
     return {open.bits + (std::uint64_t{row_end} << rows_shift_)};
   }
 
+  /// First row and number of rows of a closed quad.
+  constexpr std::uint32_t row(Quad q) const { return static_cast<std::uint32_t>(q.bits >> row_shift_ & 127); }
+  constexpr std::uint32_t rows(Quad q) const {
+    return static_cast<std::uint32_t>(q.bits >> rows_shift_ & 127) + 1;
+  }
+  constexpr std::uint32_t row_end(Quad q) const { return row(q) + rows(q); }
+  /// The same strip in rows [row, row + rows).
+  constexpr Quad with_rows(Quad q, std::uint32_t row, std::uint32_t rows) const {
+    return {strip(q) | std::uint64_t{row} << row_shift_ | std::uint64_t{rows - 1} << rows_shift_};
+  }
+  /// All of a quad but its rows: equal for quads that may be joined where their rows touch.
+  constexpr std::uint64_t strip(Quad q) const {
+    return q.bits & ~(std::uint64_t{127} << row_shift_ | std::uint64_t{127} << rows_shift_);
+  }
+  /// Last face along the strip.
+  constexpr std::uint32_t last(Quad q) const {
+    return static_cast<std::uint32_t>((q.bits >> strip_shift_ & 127) + (q.bits >> length_shift_ & 127));
+  }
+
  private:
   std::uint64_t base_ = 0;
   unsigned layer_shift_ = 0, strip_shift_ = 0, row_shift_ = 0, length_shift_ = 0, rows_shift_ = 0;

@@ -1,19 +1,58 @@
 #include <algorithm>
 #include <bitset>
+#include <span>
 
 #include "common/core/assert.hpp"
-#include "common/mesh/rdm/layer_mesher.hpp"
-#include "common/mesh/rdm/layer_voxels.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
+#include "common/runs/run_cursor.hpp"
 
 namespace runstone {
 namespace {
 
 using rdm::LayerPatch;
+using rdm::QuadShape;
 using LayerSet = std::bitset<kSideMax>;
 
-/// The layers of one direction to be meshed again: those with changed voxels, and those that look at them.
+std::uint32_t side_of(const RunChunk& chunk, Axis axis) {
+  return chunk.extent.sides()[static_cast<std::size_t>(axis)];
+}
+
+/// A row of voxels along the third axis: those with `layer` = at and `row_axis` = row.
+struct RowPlace {
+  Axis layer;
+  std::uint32_t at;
+  Axis row_axis;
+  std::uint32_t row;
+};
+
+/// Decodes a row. O(log runs + runs between its first voxel and its last).
+template <class Runs>
+void decode_row(const Runs& runs, const RunChunk& chunk, const RowPlace& place, std::span<Material> out) {
+  const std::array<Axis, 3> axes = axes_of(chunk.order);
+  std::uint32_t voxel = 0;
+  std::uint32_t step = 0;
+  std::uint32_t stride = 1;
+  for (const Axis axis : axes) {
+    if (axis == place.layer) {
+      voxel += place.at * stride;
+    } else if (axis == place.row_axis) {
+      voxel += place.row * stride;
+    } else {
+      step = stride;
+    }
+    stride *= side_of(chunk, axis);
+  }
+  RunCursor cursor(runs);
+  for (Material& material : out) {
+    if (cursor.end() <= voxel) cursor.seek(voxel);
+    material = cursor.material();
+    voxel += step;
+  }
+}
+
+/// The layers of one direction whose faces an edit may touch: those with changed voxels, and those that look
+/// at them.
 LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsigned side) {
   LayerSet out = changed | (positive ? changed >> 1 : changed << 1);
   if (beyond) out.set(positive ? side - 1 : 0);
@@ -21,129 +60,221 @@ LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsi
   return out;
 }
 
-/// Meshes the touched layers of one axis again, its negative direction first.
-template <class Row>
-void mesh_axis(const RunChunk& chunk, Axis axis, const std::array<LayerSet, 2>& touched,
-               const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-               rdm::RowScratch<Row>& scratch, LayerPatch& patch) {
-  const auto axes = rdm::side_axes(chunk.order);
-  const rdm::SideAxes& sides =
-      *std::find_if(axes.begin(), axes.end(), [axis](const rdm::SideAxes& s) { return s.layer == axis; });
-  const auto side_of = [](const RunChunk& c, Axis a) {
-    return std::uint32_t{c.extent.sides()[static_cast<std::size_t>(a)]};
-  };
-  const std::uint32_t depth = side_of(chunk, axis);
-  const std::uint32_t bits = side_of(chunk, sides.bit);
-  const std::uint32_t rows = side_of(chunk, sides.row);
-
-  // A layer is needed for its own faces and for those that look at it.
-  const LayerSet needed = touched[0] | touched[0] >> 1 | touched[1] | touched[1] << 1;
-  std::array<std::uint32_t, kSideMax> at;
-  std::array<rdm::LayerVoxels<Row>*, kSideMax> decoded;
-  std::array<const rdm::LayerVoxels<Row>*, kSideMax> layer{};
-  std::size_t count = 0;
-  if (scratch.layers.size() < depth) scratch.layers.resize(depth);
-  for (std::uint32_t l = 0; l < depth; ++l) {
-    if (!needed[l]) continue;
-    at[count] = l;
-    decoded[count] = &scratch.layers[count];
-    layer[l] = decoded[count++];
+/// Puts new strips into row `row` of a layer's quads, in no particular order: quads that cover the row are
+/// cut above and below it, and what repeats exactly is joined again. O(quads * strips).
+void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
+                 std::vector<Quad>& quads) {
+  for (std::size_t i = 0, count = quads.size(); i < count;) {
+    const Quad quad = quads[i];
+    const std::uint32_t first = shape.row(quad);
+    const std::uint32_t end = shape.row_end(quad);
+    if (row < first || end <= row) {
+      ++i;
+      continue;
+    }
+    if (row + 1 < end) quads.push_back(shape.with_rows(quad, row + 1, end - row - 1));
+    if (first < row) {
+      quads[i++] = shape.with_rows(quad, first, row - first);
+    } else {
+      // The last of those not looked at yet moves here, and the last of all into its place.
+      quads[i] = quads[--count];
+      quads[count] = quads.back();
+      quads.pop_back();
+    }
   }
-  if (count == 0) return;
-  rdm::decode_layers(chunk, axis, at.data(), decoded.data(), count, visibility);
-
-  for (const bool positive : {false, true}) {
-    const Direction direction = rdm::direction_of(axis, positive);
-    const LayerSet& faces = touched[positive ? 1 : 0];
-    for (std::uint32_t l = 0; l < depth; ++l) {
-      if (!faces[l]) continue;
-      const bool at_border = l == (positive ? depth - 1 : 0);
-      if (at_border) {
-        const RunChunk* const neighbour = neighbours[static_cast<std::size_t>(direction)];
-        RUNSTONE_ASSERT(neighbour == nullptr ||
-                        (side_of(*neighbour, sides.bit) == bits && side_of(*neighbour, sides.row) == rows));
-        const std::uint32_t there = positive || neighbour == nullptr ? 0 : side_of(*neighbour, axis) - 1;
-        rdm::decode_border(neighbour, axis, there, sides.bit, bits, rows, visibility, scratch.beyond);
+  for (const Quad strip : strips) {
+    std::uint32_t first = row;
+    std::uint32_t end = row + 1;
+    std::erase_if(quads, [&](Quad quad) {
+      if (shape.strip(quad) != shape.strip(strip)) return false;
+      if (shape.row_end(quad) == row) {
+        first = shape.row(quad);
+        return true;
       }
-      const rdm::LayerVoxels<Row>* const beyond =
-          at_border ? &scratch.beyond : layer[positive ? l + 1 : l - 1];
-      rdm::mesh_layer({layer[l], beyond, bits, rows, l, rdm::QuadShape(direction, sides.bit, sides.row)},
-                      patch.opaque, patch.transparent);
-      patch.layers.push_back({static_cast<std::size_t>(direction) * kSideMax + l,
-                              static_cast<std::uint32_t>(patch.opaque.size()),
-                              static_cast<std::uint32_t>(patch.transparent.size())});
-    }
+      if (shape.row(quad) != row + 1) return false;
+      end = shape.row_end(quad);
+      return true;
+    });
+    quads.push_back(shape.with_rows(strip, first, end - first));
   }
 }
 
-/// Puts the layers of a patch in the place of those in `out`. O(quads + layers).
-void splice(const LayerPatch& patch, const std::vector<Quad>& quads,
-            std::uint32_t LayerPatch::Layer::* end_of, std::vector<Quad>& merged, QuadLayers& out) {
-  if (quads.empty() && out.quads.empty()) return;
-  merged.clear();
-  std::size_t kept = 0;     // old quads before this are in `merged`, or replaced
-  std::size_t next = 0;     // first[] before this counts in `merged`
-  std::uint32_t begin = 0;  // of the layer's quads in `quads`
-  std::uint32_t shift = 0;  // what to add to first[], modulo 2^32
-  for (const LayerPatch::Layer& layer : patch.layers) {
-    const std::uint32_t old_begin = out.first[layer.index];
-    const std::uint32_t old_end = out.first[layer.index + 1];
-    merged.insert(merged.end(), out.quads.begin() + static_cast<std::ptrdiff_t>(kept),
-                  out.quads.begin() + old_begin);
-    merged.insert(merged.end(), quads.begin() + begin, quads.begin() + layer.*end_of);
-    kept = old_end;
-    if (shift != 0) {
+class Remesher {
+ public:
+  Remesher(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
+           const DirtyLayers& dirty, const std::array<DirtyLayers, kDirectionCount>& beyond,
+           RdmScratch::State& scratch, ChunkMesh& mesh)
+      : chunk_(chunk),
+        neighbours_(neighbours),
+        visibility_(visibility),
+        scratch_(scratch),
+        passes_{&mesh.opaque, &mesh.transparent} {
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      const auto direction = static_cast<Direction>(d);
+      const auto axis = static_cast<std::size_t>(axis_of(direction));
+      const unsigned side = chunk.extent.sides()[axis];
+      const RunChunk* const neighbour = neighbours[d];
+      const bool border =
+          neighbour != nullptr &&
+          beyond[d].layer[axis][is_positive(direction) ? 0 : side_of(*neighbour, axis_of(direction)) - 1];
+      touched_[d] = faces_touched(dirty.layer[axis], is_positive(direction), border, side);
+      rows_[d] = dirty;
+      if (border) rows_[d] |= beyond[d];
+    }
+  }
+
+  /// Rows to be meshed again, in all layers.
+  std::size_t row_count() const {
+    std::size_t count = 0;
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      count += touched_[d].count() * rows_[d].layer[static_cast<std::size_t>(axes(d).row)].count();
+    }
+    return count;
+  }
+
+  void run() {
+    for (LayerPatch& patch : scratch_.patch) {
+      patch.layers.clear();
+      patch.quads.clear();
+    }
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      for (std::uint32_t l = 0; l < chunk_.extent.sides()[d / 2]; ++l) {
+        if (touched_[d][l]) mesh_layer(static_cast<Direction>(d), l);
+      }
+    }
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass) splice(scratch_.patch[pass], *passes_[pass]);
+  }
+
+ private:
+  rdm::SideAxes axes(std::size_t direction) const {
+    const auto all = rdm::side_axes(chunk_.order);
+    return *std::find_if(all.begin(), all.end(), [direction](const rdm::SideAxes& s) {
+      return static_cast<std::size_t>(s.layer) == direction / 2;
+    });
+  }
+
+  void mesh_layer(Direction direction, std::uint32_t layer) {
+    const auto d = static_cast<std::size_t>(direction);
+    const rdm::SideAxes a = axes(d);
+    const QuadShape shape(direction, a.bit, a.row);
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
+      const auto quads = passes_[pass]->layer(direction, layer);
+      scratch_.layer[pass].assign(quads.begin(), quads.end());
+    }
+    const LayerSet& rows = rows_[d].layer[static_cast<std::size_t>(a.row)];
+    for (std::uint32_t row = 0; row < side_of(chunk_, a.row); ++row) {
+      if (rows[row]) mesh_row(direction, layer, row, a, shape);
+    }
+    const std::size_t index = d * kSideMax + layer;
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
+      std::vector<Quad>& quads = scratch_.layer[pass];
+      // The order in which a sweep closes them.
+      std::sort(quads.begin(), quads.end(), [&shape](Quad x, Quad y) {
+        const std::uint32_t x_end = shape.row_end(x);
+        const std::uint32_t y_end = shape.row_end(y);
+        return x_end != y_end ? x_end < y_end : shape.last(x) < shape.last(y);
+      });
+      const auto before = passes_[pass]->layer(direction, layer);
+      if (std::equal(quads.begin(), quads.end(), before.begin(), before.end())) continue;
+      LayerPatch& patch = scratch_.patch[pass];
+      patch.quads.insert(patch.quads.end(), quads.begin(), quads.end());
+      patch.layers.push_back({index, static_cast<std::uint32_t>(patch.quads.size())});
+    }
+  }
+
+  void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::SideAxes& a,
+                const QuadShape& shape) {
+    const std::uint32_t bits = side_of(chunk_, a.bit);
+    std::array<Material, kSideMax> own;
+    std::array<Material, kSideMax> beyond;
+    decode(&chunk_, {a.layer, layer, a.row, row}, std::span(own).first(bits));
+    if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
+      const std::uint32_t other = is_positive(direction) ? layer + 1 : layer - 1;
+      decode(&chunk_, {a.layer, other, a.row, row}, std::span(beyond).first(bits));
+    } else {
+      const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)];
+      const std::uint32_t other =
+          is_positive(direction) || neighbour == nullptr ? 0 : side_of(*neighbour, a.layer) - 1;
+      decode(neighbour, {a.layer, other, a.row, row}, std::span(beyond).first(bits));
+    }
+    std::array<std::array<Quad, kSideMax>, 2> strips;
+    std::array<std::size_t, 2> count{};
+    for (std::uint32_t bit = 0; bit < bits;) {
+      const Material material = own[bit];
+      if (!visibility_.face_drawn(material, beyond[bit])) {
+        ++bit;
+        continue;
+      }
+      const std::uint32_t begin = bit;
+      while (++bit < bits && own[bit] == material && visibility_.face_drawn(material, beyond[bit])) {
+      }
+      const std::size_t pass = visibility_[material] == Visibility::transparent ? 1 : 0;
+      strips[pass][count[pass]++] =
+          shape.close(shape.open({layer, begin, bit - begin, row}, material), row + 1);
+    }
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
+      replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.layer[pass]);
+    }
+  }
+
+  static void decode(const RunChunk* chunk, const RowPlace& place, std::span<Material> out) {
+    if (chunk == nullptr) {
+      std::fill(out.begin(), out.end(), kEmpty);
+    } else {
+      chunk->runs.visit([&](const auto& runs) { decode_row(runs, *chunk, place, out); });
+    }
+  }
+
+  /// Puts the layers of a patch in the place of those in `out`. O(quads + layers).
+  static void splice(LayerPatch& patch, QuadLayers& out) {
+    if (patch.layers.empty()) return;
+    std::vector<Quad>& merged = patch.merged;
+    merged.clear();
+    std::size_t kept = 0;     // old quads before this are in `merged`, or replaced
+    std::size_t next = 0;     // first[] before this counts in `merged`
+    std::uint32_t begin = 0;  // of the layer's quads in the patch
+    std::uint32_t shift = 0;  // what to add to first[], modulo 2^32
+    const auto at = [](const std::vector<Quad>& quads, std::size_t i) {
+      return quads.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    for (const LayerPatch::Layer& layer : patch.layers) {
+      const std::uint32_t old_begin = out.first[layer.index];
+      const std::uint32_t old_end = out.first[layer.index + 1];
+      merged.insert(merged.end(), at(out.quads, kept), at(out.quads, old_begin));
+      merged.insert(merged.end(), at(patch.quads, begin), at(patch.quads, layer.quads_end));
+      kept = old_end;
       for (; next <= layer.index; ++next) out.first[next] += shift;
+      shift += (layer.quads_end - begin) - (old_end - old_begin);
+      begin = layer.quads_end;
     }
-    next = layer.index + 1;
-    shift += (layer.*end_of - begin) - (old_end - old_begin);
-    begin = layer.*end_of;
+    merged.insert(merged.end(), at(out.quads, kept), out.quads.cend());
+    for (; next < out.first.size(); ++next) out.first[next] += shift;
+    std::swap(merged, out.quads);
   }
-  merged.insert(merged.end(), out.quads.begin() + static_cast<std::ptrdiff_t>(kept), out.quads.end());
-  for (; next < out.first.size(); ++next) out.first[next] += shift;
-  std::swap(merged, out.quads);
-}
 
-template <class Row>
-void remesh(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-            const std::array<LayerSet, kDirectionCount>& touched,
-            std::unique_ptr<rdm::RowScratch<Row>>& scratch, LayerPatch& patch) {
-  if (!scratch) scratch = std::make_unique<rdm::RowScratch<Row>>();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    mesh_axis(chunk, static_cast<Axis>(axis), {touched[axis * 2], touched[axis * 2 + 1]}, neighbours,
-              visibility, *scratch, patch);
-  }
-}
+  const RunChunk& chunk_;
+  const MeshNeighbours& neighbours_;
+  const VisibilityTable& visibility_;
+  RdmScratch::State& scratch_;
+  const std::array<QuadLayers*, 2> passes_;
+  std::array<LayerSet, kDirectionCount> touched_;  // layers to be meshed again
+  std::array<DirtyLayers, kDirectionCount> rows_;  // where in them
+};
 
 }  // namespace
 
 void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
-                     const std::bitset<kDirectionCount>& beyond, RdmScratch& scratch, ChunkMesh& mesh) {
-  const auto sides = chunk.extent.sides();
-  std::array<LayerSet, kDirectionCount> touched;
-  std::size_t touched_count = 0;
-  for (std::size_t d = 0; d < kDirectionCount; ++d) {
-    touched[d] = faces_touched(dirty.layer[d / 2], d % 2 != 0, beyond[d], sides[d / 2]);
-    touched_count += touched[d].count();
-  }
-  // A layer on its own costs some times its share of a sweep.
-  constexpr std::size_t kSweepLayers = 4;
-  if (touched_count * kSweepLayers > std::size_t{2} * (sides[0] + sides[1] + sides[2])) {
+                     const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
+                     ChunkMesh& mesh) {
+  Remesher remesher(chunk, neighbours, visibility, dirty, beyond, scratch.state(), mesh);
+  // A row on its own costs some times its share of a sweep, which has a row per line in each direction.
+  constexpr std::size_t kSweepRows = 8;
+  const OrderedExtent e = ordered(chunk.extent, chunk.order);
+  if (remesher.row_count() * kSweepRows > std::size_t{kDirectionCount} * e.m * e.s) {
     return mesh_rdm(chunk, neighbours, visibility, scratch, mesh);
   }
-  RdmScratch::State& state = scratch.state();
-  LayerPatch& patch = state.patch;
-  patch.layers.clear();
-  patch.opaque.clear();
-  patch.transparent.clear();
-  if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    remesh(chunk, neighbours, visibility, touched, state.narrow, patch);
-  } else {
-    remesh(chunk, neighbours, visibility, touched, state.wide, patch);
-  }
-  splice(patch, patch.opaque, &LayerPatch::Layer::opaque_end, patch.merged, mesh.opaque);
-  splice(patch, patch.transparent, &LayerPatch::Layer::transparent_end, patch.merged, mesh.transparent);
+  remesher.run();
 }
 
 }  // namespace runstone

@@ -3,7 +3,6 @@
 // then across lines and layers. No dense grid.
 #pragma once
 #include <array>
-#include <bitset>
 #include <memory>
 
 #include "common/core/coords.hpp"
@@ -45,12 +44,15 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Vis
               RdmScratch& scratch, ChunkMesh& out);
 
 /// Meshes again what an edit touched: `mesh` is that of the chunk and its neighbours before, `dirty` the
-/// layers in which a voxel of the chunk changed since (ApplyResult::dirty), and `beyond` the directions in
-/// which a voxel that touches the chunk did. Equal to mesh_rdm(), quad for quad. The chunk's axis order must
-/// be the one it was meshed in. Cost: the touched layers and those beside them are decoded and meshed one by
-/// one, O(runs + their voxels), and the kept quads are moved; where that would cost more, it is mesh_rdm().
+/// layers in which a voxel of the chunk changed since (ApplyResult::dirty), and `beyond` the same of each
+/// neighbour; what lies behind the layer that touches the chunk does not matter. Equal to mesh_rdm(), quad
+/// for quad. The chunk's axis order must be the one it was meshed in. In each layer, the rows in which a
+/// voxel may have changed are decoded, and joined anew with the quads above and below them. O(rows * (line +
+/// log runs + quads of the layer) + quads moved); where that would cost more, it is mesh_rdm(). Allocates
+/// nothing in a steady state. Any thread, one scratch each.
 void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
-                     const std::bitset<kDirectionCount>& beyond, RdmScratch& scratch, ChunkMesh& mesh);
+                     const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
+                     ChunkMesh& mesh);
 
 }  // namespace runstone

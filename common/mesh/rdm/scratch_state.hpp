@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/mesh/rdm/layer_sweep.hpp"
-#include "common/mesh/rdm/layer_voxels.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -18,19 +17,17 @@ template <class Row>
 struct RowScratch {
   Borders<Row> borders;
   SweepState<Row> sweep;
-  std::vector<LayerVoxels<Row>> layers;  // of one axis, those to be meshed again and those beside them
-  LayerVoxels<Row> beyond;               // a neighbour's
 };
 
-/// Quads of some layers that take the place of others: new quads of all of them, and where each begins.
+/// Quads of some layers that take the place of others, in one pass.
 struct LayerPatch {
   struct Layer {
-    std::size_t index = 0;  // in QuadLayers::first
-    std::uint32_t opaque_end = 0, transparent_end = 0;
+    std::size_t index = 0;        // in QuadLayers::first
+    std::uint32_t quads_end = 0;  // in `quads`; they begin where those of the layer before end
   };
   std::vector<Layer> layers;  // ascending
-  std::vector<Quad> opaque, transparent;
-  std::vector<Quad> merged;
+  std::vector<Quad> quads;
+  std::vector<Quad> merged;  // scratch
 };
 
 constexpr Direction direction_of(Axis axis, bool positive) {
@@ -54,7 +51,8 @@ struct RdmScratch::State {
   rdm::MaterialCodes codes;
   std::vector<rdm::CodedRun> runs;
   rdm::QuadBuckets opaque, transparent;
-  rdm::LayerPatch patch;
+  std::array<rdm::LayerPatch, 2> patch;    // opaque and transparent
+  std::array<std::vector<Quad>, 2> layer;  // quads of the layer at hand, by pass
   std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
   std::unique_ptr<rdm::RowScratch<rdm::Row128>> wide;  // made for the first chunk with a side above 64
   bool plain = false;

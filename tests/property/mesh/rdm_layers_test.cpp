@@ -31,12 +31,6 @@ DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   return dirty;
 }
 
-/// Whether the layer of the neighbour in direction `d` that touches the chunk changed.
-bool touches(const DirtyLayers& dirty, Direction d, Extent extent) {
-  const auto axis = static_cast<std::size_t>(axis_of(d));
-  return dirty.layer.at(axis)[is_positive(d) ? 0u : extent.sides().at(axis) - 1u];
-}
-
 void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -44,14 +38,12 @@ void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
   for (int step = 0; step < steps; ++step) {
     DirtyLayers dirty;
-    std::bitset<kDirectionCount> beyond;
+    std::array<DirtyLayers, kDirectionCount> beyond{};
     if (rng.below(4) != 0) dirty |= change(rng, scene.chunk);
     if (rng.below(3) == 0) {
       const auto d = static_cast<std::size_t>(rng.below(kDirectionCount));
       auto& neighbour = scene.neighbours.at(d);
-      if (neighbour) {
-        beyond[d] = touches(change(rng, *neighbour), static_cast<Direction>(d), neighbour->extent);
-      }
+      if (neighbour) beyond.at(d) = change(rng, *neighbour);
     }
     mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond, scratch, mesh);
     mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, full);
