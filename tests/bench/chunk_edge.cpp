@@ -17,7 +17,7 @@ namespace runstone::bench {
 namespace {
 
 constexpr std::int32_t kRegionUnit = 64;  // every edge up to here divides the region
-constexpr unsigned kPasses = 11;
+constexpr unsigned kPasses = 31;
 constexpr std::size_t kEdits = 4000;  // about as many for each edge
 
 /// The voxels that are cut: as much of the bounds as whole units cover, or a cube of two units a side around
@@ -44,41 +44,68 @@ double mesh_pass_ns(const std::vector<Volume>& volumes, const VisibilityTable& v
   return static_cast<double>(core_ns() - start);
 }
 
-ChunkEdgeRow measure(const VoxelWorld& world, unsigned edge) {
-  ChunkEdgeRow out;
-  out.world = world.name;
-  out.edge = edge;
-  std::vector<Volume> volumes = volumes_in(world, region_of(world), edge);
-  out.chunks = volumes.size();
-  for (const Volume& volume : volumes) {
+/// The region of a world cut at one edge.
+struct Cut {
+  ChunkEdgeRow row;
+  std::vector<Volume> volumes;
+  std::vector<double> passes;  // ns
+};
+
+Cut cut_region(const VoxelWorld& world, unsigned edge) {
+  Cut out;
+  ChunkEdgeRow& row = out.row;
+  row.world = world.name;
+  row.edge = edge;
+  out.volumes = volumes_in(world, region_of(world), edge);
+  row.chunks = out.volumes.size();
+  for (const Volume& volume : out.volumes) {
     const RunChunk& chunk = volume.scene.chunk;
-    out.uniform += chunk.is_uniform() ? 1 : 0;
-    out.runs += chunk.runs.size();
-    out.voxels += chunk.volume();
-    out.run_bytes += chunk.runs.byte_size();
-    if (!chunk.is_uniform()) out.mixed_bytes += chunk.runs.byte_size();
-    out.memory_bytes += chunk.runs.byte_capacity() + sizeof(RunChunk);
-    out.packed_bytes += encode_chunk(chunk, ChunkEncoding::packed).size();
+    row.uniform += chunk.is_uniform() ? 1 : 0;
+    row.runs += chunk.runs.size();
+    row.voxels += chunk.volume();
+    row.run_bytes += chunk.runs.byte_size();
+    if (!chunk.is_uniform()) row.mixed_bytes += chunk.runs.byte_size();
+    row.memory_bytes += chunk.runs.byte_capacity() + sizeof(RunChunk);
+    row.packed_bytes += encode_chunk(chunk, ChunkEncoding::packed).size();
   }
+  return out;
+}
+
+void measure_edits_of(Cut& cut, const VisibilityTable& visibility) {
+  std::erase_if(cut.volumes, [](const Volume& volume) { return volume.scene.chunk.is_uniform(); });
+  const auto per_volume = static_cast<unsigned>(kEdits / (cut.volumes.size() + 1) + 1);
+  const EditTiming edits = measure_edits(cut.volumes, visibility, per_volume, 1);
+  cut.row.edit_ns = edits.both_ns;
+  cut.row.edit_full_mesh_ns = edits.full_mesh_ns;
+}
+
+/// One world at all edges, pass by pass in turns, so that a noisy machine hits all of them alike.
+void measure(const VoxelWorld& world, const std::vector<unsigned>& edges, std::vector<ChunkEdgeRow>& out) {
+  std::vector<Cut> cuts;
+  for (const unsigned edge : edges) cuts.push_back(cut_region(world, edge));
   RdmScratch scratch;
   ChunkMesh mesh;
-  std::vector<double> passes;
   for (unsigned pass = 0; pass < kPasses; ++pass) {
-    passes.push_back(mesh_pass_ns(volumes, *world.visibility, scratch, mesh, out.quads));
+    for (Cut& cut : cuts) {
+      cut.passes.push_back(mesh_pass_ns(cut.volumes, *world.visibility, scratch, mesh, cut.row.quads));
+    }
   }
-  out.mesh_ns = median(passes);
-  std::erase_if(volumes, [](const Volume& volume) { return volume.scene.chunk.is_uniform(); });
-  const auto per_volume = static_cast<unsigned>(kEdits / (volumes.size() + 1) + 1);
-  const EditTiming edits = measure_edits(volumes, *world.visibility, per_volume, 1);
-  out.edit_ns = edits.both_ns;
-  out.edit_full_mesh_ns = edits.full_mesh_ns;
-  return out;
+  for (Cut& cut : cuts) {
+    cut.row.mesh_ns = median(cut.passes);
+    measure_edits_of(cut, *world.visibility);
+    out.push_back(cut.row);
+  }
 }
 
 }  // namespace
 
 Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions& options,
                                                               std::ostream& progress) {
+  for (const unsigned edge : options.edges) {
+    if (kRegionUnit % static_cast<std::int32_t>(edge) != 0) {
+      return Unexpected<std::string>{fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge)};
+    }
+  }
   std::vector<std::string> names = options.worlds;
   if (names.empty()) {
     const auto all = landscape_names();
@@ -88,13 +115,9 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
   if (!worlds) return Unexpected<std::string>{worlds.error()};
   std::vector<ChunkEdgeRow> out;
   for (std::size_t w = 0; w < worlds->size(); ++w) {
-    for (const unsigned edge : options.edges) {
-      if (kRegionUnit % static_cast<std::int32_t>(edge) != 0) {
-        return Unexpected<std::string>{fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge)};
-      }
-      out.push_back(measure(*worlds->voxels(w), edge));
-      fmt::print(progress, "{} edge {}\n", worlds->name(w), edge);
-    }
+    measure(*worlds->voxels(w), options.edges, out);
+    fmt::print(progress, "{}\n", worlds->name(w));
+    progress.flush();
   }
   return out;
 }

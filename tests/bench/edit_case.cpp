@@ -1,5 +1,6 @@
 #include "tests/bench/edit_case.hpp"
 
+#include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/edit_stack.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
@@ -32,10 +33,12 @@ class EditedChunk {
     const std::uint64_t start = now_ns();
     apply_stack(chunk_, digest_, {}, std::span(&edit, 1), apply_scratch_, result_);
     const std::uint64_t applied = now_ns();
-    mesh_rdm(chunk_, neighbours_, visibility_, scratch_, mesh_);
+    mesh_rdm_layers(chunk_, neighbours_, visibility_, result_.dirty, {}, scratch_, mesh_);
     const std::uint64_t meshed = now_ns();
     mesh_rdm(chunk_, neighbours_, visibility_, scratch_, full_);
     const std::uint64_t again = now_ns();
+    RUNSTONE_ASSERT(mesh_.opaque.quads == full_.opaque.quads &&
+                    mesh_.transparent.quads == full_.transparent.quads);
     samples.apply.push_back(static_cast<double>(applied - start));
     samples.remesh.push_back(static_cast<double>(meshed - applied));
     samples.both.push_back(static_cast<double>(meshed - start));
