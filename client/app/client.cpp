@@ -8,11 +8,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <type_traits>
 #include <utility>
 
+#include "client/app/body_marker.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
 
@@ -77,14 +79,26 @@ Client::Client(ClientOptions options, const Script* script)
 Client::~Client() = default;
 
 int Client::run(const volatile std::sig_atomic_t& stop) {
+  int code = kExitNoStart;
+  try {
+    code = play(stop);
+  } catch (const std::exception& error) {
+    // What was measured until now, and what the script found, are wanted all the more.
+    std::fprintf(stderr, "runstone-client: %s\n", error.what());
+  }
+  return finish(code);
+}
+
+int Client::play(const volatile std::sig_atomic_t& stop) {
   std::optional<int> code;
   while (!code) {
     take_events();
+    take_news();  // before the script asks whether all of it is drawn
     const TimeUs now_us = steady_now_us();
     take_input(now_us);
     picture_.take_drawn();
     if (runner_) runner_->step(now_us);
-    follow_player();
+    follow_player(now_us);
     session_.tick(now_us);
     flush();
     take_news();
@@ -94,7 +108,7 @@ int Client::run(const volatile std::sig_atomic_t& stop) {
     code = exit_code(steady_now_us());
     if (!code) rest(steady_now_us());
   }
-  return finish(*code);
+  return *code;
 }
 
 // ---- network
@@ -152,7 +166,7 @@ void Client::world_opened() {
   const Welcome& welcome = *session_.welcome();
   spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(), welcome.epoch,
                welcome.head, welcome.durable, welcome.chunk_edge);
-  if (openings_seen_ == 1) player_.move_to(welcome.spawn);
+  player_.enter(welcome.world_id, welcome.spawn);
   picture_.set_materials(welcome.materials);
   if (!options_.key_file.empty() && session_.pinned().size() != pins_known_) {
     save_pinned_servers(options_.key_file, session_.pinned());
@@ -188,13 +202,12 @@ void Client::click(bool place, TimeUs now_us) {
   if (at) static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
 }
 
-void Client::follow_player() {
+void Client::follow_player(TimeUs now_us) {
   session_.set_pose(player_.pose());
   if (!session_.replica().opened()) return;
   const ChunkCoord centre = player_.chunk(session_.replica().chunk_edge());
-  const View wished{centre, options_.view_radius, options_.view_radius_v};
-  if (session_.view().centre != centre) {
-    session_.set_view(wished);
+  if (view_pace_.step(session_.view().centre, centre, now_us)) {
+    session_.set_view({centre, options_.view_radius, options_.view_radius_v});
     picture_.view_changed();
   }
   picture_.set_eye(centre);
@@ -217,13 +230,7 @@ std::vector<Marker> Client::markers() const {
   std::vector<Marker> out;
   for (const auto& [author, other] : session_.others()) {
     if (!other.pose) continue;
-    const WorldPos& at = other.pose->at;
-    Marker body{at.x - 0.3, at.y - 1.6, at.z - 0.3, 0.6, 1.8, 0.6, 230, 90, 40, true};
-    // A colour of their own, so that two builders are told apart.
-    body.r = static_cast<std::uint8_t>(96 + mix64(author) % 160);
-    body.g = static_cast<std::uint8_t>(96 + mix64(author + 1) % 160);
-    body.b = static_cast<std::uint8_t>(96 + mix64(author + 2) % 160);
-    out.push_back(body);
+    if (const auto body = body_marker(author, other.pose->at, player_.eye())) out.push_back(*body);
   }
   if (options_.headless) return out;
   if (const auto hit = pick()) {
@@ -384,11 +391,16 @@ bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
   return true;
 }
 
-bool Client::loaded() const { return session_.loaded() && picture_.is_settled(); }
+bool Client::view_has_followed() const {
+  return session_.replica().opened() &&
+         session_.view().centre == player_.chunk(session_.replica().chunk_edge());
+}
+
+bool Client::loaded() const { return view_has_followed() && session_.loaded() && picture_.is_settled(); }
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.
-  return session_.loaded() && session_.pongs() >= mark + 2 &&
+  return view_has_followed() && session_.loaded() && session_.pongs() >= mark + 2 &&
          session_.replica().own_edits().unanswered().empty();
 }
 
@@ -396,6 +408,11 @@ bool Client::screenshot(const std::string& file) {
   if (!picture_.draws()) return false;
   picture_.request_screenshot(screenshot_path(file), steady_now_us());
   return true;
+}
+
+std::optional<bool> Client::screenshot_written() const {
+  if (!picture_.screenshots_done()) return std::nullopt;
+  return picture_.screenshots_written();
 }
 
 }  // namespace runstone

@@ -20,13 +20,14 @@
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
 #include "client/replica/client_session.hpp"
+#include "client/schedule/view_pace.hpp"
 
 namespace runstone {
 
 /// Exit codes of the program.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;   // an expectation of the script failed, or drift was found
-inline constexpr int kExitNoStart = 2;  // bad arguments, no OpenGL, no server
+inline constexpr int kExitNoStart = 2;  // bad arguments, no OpenGL or no more, no server
 
 class Client final : private ScriptHost {
  public:
@@ -35,10 +36,13 @@ class Client final : private ScriptHost {
   Client(ClientOptions options, const Script* script);
   ~Client() override;
 
-  /// Returns the exit code once the script, the user, the server or `stop` (set by a signal) ends it.
+  /// Returns the exit code once the script, the user, the server, `stop` (set by a signal) or a driver that
+  /// fails ends it. In each of these cases the goodbye is said and what was asked for is written.
   int run(const volatile std::sig_atomic_t& stop);
 
  private:
+  /// Turn after turn. Throws std::runtime_error if drawing fails.
+  int play(const volatile std::sig_atomic_t& stop);
   // The turn, in its order.
   void take_events();
   void on_connected(const NetConnected& event);
@@ -46,7 +50,7 @@ class Client final : private ScriptHost {
   void on_disconnected(const NetDisconnected& event);
   void world_opened();
   void take_input(TimeUs now_us);
-  void follow_player();
+  void follow_player(TimeUs now_us);
   void flush();
   void take_news();
   void draw(TimeUs now_us);
@@ -56,6 +60,8 @@ class Client final : private ScriptHost {
   /// Says goodbye, writes what was asked for, and returns the exit code: a file that cannot be written fails.
   int finish(int code);
 
+  /// The view is where the player is: what is said about chunks in view holds for what surrounds them.
+  bool view_has_followed() const;
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
   std::vector<Marker> markers() const;
   ClientReport report() const;
@@ -77,7 +83,7 @@ class Client final : private ScriptHost {
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
   bool screenshot(const std::string& file) override;
-  bool screenshot_done() const override { return picture_.screenshots_done(); }
+  std::optional<bool> screenshot_written() const override;
   bool digests(const std::string& file) override { return write_digests(file, session_); }
 
   const ClientOptions options_;
@@ -88,6 +94,7 @@ class Client final : private ScriptHost {
   Picture picture_;
   std::optional<ScriptRunner> runner_;
   Player player_;
+  ViewPace view_pace_;
   ChunkStats chunk_stats_;
 
   ConnectionNumber connection_ = 0;  // 0: none

@@ -52,9 +52,10 @@ void Picture::take_frame(const FrameDone& frame) {
   recorder_.presented(frame.presented_us);
   ++frames_.presented;
   frames_.draw_us.add(frame.presented_us - frame.started_us);
+  if (frame_.screenshots) screenshots_written_ = frame.unwritten.empty();
   frame_ = {};
   if (!watched_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
-  for (const std::string& file : frame.unwritten) spdlog::error("cannot write {}", file);
+  for (const std::string& file : frame.unwritten) spdlog::warn("picture={} cannot be written", file);
 }
 
 void Picture::mesh() {
@@ -70,7 +71,7 @@ void Picture::take_results() {
     recorder_.meshed(result.key, result.serial, result.meshed_us);
     if (!draw_thread_) continue;
     draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
-    changed_ = true;
+    changed_ = uploads_waiting_ = true;
     edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
   }
 }
@@ -96,9 +97,8 @@ void Picture::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
   if (screenshot_due) order.screenshots = std::exchange(screenshots_, {});
   draw_thread_->draw(std::move(order));
   ++frames_ordered_;
-  frame_ = {true, edits_waiting_, screenshot_due};
-  changed_ = false;
-  edits_waiting_ = false;
+  frame_ = {true, uploads_waiting_, screenshot_due};
+  changed_ = uploads_waiting_ = edits_waiting_ = false;
   if (watched_) next_frame_us_ = now_us + kFrameUs;
 }
 

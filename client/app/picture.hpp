@@ -52,10 +52,12 @@ class Picture {
   /// draws().
   void request_screenshot(std::string path, TimeUs now_us);
   bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
+  /// Whether the newest screenshots that are done could be written.
+  bool screenshots_written() const { return screenshots_written_; }
 
-  /// Everything that can be meshed is meshed, and edits are on the screen.
+  /// Everything that the replica shows is meshed, and a frame that shows all of these meshes was presented.
   bool is_settled() const {
-    return planner_.dirty_count() == 0 && is_idle() && !edits_waiting_ && !frame_.edits;
+    return planner_.dirty_count() == 0 && is_idle() && !uploads_waiting_ && !frame_.uploads;
   }
   /// Whether all that was handed over before the first such question is on the screen: two frames later at
   /// the most, whatever others edit meanwhile. Asked when the program wants to end.
@@ -85,16 +87,19 @@ class Picture {
   MaterialTable materials_;
   Histogram mesh_ns_;
   FrameStats frames_;
-  bool changed_ = true;         // since the last frame was ordered
-  bool edits_waiting_ = false;  // a mesh with edits was handed over since the last frame was ordered
+  // Since the last frame was ordered:
+  bool changed_ = true;           // something that is drawn
+  bool uploads_waiting_ = false;  // a mesh was handed over
+  bool edits_waiting_ = false;    // a mesh with edits was
   struct {
-    bool under_way = false, edits = false, screenshots = false;
-  } frame_;  // the one that was ordered last, and whether it shows new edits
+    bool under_way = false, uploads = false, screenshots = false;
+  } frame_;  // the one that was ordered last, and whether it shows new meshes
   std::uint64_t frames_ordered_ = 0;
   std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
   TimeUs next_frame_us_ = 0;                 // not before, if there is no new edit
   std::vector<std::string> screenshots_;     // to take
   TimeUs screenshot_since_us_ = 0;
+  bool screenshots_written_ = true;
   std::unique_ptr<DrawThread> draw_thread_;  // may be null
   std::unique_ptr<MeshPool> pool_;           // once the materials are known; its threads use what is above
 };

@@ -14,6 +14,12 @@ constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
 
 }  // namespace
 
+void Player::enter(const WorldId& world, const WorldPos& spawn) {
+  if (world_ == world) return;
+  world_ = world;
+  eye_ = spawn;
+}
+
 void Player::look(double yaw, double pitch) {
   yaw_ = std::remainder(yaw, 2 * kPi);
   pitch_ = std::clamp(pitch, -kPitchMax, kPitchMax);

@@ -1,6 +1,7 @@
 // Player: the eye that flies through the world, and what it holds.
 #pragma once
 #include <cstddef>
+#include <optional>
 
 #include "client/platform/window.hpp"
 #include "client/render/renderer.hpp"
@@ -16,6 +17,9 @@ class Player {
  public:
   const WorldPos& eye() const { return eye_; }
   void move_to(const WorldPos& eye) { eye_ = eye; }
+  /// A world is open. In the one that the player was in before they stay where they are; in any other one
+  /// that place means nothing, and they begin at its spawn.
+  void enter(const WorldId& world, const WorldPos& spawn);
   /// Radians; pitch is kept short of straight up and down.
   void look(double yaw, double pitch);
   LookDirection direction() const { return look_direction(yaw_, pitch_); }
@@ -28,6 +32,7 @@ class Player {
   void steer(const WindowInput& input, double seconds, std::size_t material_count);
 
  private:
+  std::optional<WorldId> world_;  // none before the first
   WorldPos eye_;
   double yaw_ = 0, pitch_ = 0;
   Material held_ = 1;

@@ -34,7 +34,7 @@ class ScriptHost {
   /// Hands in an edit that was due at `due_us`. False: the client holds too many; it counts as never seen.
   virtual bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
 
-  /// Every chunk in view is here and drawn.
+  /// Every chunk in the view around the player is here, and drawn by a client that draws.
   virtual bool loaded() const = 0;
   /// No own edit is left that is not known to be on disk.
   virtual bool durable() const = 0;
@@ -42,9 +42,10 @@ class ScriptHost {
   virtual std::uint64_t sync_mark() const = 0;
   virtual bool synced(std::uint64_t mark) const = 0;
 
-  /// Asks for a picture of the current view; poll screenshot_done(). False: this client draws nothing.
+  /// Asks for a picture of the current view; poll screenshot_written(). False: this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;
-  virtual bool screenshot_done() const = 0;
+  /// None while it is under way; then whether its file could be written.
+  virtual std::optional<bool> screenshot_written() const = 0;
   /// Writes the digests of all confirmed chunks; false if the file cannot be written.
   virtual bool digests(const std::string& file) = 0;
 };

@@ -287,7 +287,10 @@ ScriptRunner::Progress ScriptRunner::run(const script::Screenshot& c) {
       return Progress::done;
     }
   }
-  return host_.screenshot_done() ? Progress::done : Progress::waits;
+  const auto written = host_.screenshot_written();
+  if (!written) return Progress::waits;
+  if (!*written) fail(c.file + " cannot be written");
+  return Progress::done;
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Expect& c) {

@@ -16,7 +16,8 @@ struct FakeHost final : ScriptHost {
     EditDescriptor edit;
     TimeUs due_us, now_us;
   };
-  bool open = true, is_loaded = true, is_durable = true, draws = true, picture_done = true, takes = true;
+  bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
+  std::optional<bool> picture = true;
   std::uint64_t pongs = 0;
   WorldPos at{10, 20, 30};
   double yaw = 0, pitch = 0;
@@ -57,7 +58,7 @@ struct FakeHost final : ScriptHost {
     files.push_back(file);
     return draws;
   }
-  bool screenshot_done() const override { return picture_done; }
+  std::optional<bool> screenshot_written() const override { return picture; }
   bool digests(const std::string& file) override {
     files.push_back(file);
     return file != "bad";
@@ -245,10 +246,10 @@ TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", 
 
 TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn", "[bots]") {
   load("screenshot a.png\nquit");
-  host.picture_done = false;
+  host.picture.reset();
   runner->step(0);
   CHECK_FALSE(runner->finished());
-  host.picture_done = true;
+  host.picture = true;
   runner->step(1);
   CHECK(runner->finished());
   CHECK(host.files == std::vector<std::string>{"a.png"});
@@ -256,4 +257,17 @@ TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where noth
   run("screenshot b.png\ndigests good\ndigests bad");
   CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
                                                        "s.txt:3: bad cannot be written"});
+}
+
+TEST_CASE_METHOD(Fixture, "a picture that cannot be written fails the script at its line, and it goes on",
+                 "[bots]") {
+  load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
+  host.picture.reset();
+  runner->step(0);
+  CHECK(runner->failures().empty());
+  host.picture = false;
+  runner->step(1);
+  CHECK(runner->finished());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:2: nosuch/a.png cannot be written"});
+  CHECK(host.edits.size() == 1);
 }

@@ -110,6 +110,30 @@ TEST_CASE_METHOD(Fixture, "off screen an edit is drawn at once and anything else
   CHECK(edits_presented() == 1);
 }
 
+TEST_CASE_METHOD(Fixture, "nothing is settled before a frame has shown it, terrain as little as edits",
+                 "[client_app]") {
+  CHECK(picture.is_settled());
+  replica.set_view({{0, 0, 0}, 1, 0});
+  picture.view_changed();
+  replica.receive(world.snapshot({1, 0, 0}), {});
+  picture.take(replica.take_news(), ClockOffset{}, steady_now_us());
+  CHECK_FALSE(picture.is_settled());  // to mesh
+  for (const ChunkCoord at : {ChunkCoord{-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    replica.receive(world.snapshot(at), {});
+  }
+  for (int job = 0; job < 10; ++job) turn();  // one each: five chunks, the first one perhaps again
+  CHECK(picture.recorder().open_edits() == 0);
+  CHECK_FALSE(picture.is_settled());  // handed over
+  book.hold();
+  picture.draw(steady_now_us() + Picture::kFrameOffScreenUs, Camera{}, {8, 4},
+               [] { return std::vector<Marker>{}; });
+  book.wait_until_drawing();
+  CHECK_FALSE(picture.is_settled());  // being drawn
+  book.release();
+  take_frames(2);
+  CHECK(picture.is_settled());
+}
+
 TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is", "[client_app]") {
   const test::TempFolder folder;
   picture.request_screenshot(folder / "a.png", steady_now_us());
@@ -121,7 +145,18 @@ TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is", "[client_app]
   book.release();
   take_frames(2);
   CHECK(picture.screenshots_done());
+  CHECK(picture.screenshots_written());
   CHECK(std::filesystem::file_size(folder / "a.png") > 0);
+  picture.request_screenshot(folder / "nosuch/b.png", steady_now_us());
+  order();
+  take_frames(3);
+  CHECK(picture.screenshots_done());
+  CHECK_FALSE(picture.screenshots_written());
+  picture.moved();
+  picture.draw(steady_now_us() + Picture::kFrameOffScreenUs, Camera{}, {8, 4},
+               [] { return std::vector<Marker>{}; });
+  take_frames(4);
+  CHECK_FALSE(picture.screenshots_written());  // a frame without pictures says nothing about them
 }
 
 TEST_CASE_METHOD(Fixture, "catching up waits for what was handed over, whatever comes later",

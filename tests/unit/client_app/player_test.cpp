@@ -70,3 +70,18 @@ TEST_CASE("the chunk of the eye is found by floor", "[client_app]") {
   player.move_to({1e300, -1e300, NAN});
   CHECK(player.chunk(16).x == (kWorldLimit - 1) / 16);
 }
+
+TEST_CASE("a player enters a world at its spawn, stays in place when it is back, and begins anew in another",
+          "[client_app]") {
+  Player player;
+  const WorldId first{1}, second{2};
+  player.enter(first, {10, 20, 30});
+  CHECK(player.eye() == WorldPos{10, 20, 30});
+  player.move_to({500, 60, 500});
+  player.enter(first, {10, 20, 30});  // the server was restarted
+  CHECK(player.eye() == WorldPos{500, 60, 500});
+  player.enter(second, {-1, 2, -3});  // another world behind the same port
+  CHECK(player.eye() == WorldPos{-1, 2, -3});
+  player.enter(first, {10, 20, 30});
+  CHECK(player.eye() == WorldPos{10, 20, 30});
+}
