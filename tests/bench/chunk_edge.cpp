@@ -82,6 +82,7 @@ void measure_edits_of(Cut& cut, const VisibilityTable& visibility) {
 /// One world at all edges, pass by pass in turns, so that a noisy machine hits all of them alike.
 void measure(const VoxelWorld& world, const std::vector<unsigned>& edges, std::vector<ChunkEdgeRow>& out) {
   std::vector<Cut> cuts;
+  cuts.reserve(edges.size());
   for (const unsigned edge : edges) cuts.push_back(cut_region(world, edge));
   RdmScratch scratch;
   ChunkMesh mesh;
