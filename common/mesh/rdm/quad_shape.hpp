@@ -24,7 +24,8 @@ class QuadShape {
         strip_shift_(7 * static_cast<unsigned>(strip)),
         row_shift_(7 * static_cast<unsigned>(row)),
         length_shift_(u_axis_of(axis_of(direction)) == strip ? 21 : 28),
-        rows_shift_(u_axis_of(axis_of(direction)) == strip ? 28 : 21) {}
+        rows_shift_(u_axis_of(axis_of(direction)) == strip ? 28 : 21),
+        strip_bits_(~(std::uint64_t{127} << row_shift_ | std::uint64_t{127} << rows_shift_)) {}
 
   /// The quad of a strip whose last row is not known yet; close() adds it.
   constexpr Quad open(const Strip& s, Material material) const {
@@ -49,9 +50,7 @@ class QuadShape {
     return {strip(q) | std::uint64_t{row} << row_shift_ | std::uint64_t{rows - 1} << rows_shift_};
   }
   /// All of a quad but its rows: equal for quads that may be joined where their rows touch.
-  constexpr std::uint64_t strip(Quad q) const {
-    return q.bits & ~(std::uint64_t{127} << row_shift_ | std::uint64_t{127} << rows_shift_);
-  }
+  constexpr std::uint64_t strip(Quad q) const { return q.bits & strip_bits_; }
   /// Last face along the strip.
   constexpr std::uint32_t last(Quad q) const {
     return static_cast<std::uint32_t>((q.bits >> strip_shift_ & 127) + (q.bits >> length_shift_ & 127));
@@ -60,6 +59,7 @@ class QuadShape {
  private:
   std::uint64_t base_ = 0;
   unsigned layer_shift_ = 0, strip_shift_ = 0, row_shift_ = 0, length_shift_ = 0, rows_shift_ = 0;
+  std::uint64_t strip_bits_ = 0;
 };
 
 }  // namespace runstone::rdm

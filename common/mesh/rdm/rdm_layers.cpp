@@ -44,10 +44,14 @@ void decode_row(const Runs& runs, const RunChunk& chunk, const RowPlace& place, 
     stride *= side_of(chunk, axis);
   }
   RunCursor cursor(runs);
-  for (Material& material : out) {
+  for (auto it = out.begin(); it != out.end();) {
     if (cursor.end() <= voxel) cursor.seek(voxel);
-    material = cursor.material();
-    voxel += step;
+    const Material material = cursor.material();
+    const std::uint32_t end = cursor.end();
+    do {
+      *it++ = material;
+      voxel += step;
+    } while (it != out.end() && voxel < end);
   }
 }
 
@@ -56,47 +60,51 @@ void decode_row(const Runs& runs, const RunChunk& chunk, const RowPlace& place, 
 LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsigned side) {
   LayerSet out = changed | (positive ? changed >> 1 : changed << 1);
   if (beyond) out.set(positive ? side - 1 : 0);
-  for (unsigned layer = side; layer < kSideMax; ++layer) out.reset(layer);
-  return out;
+  return out & ~LayerSet() >> (kSideMax - side);
 }
 
 /// Puts new strips into row `row` of a layer's quads, in no particular order: quads that cover the row are
-/// cut above and below it, and what repeats exactly is joined again. O(quads * strips).
+/// cut above and below it, and what repeats exactly is joined again. `beside` is scratch. O(quads + strips *
+/// quads beside the row).
 void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
-                 std::vector<Quad>& quads) {
-  for (std::size_t i = 0, count = quads.size(); i < count;) {
-    const Quad quad = quads[i];
+                 std::vector<Quad>& quads, std::vector<Quad>& beside) {
+  beside.clear();
+  std::size_t kept = 0;
+  for (const Quad quad : quads) {
     const std::uint32_t first = shape.row(quad);
-    const std::uint32_t end = shape.row_end(quad);
-    if (row < first || end <= row) {
-      ++i;
+    const std::uint32_t end = first + shape.rows(quad);
+    if (end < row || row + 1 < first) {
+      quads[kept++] = quad;
       continue;
     }
-    if (row + 1 < end) quads.push_back(shape.with_rows(quad, row + 1, end - row - 1));
-    if (first < row) {
-      quads[i++] = shape.with_rows(quad, first, row - first);
-    } else {
-      // The last of those not looked at yet moves here, and the last of all into its place.
-      quads[i] = quads[--count];
-      quads[count] = quads.back();
-      quads.pop_back();
+    if (first < row) beside.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
+    if (row + 1 < end) {
+      const std::uint32_t below = std::max(first, row + 1);
+      beside.push_back(shape.with_rows(quad, below, end - below));
     }
   }
+  quads.resize(kept);
   for (const Quad strip : strips) {
+    const std::uint64_t same = shape.strip(strip);
     std::uint32_t first = row;
     std::uint32_t end = row + 1;
-    std::erase_if(quads, [&](Quad quad) {
-      if (shape.strip(quad) != shape.strip(strip)) return false;
-      if (shape.row_end(quad) == row) {
-        first = shape.row(quad);
-        return true;
+    for (std::size_t i = 0; i < beside.size();) {
+      const Quad quad = beside[i];
+      if (shape.strip(quad) != same) {
+        ++i;
+        continue;
       }
-      if (shape.row(quad) != row + 1) return false;
-      end = shape.row_end(quad);
-      return true;
-    });
+      if (shape.row(quad) < row) {
+        first = shape.row(quad);
+      } else {
+        end = shape.row_end(quad);
+      }
+      beside[i] = beside.back();
+      beside.pop_back();
+    }
     quads.push_back(shape.with_rows(strip, first, end - first));
   }
+  quads.insert(quads.end(), beside.begin(), beside.end());
 }
 
 class Remesher {
@@ -138,8 +146,11 @@ class Remesher {
       patch.quads.clear();
     }
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      for (std::uint32_t l = 0; l < chunk_.extent.sides()[d / 2]; ++l) {
-        if (touched_[d][l]) mesh_layer(static_cast<Direction>(d), l);
+      if (d % 2 == 0) scratch_.row_layers.reset();  // another axis
+      const rdm::SideAxes a = axes(d);
+      const std::uint32_t depth = side_of(chunk_, a.layer);
+      for (std::uint32_t l = 0; l < depth; ++l) {
+        if (touched_[d][l]) mesh_layer(static_cast<Direction>(d), l, a);
       }
     }
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) splice(scratch_.patch[pass], *passes_[pass]);
@@ -153,9 +164,8 @@ class Remesher {
     });
   }
 
-  void mesh_layer(Direction direction, std::uint32_t layer) {
+  void mesh_layer(Direction direction, std::uint32_t layer, const rdm::SideAxes& a) {
     const auto d = static_cast<std::size_t>(direction);
-    const rdm::SideAxes a = axes(d);
     const QuadShape shape(direction, a.bit, a.row);
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       const auto quads = passes_[pass]->layer(direction, layer);
@@ -168,13 +178,14 @@ class Remesher {
     const std::size_t index = d * kSideMax + layer;
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       std::vector<Quad>& quads = scratch_.layer[pass];
+      const auto before = passes_[pass]->layer(direction, layer);
+      if (quads.empty() && before.empty()) continue;
       // The order in which a sweep closes them.
       std::sort(quads.begin(), quads.end(), [&shape](Quad x, Quad y) {
         const std::uint32_t x_end = shape.row_end(x);
         const std::uint32_t y_end = shape.row_end(y);
         return x_end != y_end ? x_end < y_end : shape.last(x) < shape.last(y);
       });
-      const auto before = passes_[pass]->layer(direction, layer);
       if (std::equal(quads.begin(), quads.end(), before.begin(), before.end())) continue;
       LayerPatch& patch = scratch_.patch[pass];
       patch.quads.insert(patch.quads.end(), quads.begin(), quads.end());
@@ -185,23 +196,23 @@ class Remesher {
   void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::SideAxes& a,
                 const QuadShape& shape) {
     const std::uint32_t bits = side_of(chunk_, a.bit);
-    std::array<Material, kSideMax> own;
-    std::array<Material, kSideMax> beyond;
-    decode(&chunk_, {a.layer, layer, a.row, row}, std::span(own).first(bits));
+    const Material* const own = own_row(layer, row, a).data();
+    const Material* beyond = nullptr;
+    std::array<Material, kSideMax> outside;
     if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
-      const std::uint32_t other = is_positive(direction) ? layer + 1 : layer - 1;
-      decode(&chunk_, {a.layer, other, a.row, row}, std::span(beyond).first(bits));
+      beyond = own_row(is_positive(direction) ? layer + 1 : layer - 1, row, a).data();
     } else {
       const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)];
       const std::uint32_t other =
           is_positive(direction) || neighbour == nullptr ? 0 : side_of(*neighbour, a.layer) - 1;
-      decode(neighbour, {a.layer, other, a.row, row}, std::span(beyond).first(bits));
+      decode(neighbour, {a.layer, other, a.row, row}, std::span(outside).first(bits));
+      beyond = outside.data();
     }
-    std::array<std::array<Quad, kSideMax>, 2> strips;
+    auto& strips = scratch_.strips;
     std::array<std::size_t, 2> count{};
     for (std::uint32_t bit = 0; bit < bits;) {
       const Material material = own[bit];
-      if (!visibility_.face_drawn(material, beyond[bit])) {
+      if (material == beyond[bit] || !visibility_.face_drawn(material, beyond[bit])) {
         ++bit;
         continue;
       }
@@ -213,8 +224,25 @@ class Remesher {
           shape.close(shape.open({layer, begin, bit - begin, row}, material), row + 1);
     }
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
-      replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.layer[pass]);
+      if (count[pass] == 0 && scratch_.layer[pass].empty()) continue;
+      replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.layer[pass],
+                  scratch_.beside);
     }
+  }
+
+  /// A row of the chunk; those of one row number are kept until another is asked for.
+  const std::array<Material, kSideMax>& own_row(std::uint32_t layer, std::uint32_t row,
+                                                const rdm::SideAxes& a) {
+    if (row != scratch_.row_number) {
+      scratch_.row_number = row;
+      scratch_.row_layers.reset();
+    }
+    auto& voxels = scratch_.row_voxels[layer];
+    if (!scratch_.row_layers[layer]) {
+      scratch_.row_layers.set(layer);
+      decode(&chunk_, {a.layer, layer, a.row, row}, std::span(voxels).first(side_of(chunk_, a.bit)));
+    }
+    return voxels;
   }
 
   static void decode(const RunChunk* chunk, const RowPlace& place, std::span<Material> out) {
@@ -223,6 +251,12 @@ class Remesher {
     } else {
       chunk->runs.visit([&](const auto& runs) { decode_row(runs, *chunk, place, out); });
     }
+  }
+
+  static void move(std::size_t begin, std::size_t end, std::uint32_t shift, QuadLayers& out) {
+    if (shift == 0) return;
+    std::uint32_t* const first = out.first.data();
+    for (std::size_t i = begin; i < end; ++i) first[i] += shift;
   }
 
   /// Puts the layers of a patch in the place of those in `out`. O(quads + layers).
@@ -243,12 +277,13 @@ class Remesher {
       merged.insert(merged.end(), at(out.quads, kept), at(out.quads, old_begin));
       merged.insert(merged.end(), at(patch.quads, begin), at(patch.quads, layer.quads_end));
       kept = old_end;
-      for (; next <= layer.index; ++next) out.first[next] += shift;
+      move(next, layer.index + 1, shift, out);
+      next = layer.index + 1;
       shift += (layer.quads_end - begin) - (old_end - old_begin);
       begin = layer.quads_end;
     }
     merged.insert(merged.end(), at(out.quads, kept), out.quads.cend());
-    for (; next < out.first.size(); ++next) out.first[next] += shift;
+    move(next, out.first.size(), shift, out);
     std::swap(merged, out.quads);
   }
 

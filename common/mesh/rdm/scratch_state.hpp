@@ -1,6 +1,7 @@
 // What RdmScratch keeps between calls. Internal to rdm.
 #pragma once
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -51,8 +52,13 @@ struct RdmScratch::State {
   rdm::MaterialCodes codes;
   std::vector<rdm::CodedRun> runs;
   rdm::QuadBuckets opaque, transparent;
-  std::array<rdm::LayerPatch, 2> patch;    // opaque and transparent
-  std::array<std::vector<Quad>, 2> layer;  // quads of the layer at hand, by pass
+  std::array<rdm::LayerPatch, 2> patch;                             // opaque and transparent
+  std::array<std::array<Material, kSideMax>, kSideMax> row_voxels;  // of one row in some layers of an axis
+  std::bitset<kSideMax> row_layers;                                 // which they are
+  std::uint32_t row_number = 0;
+  std::array<std::array<Quad, kSideMax>, 2> strips;  // of the row at hand, by pass
+  std::vector<Quad> beside;                          // quads above and below that row
+  std::array<std::vector<Quad>, 2> layer;            // quads of the layer at hand, by pass
   std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
   std::unique_ptr<rdm::RowScratch<rdm::Row128>> wide;  // made for the first chunk with a side above 64
   bool plain = false;

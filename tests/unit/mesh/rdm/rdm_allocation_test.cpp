@@ -43,5 +43,29 @@ TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh
   }
 }
 
+TEST_CASE("remeshing layers allocates nothing once scratch and mesh have grown", "[mesh]") {
+  SplitMix64 rng(24);
+  MeshScene scene = random_scene(rng, 32);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  const VisibilityTable& visibility = mesh_visibility();
+  mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
+  // A voxel that comes and goes; the swap of buffers takes two rounds to grow both.
+  const std::uint32_t voxel = scene.chunk.volume() / 2;
+  const LocalPos at = pos_of(voxel, scene.chunk.extent, scene.chunk.order);
+  DirtyLayers dirty;
+  dirty.layer[0].set(at.x);
+  dirty.layer[1].set(at.y);
+  dirty.layer[2].set(at.z);
+  std::size_t counted = 0;
+  for (int round = 0; round < 12; ++round) {
+    fill(scene.chunk, voxel, 1, round % 2 == 0 ? kStone : kWater);
+    const std::size_t before = allocations;
+    mesh_rdm_layers(scene.chunk, scene.pointers(), visibility, dirty, {}, scratch, mesh);
+    counted = allocations - before;
+  }
+  CHECK(counted == 0);
+}
+
 }  // namespace
 }  // namespace runstone::test
