@@ -1,8 +1,10 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -18,6 +20,14 @@ volatile std::sig_atomic_t stop_requested = 0;
 
 void request_stop(int) { stop_requested = 1; }
 
+std::atomic<bool> client_runs{false};
+
+/// Xlib calls exit(1) on whatever thread finds the display gone. To scripts 1 means something else, and other
+/// threads still use what exit() would go on to destroy.
+void correct_exit() {
+  if (client_runs) std::_Exit(runstone::kExitNoStart);
+}
+
 int run(runstone::ClientOptions options) {
   using namespace runstone;
   std::optional<Script> script;
@@ -32,7 +42,10 @@ int run(runstone::ClientOptions options) {
     script = std::move(*parsed);
   }
   Client client(std::move(options), script ? &*script : nullptr);
-  return client.run(stop_requested);
+  client_runs = true;
+  const int code = client.run(stop_requested);
+  client_runs = false;
+  return code;
 }
 
 }  // namespace
@@ -47,6 +60,7 @@ int main(int argc, char** argv) {
   action.sa_handler = request_stop;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  std::atexit(correct_exit);
   int code = runstone::kExitNoStart;
   try {
     code = run(std::move(*parsed.options));

@@ -78,23 +78,32 @@ class VirtualDisplay {
     return process.wait(std::chrono::seconds(20)) == 0;
   }
 
-  /// The pixels [x, x + width) x [y, y + height); empty if the file is just being written.
+  /// Ends the X server, whoever has windows on it.
+  void end() { server_.reset(); }
+
+  /// The pixels [x, x + width) x [y, y + height) as they are now: a picture that is just being drawn may be
+  /// half old, half new. Requires that they lie on the display.
   Grab grab(int x, int y, int width, int height) const {
     std::ifstream file(folder_ + "/Xvfb_screen0", std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    constexpr std::size_t kHeaderBytes = 100;
+    REQUIRE(bytes.size() >= kHeaderBytes);  // mapped by Xvfb, whole before it says its number
     // XWD: big-endian words; header size, ..., 12: bytes per line, ..., 19: colours, each of 12 bytes.
     const auto word = [&bytes](std::size_t i) {
       std::size_t value = 0;
-      for (std::size_t b = 0; b < 4; ++b) value = value << 8 | static_cast<std::uint8_t>(bytes.at(i * 4 + b));
+      for (std::size_t b = 0; b < 4; ++b) value = value << 8 | static_cast<std::uint8_t>(bytes[i * 4 + b]);
       return value;
     };
     const std::size_t start = word(0) + word(19) * 12;
+    const auto offset = [&](int column, int row) {
+      return start + word(12) * static_cast<std::size_t>(row) + static_cast<std::size_t>(column) * 4;
+    };
+    REQUIRE(bytes.size() >= offset(x + width, y + height - 1));
     Grab out{width, height, {}};
     for (int row = y; row < y + height; ++row) {
       for (int column = x; column < x + width; ++column) {
-        const std::size_t at =
-            start + word(12) * static_cast<std::size_t>(row) + static_cast<std::size_t>(column) * 4;
-        const auto colour = [&](std::size_t c) { return int{static_cast<std::uint8_t>(bytes.at(at + c))}; };
+        const std::size_t at = offset(column, row);
+        const auto colour = [&](std::size_t c) { return int{static_cast<std::uint8_t>(bytes[at + c])}; };
         out.pixels.push_back({colour(2), colour(1), colour(0)});
       }
     }

@@ -93,6 +93,29 @@ std::string text_of(const std::string& file) {
 
 }  // namespace
 
+TEST_CASE("a display that goes away ends the client with the code of a missing one", "[integration]") {
+  if (const std::string missing = missing_programs(); !missing.empty()) {
+    WARN("skipped: not installed:" << missing);
+    return;
+  }
+  const TempFolder folder;
+  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
+  VirtualDisplay display(folder / ".", 800, 600);
+  const std::string log = folder / "client.log";
+  ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
+                       "--size", "320x240", "--view", "1"},
+                      log, display.environment());
+  const bool opened = wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; });
+  INFO(text_of(log));
+  REQUIRE(opened);
+  display.end();
+  const auto code = client.wait(kLong);
+  INFO(text_of(log));
+  REQUIRE(code.has_value());
+  CHECK(*code == 2);
+  CHECK(server->stop().is_clean);
+}
+
 TEST_CASE("in a window a left click digs, a right click places, and it can be resized, pictured and left",
           "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
