@@ -26,7 +26,7 @@ struct QuadLayers {
   }
   void clear() {
     quads.clear();
-    first.fill(0);
+    if (first.back() != 0) first.fill(0);  // it ascends
   }
 };
 

@@ -542,7 +542,18 @@ class Sweep {
   /// Closes the strips that end at the bits of `closing` before row `row`.
   static HWY_INLINE void close_strips(const Outlet& out, Row closing, const Quad* open, std::uint32_t layer,
                                       std::uint32_t row) {
-    for (; closing != 0; closing &= closing - 1) close_quad(out, open[lowest_bit(closing)], layer, row);
+    if (closing == 0) return;
+    if (kNumbered && out.mixed) {
+      for (; closing != 0; closing &= closing - 1) close_quad(out, open[lowest_bit(closing)], layer, row);
+      return;
+    }
+    QuadBuckets::Bucket& bucket = out.opaque[layer];
+    Quad* const to = QuadBuckets::reserve(bucket, kRowBits<Row>);
+    Quad* next = to;
+    for (; closing != 0; closing &= closing - 1) {
+      *next++ = out.shape.close(open[lowest_bit(closing)], row);
+    }
+    bucket.count += static_cast<std::uint32_t>(next - to);
   }
   /// Opens the strips that end at the bits of `opening` and begin at bits of `start`, in row `row`. Their
   /// material is that of row `line`.

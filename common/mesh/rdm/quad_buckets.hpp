@@ -30,6 +30,11 @@ class QuadBuckets {
     if (bucket.count == bucket.room) grow(bucket);
     bucket.quads[bucket.count++] = quad;
   }
+  /// Room for `more` quads, to be written from the place returned on and added to `count`.
+  static Quad* reserve(Bucket& bucket, std::uint32_t more) {
+    while (bucket.room - bucket.count < more) grow(bucket);
+    return bucket.quads.get() + bucket.count;
+  }
 
   /// Replaces `out` by all quads put since the last call, and forgets them. `sides` of the chunk, by axis.
   /// O(quads + layers).

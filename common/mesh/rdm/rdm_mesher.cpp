@@ -129,6 +129,35 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const V
   rdm::sweep_layers(input, rows->borders, rows->sweep);
 }
 
+/// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
+/// nothing. Returns false, with nothing done, if a neighbour is of several.
+bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
+                  ChunkMesh& out) {
+  if (!std::all_of(neighbours.begin(), neighbours.end(),
+                   [](const RunChunk* n) { return n == nullptr || n->is_uniform(); })) {
+    return false;
+  }
+  out.clear();
+  const Material material = chunk.runs.material(0);
+  const auto axes = side_axes(chunk.order);
+  const auto sides = chunk.extent.sides();
+  QuadLayers& pass = visibility[material] == Visibility::transparent ? out.transparent : out.opaque;
+  for (std::size_t d = 0; d < kDirectionCount; ++d) {
+    const Material beyond = neighbours[d] == nullptr ? kEmpty : neighbours[d]->runs.material(0);
+    if (!visibility.face_drawn(material, beyond)) continue;
+    const auto direction = static_cast<Direction>(d);
+    const SideAxes& a = *std::find_if(
+        axes.begin(), axes.end(), [direction](const SideAxes& s) { return s.layer == axis_of(direction); });
+    const std::uint32_t layer = is_positive(direction) ? sides[d / 2] - 1u : 0u;
+    const rdm::QuadShape shape(direction, a.bit, a.row);
+    const Quad strip = shape.open({layer, 0, sides[static_cast<std::size_t>(a.bit)], 0}, material);
+    pass.quads.push_back(shape.close(strip, sides[static_cast<std::size_t>(a.row)]));
+    std::fill(pass.first.begin() + static_cast<std::ptrdiff_t>(d * kSideMax + layer + 1), pass.first.end(),
+              static_cast<std::uint32_t>(pass.quads.size()));
+  }
+  return true;
+}
+
 }  // namespace
 
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
@@ -136,6 +165,7 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Vis
   Scratch& state = scratch.state();
   const bool solid_somewhere = !chunk.is_uniform() || visibility[chunk.runs.material(0)] != Visibility::empty;
   if (!solid_somewhere) return out.clear();
+  if (chunk.is_uniform() && mesh_uniform(chunk, neighbours, visibility, out)) return;
   code_runs(chunk, visibility, state);
   if (state.codes.solid_count() == 0) return out.clear();
   const auto sides = chunk.extent.sides();
