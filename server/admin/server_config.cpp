@@ -41,6 +41,8 @@ const std::vector<Field>& fields() {
       number("worker_threads", &C::worker_threads, 1, 64, "threads that generate, load and encode chunks"),
       number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
+      number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
+             "milliseconds between two views of a session that take effect"),
       {"encoding", "packed or raw, where the client reads both", TextField{&C::encoding, {"packed", "raw"}}},
       number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
       number("messages_per_second", &C::messages_per_second, 0, kNoMax, "messages per session, 0: no limit"),

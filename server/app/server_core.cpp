@@ -15,6 +15,9 @@
 namespace runstone {
 namespace {
 
+// Enough that no worker waits for the world strand, few enough that chunks to be encoded do not wait for
+// loads.
+constexpr std::size_t kLoadsPerWorker = 4;
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
 
 Now now() {
@@ -63,6 +66,8 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
   world.server_keys = key_pair_of(meta.server_key_seed);
   world.sessions_max = config.sessions_max;
   world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
+  world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * 1'000;
+  world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
   world.edit_volume_max = config.edit_volume_max;
   world.reach_max = static_cast<double>(config.reach_max);
   world.edits_per_second = config.edits_per_second;

@@ -29,8 +29,19 @@ SessionInterest& Interest::at(SessionId session) {
   return found->second;
 }
 
-void Interest::set_view(SessionId session, const View& view) {
-  for (const auto& left : at(session).set_view(view)) leave(session, left.key, left.was);
+std::size_t Interest::set_view(SessionId session, const View& view) {
+  const SessionInterest::Moved moved = at(session).set_view(view);
+  for (const auto& left : moved.left) leave(session, left.key, left.was);
+  return moved.entered;
+}
+
+void Interest::want_again(SessionId session, std::span<const View> passed) {
+  std::vector<ChunkKey> forgotten;
+  for (const auto& [key, state] : at(session).chunks()) {
+    const auto holds = [&](const View& view) { return view.contains(key.at); };
+    if (passed.empty() || !std::all_of(passed.begin(), passed.end(), holds)) forgotten.push_back(key);
+  }
+  for (const ChunkKey& key : forgotten) set_state(session, key, ChunkInterest::wanted);
 }
 
 std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) { return at(session).nearest_wanted(); }

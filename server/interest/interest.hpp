@@ -29,7 +29,11 @@ class Interest {
   const SessionInterest* find(SessionId session) const;
 
   /// The calls below require an open session.
-  void set_view(SessionId session, const View& view);
+  /// Returns how many chunks came into the view.
+  std::size_t set_view(SessionId session, const View& view);
+  /// The peer has looked elsewhere in between: chunks that are not in all of `passed` (without any: all
+  /// chunks) are wanted again.
+  void want_again(SessionId session, std::span<const View> passed);
   std::optional<ChunkKey> nearest_wanted(SessionId session);
   std::optional<ChunkKey> next_for_audit(SessionId session);
   /// Moves a chunk of the session's view to a state; returns false if the view does not hold it.

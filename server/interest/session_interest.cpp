@@ -6,73 +6,70 @@
 
 namespace runstone {
 
-std::vector<SessionInterest::Left> SessionInterest::set_view(const View& view) {
-  std::vector<Left> left;
-  if (view_ == view) return left;
-  std::vector<ChunkCoord> cells;
-  if (view_) {
-    append_difference(*view_, view, limit_, cells);
-    for (const ChunkCoord at : cells) {
-      const ChunkKey key{0, at};
-      const auto found = chunks_.find(key);
-      RUNSTONE_ASSERT(found != chunks_.end());
-      left.push_back({key, found->second});
-      forget(key);
-    }
-    cells.clear();
-  }
-  append_difference(view, view_, limit_, cells);
-  for (const ChunkCoord at : cells) {
-    const ChunkKey key{0, at};
-    chunks_.emplace(key, ChunkInterest::wanted);
-    ++counter(ChunkInterest::wanted);
-    queue_.push_back(key);
-  }
-  view_ = view;
-  queue_sorted_ = false;
-  return left;
+// Orders a heap so that the nearest chunk, of equally near ones the lowest key, is on top.
+auto SessionInterest::farther() const {
+  return [view = *view_](const ChunkKey& a, const ChunkKey& b) {
+    const std::int64_t da = distance2(view, a.at);
+    const std::int64_t db = distance2(view, b.at);
+    return da != db ? da > db : a > b;
+  };
 }
 
-void SessionInterest::forget(const ChunkKey& key) {
-  const auto found = chunks_.find(key);
-  --counter(found->second);
-  chunks_.erase(found);
+SessionInterest::Moved SessionInterest::set_view(const View& view) {
+  Moved moved;
+  if (view_ == view) return moved;
+  std::vector<ChunkCoord> cells;
+  if (view_) append_difference(*view_, view, limit_, cells);
+  for (const ChunkCoord at : cells) {
+    const auto found = chunks_.find({0, at});
+    if (found == chunks_.end()) continue;
+    moved.left.push_back({found->first, found->second});
+    --counter(found->second);
+    chunks_.erase(found);
+  }
+  std::erase_if(queue_, [&](const ChunkKey& key) { return !view.contains(key.at) || !is_wanted(key); });
+  cells.clear();
+  append_difference(view, view_, limit_, cells);
+  for (const ChunkCoord at : cells) queue_.push_back({0, at});
+  moved.entered = cells.size();
+  view_ = view;
+  std::make_heap(queue_.begin(), queue_.end(), farther());
+  return moved;
+}
+
+void SessionInterest::pop_nearest() {
+  std::pop_heap(queue_.begin(), queue_.end(), farther());
+  queue_.pop_back();
 }
 
 std::optional<ChunkKey> SessionInterest::nearest_wanted() {
-  const auto is_wanted = [&](const ChunkKey& key) { return state(key) == ChunkInterest::wanted; };
-  if (!queue_sorted_) {
-    std::erase_if(queue_, [&](const ChunkKey& key) { return !is_wanted(key); });
-    const auto farther = [&](const ChunkKey& a, const ChunkKey& b) {
-      const std::int64_t da = distance2(*view_, a.at);
-      const std::int64_t db = distance2(*view_, b.at);
-      return da != db ? da > db : a > b;
-    };
-    std::sort(queue_.begin(), queue_.end(), farther);
-    queue_sorted_ = true;
-  }
-  while (!queue_.empty() && !is_wanted(queue_.back())) queue_.pop_back();
+  while (!queue_.empty() && !is_wanted(queue_.front())) pop_nearest();
   if (queue_.empty()) return std::nullopt;
-  return queue_.back();
+  return queue_.front();
 }
 
 std::optional<ChunkInterest> SessionInterest::state(const ChunkKey& key) const {
   const auto found = chunks_.find(key);
-  if (found == chunks_.end()) return std::nullopt;
-  return found->second;
+  if (found != chunks_.end()) return found->second;
+  if (key.lod != 0 || !view_ || !view_->contains(key.at) || !limit_.contains(key.at)) return std::nullopt;
+  return ChunkInterest::wanted;
 }
 
 void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
-  const auto found = chunks_.find(key);
-  RUNSTONE_ASSERT(found != chunks_.end());
-  if (found->second == state) return;
-  --counter(found->second);
-  ++counter(state);
-  found->second = state;
-  if (state == ChunkInterest::wanted) {
-    queue_.push_back(key);
-    queue_sorted_ = false;
+  const auto was = this->state(key);
+  RUNSTONE_ASSERT(was.has_value());
+  if (*was == state) return;
+  if (*was != ChunkInterest::wanted) --counter(*was);
+  if (state != ChunkInterest::wanted) {
+    ++counter(state);
+    chunks_.insert_or_assign(key, state);
+    // So a chunk that is wanted again and again is in the queue once: it was nearest when it was sent.
+    if (!queue_.empty() && queue_.front() == key) pop_nearest();
+    return;
   }
+  chunks_.erase(key);
+  queue_.push_back(key);
+  std::push_heap(queue_.begin(), queue_.end(), farther());
 }
 
 std::optional<ChunkKey> SessionInterest::next_for_audit() {

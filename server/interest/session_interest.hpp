@@ -1,5 +1,7 @@
 // SessionInterest: the chunks one session sees or waits for. Every chunk of its view is in one state:
-//   wanted       in the queue, nearest first
+//   wanted       in the queue, nearest first; the state of all chunks nothing was done for yet, so it costs
+//   no
+//                entry: a peer that looks elsewhere again and again pays for its queue, not for a table
 //   waiting      not in memory: a load was asked for
 //   subscribed   a snapshot was sent; every later commit that touches the chunk goes to the session
 //   unavailable  it could not be loaded, and the session was told; loading again would fail again
@@ -23,40 +25,47 @@ class SessionInterest {
  public:
   explicit SessionInterest(CoordLimit limit) : limit_(limit) {}
 
-  struct Left {  // chunks that left the view
+  struct Left {
     ChunkKey key;
     ChunkInterest was;
   };
-  /// Moves the view: new chunks become wanted, those outside are forgotten and returned.
-  /// O(columns + chunks that change + wanted log wanted).
-  std::vector<Left> set_view(const View& view);
+  struct Moved {
+    std::size_t entered = 0;  // chunks that came into the view
+    std::vector<Left> left;   // those that left it and were not wanted
+  };
+  /// Moves the view: new chunks become wanted, those outside are forgotten. O(columns + chunks that change +
+  /// wanted), times log of the entries.
+  Moved set_view(const View& view);
   const std::optional<View>& view() const { return view_; }
 
   /// Nearest wanted chunk (ties by key), which stays wanted. Amortised O(log wanted).
   std::optional<ChunkKey> nearest_wanted();
 
+  /// Nothing for a chunk outside of the view.
   std::optional<ChunkInterest> state(const ChunkKey& key) const;
-  /// Requires a chunk of the view.
+  /// Requires a chunk of the view. O(log view).
   void set_state(const ChunkKey& key, ChunkInterest state);
 
+  /// Chunks in a state other than wanted.
   std::size_t count(ChunkInterest state) const { return counts_[static_cast<std::size_t>(state)]; }
-  /// All chunks of the view, ascending.
+  /// All chunks of the view that are not wanted, ascending.
   const std::map<ChunkKey, ChunkInterest>& chunks() const { return chunks_; }
   /// Next subscribed chunk after the one returned last time, going round; for audits.
   std::optional<ChunkKey> next_for_audit();
 
  private:
   std::size_t& counter(ChunkInterest state) { return counts_[static_cast<std::size_t>(state)]; }
-  void forget(const ChunkKey& key);
+  bool is_wanted(const ChunkKey& key) const { return !chunks_.contains(key); }  // of a key in the queue
+  auto farther() const;
+  void pop_nearest();
 
   CoordLimit limit_;
   std::optional<View> view_;
-  std::map<ChunkKey, ChunkInterest> chunks_;
+  std::map<ChunkKey, ChunkInterest> chunks_;  // but the wanted ones
   std::array<std::size_t, 4> counts_{};
-  // Farthest first, so that the nearest is popped from the back. May hold keys that are not wanted any more:
-  // nearest_wanted() drops them when it meets them.
+  // A heap with the nearest on top, of chunks of the view only. Holds every wanted chunk, and some that are
+  // not wanted any more or twice in it: nearest_wanted() drops those it meets, set_view() all of them.
   std::vector<ChunkKey> queue_;
-  bool queue_sorted_ = true;
   std::optional<ChunkKey> audited_;
 };
 

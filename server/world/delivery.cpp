@@ -39,7 +39,17 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
 }  // namespace
 
 void ask_load(WorldState& world, const ChunkKey& key) {
-  if (world.authority.chunks().begin_load(key)) world.ports.load_chunk(key);
+  if (world.authority.chunks().residency(key) != Residency::absent) return;
+  world.loads.ask_own(key);
+  start_loads(world);
+}
+
+void start_loads(WorldState& world) {
+  while (const auto key = world.loads.next()) {
+    if (!world.authority.chunks().begin_load(*key)) continue;  // another lane's turn came first
+    world.loads.began();
+    world.ports.load_chunk(*key);
+  }
 }
 
 void deliver(WorldState& world, SessionId session, const Now& now) {
@@ -50,20 +60,23 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
   const SessionInterest& interest = *world.interest.find(session);
   while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
     const auto key = world.interest.nearest_wanted(session);
-    if (!key) return;
+    if (!key) break;
     const ChunkPtr chunk = chunks.find(*key);
-    if (chunk != nullptr || chunks.residency(*key) == Residency::quarantined) {
-      if (!answer_chunk(world, session, *key, chunk, now)) return;
+    const Residency residency = chunks.residency(*key);
+    if (chunk != nullptr || residency == Residency::quarantined) {
+      if (!answer_chunk(world, session, *key, chunk, now)) break;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
-      ask_load(world, *key);
+      if (residency == Residency::absent) world.loads.ask(session, *key);
     }
   }
+  start_loads(world);
 }
 
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
   const ChunkPtr chunk = world.authority.chunks().find(key);
   for (const SessionId session : world.interest.waiting(key)) {
+    world.loads.take_back(session, key);  // another lane's turn came first
     if (is_stalled(world, *world.find(session), now)) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
     } else {

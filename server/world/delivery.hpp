@@ -10,8 +10,10 @@ namespace runstone {
 /// Sends the session's nearest wanted chunks: those in memory at once, the others after a load. Stops when
 /// its queue is full or it waits for enough loads.
 void deliver(WorldState& world, SessionId session, const Now& now);
-/// Asks for a chunk unless it is here, on its way or quarantined.
+/// The world itself needs a chunk: queues its load unless it is here, on its way or quarantined.
 void ask_load(WorldState& world, const ChunkKey& key);
+/// Hands queued loads to the port, as many as may be under way.
+void start_loads(WorldState& world);
 /// A load ended: whoever waits gets the chunk, or the word that it is unavailable.
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now);
 /// A commit did not fit the session's queue: these chunks are stale for it, are unsubscribed and will be sent

@@ -1,18 +1,8 @@
 #include "server/world/request_steps.hpp"
 
-#include <algorithm>
-
 #include "server/world/delivery.hpp"
 
 namespace runstone {
-
-void on_view(WorldState& world, SessionId session, View view, const Now& now) {
-  view.radius_h = std::min(view.radius_h, world.config.view_radius_max);
-  view.radius_v = std::min(view.radius_v, world.config.view_radius_max);
-  world.interest.set_view(session, view);
-  collect_released(world);
-  deliver(world, session, now);
-}
 
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request, const Now& now) {
   for (const ChunkKey& key : request.keys) {

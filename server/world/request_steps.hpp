@@ -1,11 +1,9 @@
-// Request steps: what an open session may ask for.
+// Request steps: what an open session may ask for, but for its view (view_turns.hpp).
 #pragma once
 #include "server/world/world_state.hpp"
 
 namespace runstone {
 
-/// Cuts the radii to the server's limit and moves the session's interest; chunks follow, nearest first.
-void on_view(WorldState& world, SessionId session, View view, const Now& now);
 /// Chunks of the session's view are sent again; others are ignored.
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request, const Now& now);
 /// Queues the edit for the next commit or answers with a reject.

@@ -31,7 +31,10 @@ struct WorldConfig {
   double reach_max = 0;                       // voxels from the player's pose to the edit; 0: no limit
   std::uint64_t edits_per_second = 2'000;     // per session; 0: no limit
   std::uint64_t edit_burst = 4'000;
-  std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
+  std::size_t loads_per_session_max = 64;     // chunks one session may wait for at a time
+  std::size_t loads_in_flight_max = 8;        // with the workers at a time, at least 1
+  TimeUs view_interval_us = 50'000;           // between two views of a session that take effect
+  std::size_t view_chunks_per_tick = 65'536;  // that views bring in, all sessions together, at least 1
   TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
   ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers both

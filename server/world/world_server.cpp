@@ -9,6 +9,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/handshake_steps.hpp"
 #include "server/world/request_steps.hpp"
+#include "server/world/view_turns.hpp"
 #include "server/world/world_state.hpp"
 
 namespace runstone {
@@ -56,6 +57,11 @@ void retry_owed(WorldState& world, const Now& now) {
     send_owed(world, id);
     deliver(world, id, now);
   }
+}
+
+/// A worker is free again.
+void load_ended(WorldState& world, const ChunkKey& key) {
+  if (world.authority.chunks().residency(key) == Residency::loading) world.loads.ended();
 }
 
 }  // namespace
@@ -122,6 +128,7 @@ void WorldServer::tick(const Now& now) {
   WorldState& world = *state_;
   commit(now);
   close_silent_sessions(world, now);
+  give_view_turns(world, now);
   broadcast_roster(world);
   if (now.steady_us - world.poses_us >= world.config.pose_interval_us) {
     world.poses_us = now.steady_us;
@@ -140,6 +147,7 @@ void WorldServer::tick(const Now& now) {
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now) {
   WorldState& world = *state_;
+  load_ended(world, key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
     world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + *wrong);
@@ -148,15 +156,18 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now)
   // A chunk that was loaded for its stack alone has no user; it may go once it is written.
   if (!world.interest.is_used(key)) world.authority.chunks().released(key);
   step_keeper(now);
+  start_loads(world);
 }
 
 void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Now& now) {
   WorldState& world = *state_;
+  load_ended(world, key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
   world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
   step_keeper(now);
+  start_loads(world);
 }
 
 void WorldServer::durable(Sequence seq, const Now& now) {

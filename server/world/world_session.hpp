@@ -1,6 +1,7 @@
 // WorldSession: what the world strand knows of one connection, and the states it goes through:
 //   awaits_hello -> awaits_proof -> open. Closing forgets it at once.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 namespace runstone {
 
 enum class SessionState { awaits_hello, awaits_proof, open };
+
+inline constexpr std::size_t kPassedViewsMax = 8;
 
 struct WorldSession {
   SessionState state = SessionState::awaits_hello;
@@ -27,6 +30,11 @@ struct WorldSession {
   bool owes_durable = false;  // the watermark did not fit its queue: again on the next tick
   std::vector<Reject> owed;   // answers that did not fit its queue, in order: again when it drains
   TokenBucket edits{0, 0};
+  // Views (view_turns.hpp).
+  std::optional<View> next_view;     // the newest, while it has not taken effect
+  std::optional<TimeUs> viewed_us;   // when the last one did
+  std::vector<View> passed_views;    // that next_view replaced before they did: kPassedViewsMax at most,
+  bool has_passed_too_many = false;  // more of them count as having left everything
   std::optional<TimeUs>
       stalled_us;  // its queue was full then: no snapshots until drained or the retry interval
 };

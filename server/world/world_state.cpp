@@ -25,7 +25,9 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts&
       authority(limits_of(config), start.log),
       keeper(config.snapshots, start.checkpoint),
       interest(CoordLimit{kWorldLimit / config.chunk_edge}),
-      durable(start.log.last) {
+      loads(config.loads_in_flight_max),
+      durable(start.log.last),
+      view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players.restore(player);
   for (const auto& mark : start.decided)
@@ -38,6 +40,7 @@ void forget_session(WorldState& world, SessionId session) {
   if (found->second.state == SessionState::open) world.roster_changed = true;
   world.sessions.erase(found);
   world.interest.close(session);
+  world.loads.take_back(session);
 }
 
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text) {

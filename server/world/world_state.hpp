@@ -6,6 +6,7 @@
 
 #include "server/interest/interest.hpp"
 #include "server/world/authority.hpp"
+#include "server/world/load_queue.hpp"
 #include "server/world/players.hpp"
 #include "server/world/snapshot_keeper.hpp"
 #include "server/world/world_config.hpp"
@@ -24,6 +25,7 @@ struct WorldState {
   Authority authority;
   SnapshotKeeper keeper;
   Interest interest;
+  LoadQueue loads;
   Players players;
   std::map<SessionId, WorldSession> sessions;  // by number: who receives first never depends on a hash
   WorldCounters counters;
@@ -32,6 +34,9 @@ struct WorldState {
   bool is_stopping = false;
   bool roster_changed = false;
   TimeUs poses_us = 0, audits_us = 0;  // when last sent
+  std::size_t view_chunks_left;        // of this tick's
+  bool views_wait = false;             // some had to be left for the next tick
+  SessionId view_served = 0;           // whose view took effect last on a tick
 
   WorldSession* find(SessionId session) {
     const auto found = sessions.find(session);

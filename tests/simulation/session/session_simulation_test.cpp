@@ -120,9 +120,12 @@ class Simulation {
         ++cuts_;
         break;
       case 1:
-        client.look({{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
-                     static_cast<std::uint8_t>(1 + rng_.below(3)),
-                     static_cast<std::uint8_t>(rng_.below(3))});
+        // Now and then so often that the server passes over some views, and once to more than it remembers.
+        for (std::uint64_t looks = rng_.below(3) == 0 ? 2 + rng_.below(14) : 1; looks > 0; --looks) {
+          client.look({{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
+                       static_cast<std::uint8_t>(1 + rng_.below(3)),
+                       static_cast<std::uint8_t>(rng_.below(3))});
+        }
         break;
       case 2: {
         EditDescriptor bad{SetVoxel{{0, 0, 0}}, {}, 60'000};  // no such material: must be taken back
