@@ -43,6 +43,7 @@ int run(runstone::ClientOptions options) {
   }
   Client client(std::move(options), script ? &*script : nullptr);
   client_runs = true;
+  std::atexit(correct_exit);  // after the driver is loaded: the newest comes first, and the driver's may hang
   const int code = client.run(stop_requested);
   client_runs = false;
   return code;
@@ -60,7 +61,6 @@ int main(int argc, char** argv) {
   action.sa_handler = request_stop;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::atexit(correct_exit);
   int code = runstone::kExitNoStart;
   try {
     code = run(std::move(*parsed.options));
