@@ -48,7 +48,8 @@ void check_layers(const RunChunk& chunk) {
 TEST_CASE("rows of every layer are its voxels in every orientation", "[mesh]") {
   SplitMix64 rng(41);
   for (int round = 0; round < 60; ++round) {
-    check_layers<rdm::Row64>(random_chunk(rng, random_extent(rng, 20), kAxisOrders[round % 6u], 8));
+    check_layers<rdm::Row64>(
+        random_chunk(rng, random_extent(rng, 20), kAxisOrders[static_cast<std::size_t>(round % 6)], 8));
   }
   for (const Extent extent : {Extent{64, 8, 63}, Extent{9, 64, 8}, Extent{8, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders) check_layers<rdm::Row64>(random_chunk(rng, extent, order, 8));
