@@ -1,6 +1,7 @@
 #include "common/mesh/rdm/layer_sweep.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "common/core/assert.hpp"
@@ -519,9 +520,11 @@ class Sweep {
       return out.shape.open(strip, out.single);
     } else {
       const Row* const row = out.planes + line;
+      // From the highest bit down: a recurrence, which compilers do not turn into gathers (3 bits are usual).
       std::size_t number = 0;
-      for (unsigned k = 0; k < out.number_bits; ++k) {
-        number |= static_cast<std::size_t>(row[(1 + k) * kStride] >> bit & 1) << k;
+      const Row* plane = row + out.number_bits * kStride;
+      for (unsigned k = 0; k < out.number_bits; ++k, plane -= kStride) {
+        number = number * 2 + static_cast<std::size_t>(*plane >> bit & 1);
       }
       const bool transparent = out.mixed && (row[(1 + out.number_bits) * kStride] >> bit & 1) != 0;
       Quad quad = out.shape.open(strip, out.materials[transparent ? 1 : 0][number]);
@@ -566,6 +569,102 @@ class Sweep {
     }
   }
 
+  /// Whether so many rows change that all of them at once cost less than these one by one.
+  bool most([[maybe_unused]] RowSet rows) const {
+    if constexpr (kLanes == 1) {
+      return false;
+    } else {
+      return static_cast<std::uint32_t>(std::popcount(rows)) * 2 > e_.m;
+    }
+  }
+
+  /// The functions of row_strips.hpp for whole vectors of rows.
+  struct Vectors {
+    V face, start, end;
+  };
+  static HWY_INLINE Vectors between(V face, V before, V behind) {
+    return {face, Lanes::without(face, before), Lanes::without(face, behind)};
+  }
+  static HWY_INLINE Vectors vectors_along(const Row* face, [[maybe_unused]] const Row* cut) {
+    const V f = Lanes::load(face);
+    V before = Lanes::template up<1>(f);
+    V behind = Lanes::down(f);
+    if constexpr (kNumbered) {
+      const V c = Lanes::load(cut);
+      before = Lanes::without(before, c);
+      behind = Lanes::without(behind, Lanes::down(c));
+    }
+    return between(f, before, behind);
+  }
+  static HWY_INLINE Vectors vectors_across(const Row* face, [[maybe_unused]] const Row* cut) {
+    V before = Lanes::load(face - 1);
+    V behind = Lanes::load(face + 1);
+    if constexpr (kNumbered) {
+      before = Lanes::without(before, Lanes::load(cut));
+      behind = Lanes::without(behind, Lanes::load(cut + 1));
+    }
+    return between(Lanes::load(face), before, behind);
+  }
+  static HWY_INLINE V vectors_changed(const Vectors& now, const Vectors& before,
+                                      [[maybe_unused]] const Row* cut) {
+    V x = Lanes::either(
+        Lanes::differing(now.face, before.face),
+        Lanes::either(Lanes::differing(now.start, before.start), Lanes::differing(now.end, before.end)));
+    if constexpr (kNumbered) {
+      x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
+    }
+    return x;
+  }
+  static HWY_INLINE V vectors_ends_with(const Vectors& strips, V x) {
+    x = Lanes::both(x, strips.face);
+    const V inner = Lanes::without(strips.face, strips.end);
+    return Lanes::both(strips.end, Lanes::either(x, Lanes::sum(inner, Lanes::both(x, inner))));
+  }
+
+  /// Rows of strips, their cuts, and where the material differs from the row before.
+  struct Lines {
+    const Row *face, *cut, *face_before, *cut_before, *differs;
+  };
+  /// What close_strips() and open_strips() ask for, for all rows: closing, opening, start.
+  void compare_along(const Lines& in) {
+    Row* const closing = st_.strips[0].data();
+    Row* const opening = st_.strips[1].data();
+    Row* const start = st_.strips[2].data();
+    for_rows([=](std::uint32_t m) {
+      const Vectors now = vectors_along(in.face + m, in.cut + m);
+      const Vectors before = vectors_along(in.face_before + m, in.cut_before + m);
+      const V x = vectors_changed(now, before, in.differs + m);
+      Lanes::store(vectors_ends_with(before, x), closing + m);
+      Lanes::store(vectors_ends_with(now, x), opening + m);
+      Lanes::store(now.start, start + m);
+    });
+  }
+  /// The same for strips across rows: changed bits, starts and ends now and before. Returns the rows with
+  /// any.
+  RowSet compare_across(const Lines& in) {
+    std::array<Row*, 5> to;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = st_.strips[i].data();
+    RowSet rows = 0;
+    for_rows([=, &rows](std::uint32_t m) {
+      const Vectors now = vectors_across(in.face + m, in.cut + m);
+      const Vectors before = vectors_across(in.face_before + m, in.cut_before + m);
+      const V x = vectors_changed(now, before, in.differs + m);
+      Lanes::store(x, to[0] + m);
+      Lanes::store(now.start, to[1] + m);
+      Lanes::store(now.end, to[2] + m);
+      Lanes::store(before.start, to[3] + m);
+      Lanes::store(before.end, to[4] + m);
+      add_rows(rows, Lanes::any(x), m);
+    });
+    return rows & bits_below<Row>(e_.m);
+  }
+  /// Closes and opens what compare_along() found, in the rows that differ.
+  HWY_INLINE void strips_found(const Outlet& out, std::uint32_t m, Quad* open, std::uint32_t layer,
+                               std::uint32_t row) {
+    close_strips(out, st_.strips[0].data()[m], open, layer, row);
+    open_strips(out, st_.strips[1].data()[m], st_.strips[2].data()[m], open, layer, row, m);
+  }
+
   /// Faces across the slowest axis of layer `layer`, in ring `own`. A row is a line.
   template <Side kSide>
   void slow_strips(RowSet rows, std::uint32_t layer, unsigned own) {
@@ -577,6 +676,13 @@ class Sweep {
     const Row* const cut_mid = st_.cut_mid[own].data();
     const Outlet out = outlet(kSide, own);
     Quad* const open = st_.open[at(kSide)].data();
+    if (most(rows)) {
+      compare_along({face, cut_fast, face - 1, cut_fast - 1, cut_mid});
+      for (; rows != 0; rows &= rows - 1) {
+        const std::uint32_t m = lowest_bit(rows);
+        strips_found(out, m, open, layer, m);
+      }
+    }
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
       const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
@@ -600,6 +706,13 @@ class Sweep {
     const Row* const cut_slow = st_.cut_slow.data();
     const Outlet out = outlet(kSide, here_);
     Quad* const open = st_.open[at(kSide)].data();
+    if (most(rows)) {
+      compare_along({face, cut_fast, face_before, cut_fast_before, cut_slow});
+      for (; rows != 0; rows &= rows - 1) {
+        const std::uint32_t m = lowest_bit(rows);
+        strips_found(out, m, open + std::size_t{m} * kRowBits<Row>, m, s);
+      }
+    }
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
       const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
@@ -635,15 +748,23 @@ class Sweep {
     const Outlet out = outlet(kSide, here_);
     Quad* const open = st_.open[at(kSide)].data();
     // Where a strip starts or ends depends on the rows beside it, too.
-    rows |= (rows << 1 | rows >> 1) & bits_below<Row>(e_.m);
+    const bool compared = most(rows);
+    if (compared) {
+      rows = compare_across({face, cut_mid, face_before, cut_mid_before, cut_slow});
+    } else {
+      rows |= (rows << 1 | rows >> 1) & bits_below<Row>(e_.m);
+    }
+    const auto found = [this](std::size_t what, std::uint32_t m) { return st_.strips[what].data()[m]; };
     while (rows != 0) {
       std::uint32_t m = lowest_bit(rows);
       Row closing = 0;
       Row opening = 0;
       do {
-        const Strips now = strips_across(face, cut_mid, m);
-        const Strips before = strips_across(face_before, cut_mid_before, m);
-        const Row x = changed<Row>(now, before, cut_at(cut_slow + m));
+        const Strips now =
+            compared ? Strips{face[m], found(1, m), found(2, m)} : strips_across(face, cut_mid, m);
+        const Strips before = compared ? Strips{face_before[m], found(3, m), found(4, m)}
+                                       : strips_across(face_before, cut_mid_before, m);
+        const Row x = compared ? found(0, m) : changed<Row>(now, before, cut_at(cut_slow + m));
         closing = ((closing & ~before.start) | x) & before.face;
         opening = ((opening & ~now.start) | x) & now.face;
         const Row ends = closing & before.end;
