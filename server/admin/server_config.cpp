@@ -40,6 +40,8 @@ const std::vector<Field>& fields() {
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64, "threads that generate, load and encode chunks"),
       number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
+      number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,
+             "connections from one address that have not authenticated"),
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
       number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
              "milliseconds between two views of a session that take effect"),

@@ -25,6 +25,7 @@ struct ServerConfig {
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
   // Sessions.
   std::uint64_t sessions_max = 256;            // 1..65536
+  std::uint64_t handshakes_per_address = 32;   // connections not yet authenticated, 1..65536
   std::uint64_t view_radius_max = 16;          // chunks, 0..64
   std::uint64_t view_interval_ms = 50;         // between two views of a session that take effect, 0..10000
   std::string encoding = "packed";             // packed or raw, where the client reads both

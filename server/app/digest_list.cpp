@@ -94,8 +94,8 @@ std::string to_json(const DigestList& list) {
   for (const AuditEntry& entry : list.chunks) rows.push_back(&entry);
   std::sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->key < b->key; });
   // By hand, because a library would put each number on a line of its own, or everything on one.
-  std::string json =
-      "{\"world_id\":\"" + to_hex(list.world_id) + "\",\"seq\":" + std::to_string(list.seq) + ",\"chunks\":[";
+  std::string json = "{\"world_id\":\"" + to_hex(list.world_id) + "\",\"seq\":" + std::to_string(list.seq) +
+                     (list.is_clean ? "" : ",\"clean\":false") + ",\"chunks\":[";
   const char* separator = "\n";
   for (const AuditEntry* row : rows) {
     const ChunkCoord at = row->key.at;
@@ -125,6 +125,10 @@ Result<DigestList, TextError> parse_digests_json(std::string_view text, std::str
   const auto seq = integer<Sequence>(json, "seq", 0, std::numeric_limits<Sequence>::max());
   if (!seq) return failure(file, "seq", "needs a sequence number");
   list.seq = *seq;
+  if (const auto clean = json.find("clean"); clean != json.end() && *clean != Json(true)) {
+    return failure(file, "clean",
+                   "is not true: the server did not stop cleanly, so this is no digest of its seq");
+  }
   const auto chunks = json.find("chunks");
   if (chunks == json.end() || !chunks->is_array()) return failure(file, "chunks", "needs a list");
   list.chunks.reserve(chunks->size());

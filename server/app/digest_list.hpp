@@ -17,11 +17,13 @@ struct DigestList {
   WorldId world_id{};
   Sequence seq = 0;                // where the holder stood when it wrote the list
   std::vector<AuditEntry> chunks;  // any order
+  bool is_clean = true;            // false: chunks stand at their own versions, and not together at `seq`
 };
 
 /// JSON text, chunks ascending by key, one line each: equal lists give equal bytes.
 std::string to_json(const DigestList& list);
-/// The reverse; other keys are ignored, so that a file may say more. `file` is only for messages.
+/// The reverse; other keys are ignored, so that a file may say more. A list that is not clean is refused: it
+/// cannot be compared with anything. `file` is only for messages.
 Result<DigestList, TextError> parse_digests_json(std::string_view json, std::string_view file);
 
 /// Writes the file whole or not at all (a new file takes the old one's place).

@@ -61,6 +61,10 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   if (!parts->world.is_new && creation != WorldCreation{}) {
     logger("app").warn("world={} exists: the flags that say how to make one are ignored", config.world);
   }
+  if (parts->world.is_readable_by_others) {
+    logger("app").warn("file={} can be read by other users, and with it the world's secret key: chmod 600 it",
+                       parts->world.store->file());
+  }
   logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
                      parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));

@@ -31,6 +31,7 @@ NetLimits net_limits(const ServerConfig& config) {
   limits.send.edit_bytes = config.edit_queue_kib * 1024;
   limits.send.chunk_bytes = config.chunk_queue_kib * 1024;
   limits.connections_max = config.sessions_max + 64;  // some more may be in the handshake
+  limits.handshakes_per_address = config.handshakes_per_address;
   limits.messages_per_second = config.messages_per_second;
   limits.message_burst = 2 * config.messages_per_second;
   return limits;
@@ -300,6 +301,8 @@ void ServerCore::set_encoding(SessionId session, ChunkEncoding encoding) {
   if (NetSession* net = find(session)) net->set_encoding(encoding);
 }
 
+void ServerCore::opened(SessionId session) { listener_->opened(session); }
+
 bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) {
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) return true;
@@ -349,15 +352,11 @@ void ServerCore::log(WorldLogLevel level, const std::string& line) {
       world.debug("{}", line);
       break;
     case WorldLogLevel::info:
-      world.info("{}", line);
+      if (const auto left_out = infos_.take(now().steady_us)) world.info("{} left_out={}", line, *left_out);
       break;
     case WorldLogLevel::warn:
-      // Peers can cause these: ten a second, the next line says how many were left out.
-      if (!warnings_.take(1, now().steady_us)) {
-        ++warnings_left_out_;
-        break;
-      }
-      world.warn("{} left_out={}", line, std::exchange(warnings_left_out_, 0));
+      if (const auto left_out = warnings_.take(now().steady_us))
+        world.warn("{} left_out={}", line, *left_out);
       break;
     case WorldLogLevel::error:
       world.error("{}", line);

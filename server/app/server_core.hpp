@@ -12,7 +12,9 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "server/admin/server_config.hpp"
 #include "server/app/chunk_source.hpp"
@@ -61,6 +63,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   // ---- WorldPorts, on the world strand
   bool send(SessionId session, const EncodedMessage& message) override;
   void set_encoding(SessionId session, ChunkEncoding encoding) override;
+  void opened(SessionId session) override;
   bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   bool log_has_room(std::size_t records) const override;
@@ -70,6 +73,17 @@ class ServerCore final : public WorldPorts, public NetEvents {
   void log(WorldLogLevel level, const std::string& line) override;
 
  private:
+  /// Lines of one level, which peers can cause: ten a second; the next one says how many were left out.
+  struct PeerLines {
+    TokenBucket bucket{10, 10};
+    std::uint64_t left_out = 0;
+    /// How many were left out before this line; nothing if it is left out itself.
+    std::optional<std::uint64_t> take(TimeUs now_us) {
+      if (bucket.take(1, now_us)) return std::exchange(left_out, 0);
+      ++left_out;
+      return std::nullopt;
+    }
+  };
   WorldConfig world_config(const ServerConfig& config) const;
   Result<WorldStart, std::string> read_start();
   void start_writer();
@@ -83,8 +97,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   Store& store_;
   const Generator& generator_;
   std::function<void()> on_failure_;
-  TokenBucket warnings_{10, 10};  // of the world strand
-  std::uint64_t warnings_left_out_ = 0;
+  PeerLines warnings_, infos_;  // of the world strand
   asio::strand<asio::io_context::executor_type> strand_;
   asio::steady_timer tick_;
   std::shared_ptr<Listener> listener_;

@@ -116,9 +116,7 @@ int run(const ServerOptions& options) {
     is_written = written.has_value();
     if (!is_written) logger("app").error("{}", written.error().message());
   }
-  std::cout << "stopped seq=" << report.digests.seq << " edited_chunks=" << report.digests.chunks.size()
-            << " live=" << report.live_chunks << " world_digest=" << to_hex(report.world_digest)
-            << " dense expansions: " << dense_expansions() << "\n";
+  std::cout << stop_line(report) << " dense expansions: " << dense_expansions() << "\n";
   return report.is_clean && report.error.empty() && is_written ? kStopped : kFailed;
 }
 

@@ -26,7 +26,7 @@ std::optional<std::string> difference(const AuditEntry* stored, const AuditEntry
 
 StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean) {
   StopReport report;
-  report.is_clean = is_clean;
+  report.is_clean = report.digests.is_clean = is_clean;
   report.live_chunks = live.size();
   report.digests.world_id = store.meta().world_id;
   const auto failed = [&](const std::string& what) {
@@ -48,10 +48,11 @@ StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> l
     failed(keys.error().message());
   }
   for (const auto& [key, chunk] : live) {
+    if (!is_clean) break;
     const AuditEntry entry{key, chunk->version, digest_of(chunk->voxels)};
     const auto stored = entries.find(key);
     const auto differs = difference(stored == entries.end() ? nullptr : &stored->second, entry);
-    if (is_clean && differs) failed(store.file() + ": snapshot chunk=" + text_of(key) + ": " + *differs);
+    if (differs) failed(store.file() + ": snapshot chunk=" + text_of(key) + ": " + *differs);
     entries[key] = entry;
   }
   for (const auto& [key, entry] : entries) {
@@ -59,6 +60,15 @@ StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> l
     report.world_digest = report.world_digest + world_digest_term(key, entry.digest);
   }
   return report;
+}
+
+std::string stop_line(const StopReport& report) {
+  const std::string seq = "seq=" + std::to_string(report.digests.seq);
+  const std::string chunks = std::to_string(report.digests.chunks.size());
+  const std::string live = " live=" + std::to_string(report.live_chunks);
+  if (!report.is_clean) return "stopped unclean " + seq + " snapshots=" + chunks + live;
+  return "stopped " + seq + " edited_chunks=" + chunks + live +
+         " world_digest=" + to_hex(report.world_digest);
 }
 
 }  // namespace runstone

@@ -84,6 +84,10 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
     if (!store) return failure(store.error().message());
     opened.store = *std::move(store);
   }
+  using std::filesystem::perms;
+  const perms others = perms::group_read | perms::others_read;
+  const auto status = std::filesystem::status(file, ignored);
+  opened.is_readable_by_others = (status.permissions() & others) != perms::none;
   auto generator = generator_of(*opened.store);
   if (!generator) return failure(generator.error());
   opened.generator = *std::move(generator);

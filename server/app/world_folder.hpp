@@ -25,6 +25,7 @@ struct OpenedWorld {
   std::unique_ptr<Store> store;
   std::unique_ptr<Generator> generator;
   bool is_new = false;
+  bool is_readable_by_others = false;  // the file, and with it the world's secret key
 };
 
 /// Whether the folder holds a world.

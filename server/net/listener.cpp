@@ -111,10 +111,20 @@ asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
 }
 
 void Listener::admit(asio::ip::tcp::socket socket) {
-  if (session_count() >= limits_.connections_max) {
+  asio::error_code gone;
+  const asio::ip::address from = socket.remote_endpoint(gone).address();
+  if (gone) return;
+  std::optional<std::vector<std::shared_ptr<NetSession>>> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = make_room(from);
+  }
+  if (!ended) {
     counters_.refused.fetch_add(1);
     return;  // closing the socket says it: there was no handshake to answer
   }
+  counters_.refused.fetch_add(ended->size());
+  for (const auto& session : *ended) session->abort();
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
@@ -123,8 +133,42 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);
+    handshakes_.emplace(id, from);
+    handshakes_from_[from].insert(id);
   }
   session->start();
+}
+
+std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(const asio::ip::address& from) {
+  std::vector<std::shared_ptr<NetSession>> ended;
+  const auto end = [&](SessionId oldest) {
+    ended.push_back(sessions_.at(oldest));
+    end_handshake(oldest);
+    leaving_.insert(oldest);
+  };
+  const auto same = handshakes_from_.find(from);
+  if (same != handshakes_from_.end() && same->second.size() >= limits_.handshakes_per_address) {
+    end(*same->second.begin());
+  }
+  if (sessions_.size() - leaving_.size() >= limits_.connections_max) {
+    if (handshakes_.empty()) return std::nullopt;  // all of them are players
+    end(handshakes_.begin()->first);
+  }
+  return ended;
+}
+
+void Listener::end_handshake(SessionId session) {
+  const auto found = handshakes_.find(session);
+  if (found == handshakes_.end()) return;
+  const auto from = handshakes_from_.find(found->second);
+  from->second.erase(session);
+  if (from->second.empty()) handshakes_from_.erase(from);
+  handshakes_.erase(found);
+}
+
+void Listener::opened(SessionId session) {
+  const std::lock_guard lock(mutex_);
+  end_handshake(session);
 }
 
 std::shared_ptr<NetSession> Listener::find(SessionId session) const {
@@ -135,6 +179,8 @@ std::shared_ptr<NetSession> Listener::find(SessionId session) const {
 
 void Listener::forget(SessionId session) {
   const std::lock_guard lock(mutex_);
+  end_handshake(session);
+  leaving_.erase(session);
   sessions_.erase(session);
 }
 

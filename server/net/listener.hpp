@@ -1,12 +1,18 @@
-// Listener: accepts connections and keeps the sessions by number.
-// Threads: the accept loop runs on its own strand; find() and close_all() may be called from any thread.
+// Listener: accepts connections and keeps the sessions by number. Sockets that never authenticate keep nobody
+// out: a newcomer for whom there is no room takes the place of the oldest one in the handshake, and one
+// address has few of those. Threads: the accept loop runs on its own strand; the others but listen() may be
+// called from any thread.
 #pragma once
 #include <asio/io_context.hpp>
+#include <asio/ip/address.hpp>
 #include <asio/ip/tcp.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "common/core/result.hpp"
 #include "server/net/net_session.hpp"
@@ -32,6 +38,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
 
   /// Null if it is gone.
   std::shared_ptr<NetSession> find(SessionId session) const;
+  /// The session has authenticated: its connection is not closed for a newcomer any more.
+  void opened(SessionId session);
   /// Forgets a session that has told disconnected.
   void forget(SessionId session);
   std::size_t session_count() const;
@@ -41,6 +49,9 @@ class Listener : public std::enable_shared_from_this<Listener> {
  private:
   static asio::awaitable<void> accept_loop(std::shared_ptr<Listener> self);
   void admit(asio::ip::tcp::socket socket);
+  /// Sessions that have to go so that one more from `from` fits; nothing if it cannot. Under the mutex.
+  std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(const asio::ip::address& from);
+  void end_handshake(SessionId session);
 
   asio::io_context& io_;
   const NetLimits limits_;
@@ -52,8 +63,11 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::steady_timer pause_;
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
-  mutable std::mutex mutex_;  // a leaf: guards the map
+  mutable std::mutex mutex_;  // a leaf: guards the rest
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
+  std::map<SessionId, asio::ip::address> handshakes_;  // oldest first: neither authenticated nor told to go
+  std::map<asio::ip::address, std::set<SessionId>> handshakes_from_;  // the same by address, never empty sets
+  std::set<SessionId> leaving_;                                       // told to go, still in `sessions_`
 };
 
 }  // namespace runstone

@@ -102,6 +102,12 @@ void NetSession::handled(std::size_t messages) {
   asio::post(strand_, wake);
 }
 
+void NetSession::abort() {
+  close(GoodbyeReason::server_full, "no room for one more handshake");  // nothing more is queued or sent
+  const auto end = [self = shared_from_this()] { self->stream_->close(); };
+  asio::post(strand_, end);
+}
+
 void NetSession::wake_writer() {
   {
     const std::lock_guard lock(mutex_);

@@ -1,7 +1,7 @@
 // NetSession: one connection: reads frames, verifies messages and hands them on; sends what is queued by
 // priority; ends with a numbered goodbye. A peer that breaks a rule ends its own session and nobody else's.
 // Threads: the two loops run on the session's strand; send(), reserve_chunk(), fill_chunk(), close(),
-// handled() and set_encoding() may be called from any thread and return at once.
+// abort(), handled() and set_encoding() may be called from any thread and return at once.
 #pragma once
 #include <asio/any_io_executor.hpp>
 #include <asio/steady_timer.hpp>
@@ -24,7 +24,8 @@ namespace runstone {
 struct NetLimits {
   SendLimits send;
   std::size_t notsent_bytes = 16 * 1024;       // TCP_NOTSENT_LOWAT
-  std::size_t connections_max = 512;           // sockets, before any handshake
+  std::size_t connections_max = 512;           // sockets, in any state
+  std::size_t handshakes_per_address = 32;     // of those sockets: not yet authenticated, from one address
   std::size_t unhandled_messages_max = 512;    // per session; then its reading pauses
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
   std::uint64_t message_burst = 20'000;
@@ -60,6 +61,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// linger time. Only the first call counts.
   void close(GoodbyeReason reason, const std::string& text);
   void handled(std::size_t messages);
+  /// Closes without a goodbye and without waiting for the peer.
+  void abort();
 
  private:
   using Strand = asio::strand<asio::any_io_executor>;

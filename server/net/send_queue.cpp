@@ -21,7 +21,9 @@ std::size_t SendQueue::limit(FrameClass c) const {
 bool SendQueue::push(const EncodedMessage& message) {
   Lane& mine = lane(message.frame_class);
   const std::size_t size = message.bytes->size();
-  if (!mine.items.empty() && mine.bytes + size > limit(message.frame_class)) {
+  // Many small answers (chunk_unavailable) take places, too, or a peer could have millions of them queued.
+  const bool has_place = message.frame_class != FrameClass::chunks || mine.items.size() < limits_.chunk_count;
+  if (!has_place || (!mine.items.empty() && mine.bytes + size > limit(message.frame_class))) {
     refused_ = true;
     return false;
   }

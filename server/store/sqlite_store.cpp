@@ -204,13 +204,4 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_key
   return keys_of(snapshots_);
 }
 
-StoreResult<std::vector<ChunkKey>> SqliteStore::base_keys() {
-  auto rows = keys_of(base_);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
-  std::vector<ChunkKey> keys;
-  keys.reserve(rows->size());
-  for (const auto& [key, version] : *rows) keys.push_back(key);
-  return keys;
-}
-
 }  // namespace runstone

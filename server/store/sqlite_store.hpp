@@ -49,7 +49,6 @@ class SqliteStore final : public Store {
   StoreResult<void> read_log(Sequence first, Sequence last,
                              const std::function<bool(const EditRecord&)>& each) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
-  StoreResult<std::vector<ChunkKey>> base_keys() override;
   StoreResult<void> check() override;
 
  private:

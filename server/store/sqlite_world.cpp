@@ -2,8 +2,10 @@
 // sqlite_store.cpp.
 #include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -33,12 +35,34 @@ StoreResult<bool> exists(const std::string& file, const std::string& vfs) {
   return there != 0;
 }
 
-/// Makes the folder; its name in the parent folder is on disk before anything in it is promised to be.
+/// The world's secret key is in the file, so nobody but its owner may read it. SQLite gives WAL and shared
+/// memory the mode of the file.
+constexpr mode_t kFileMode = 0600;
+constexpr mode_t kFolderMode = 0700;
+
+/// Makes the file, empty, before SQLite would make it for everybody to read.
+StoreResult<void> make_file(const std::string& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
+  if (descriptor < 0) {
+    return failure(StoreError::Kind::io, file, "cannot be made: " + std::generic_category().message(errno));
+  }
+  ::close(descriptor);
+  return {};
+}
+
+/// Makes the folder, for its owner only, unless it is there; its name in the parent folder is on disk before
+/// anything in it is promised to be.
 StoreResult<void> make_folder(const std::string& folder, const std::string& file) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  auto whole = std::filesystem::absolute(folder, error).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();  // "valley/"
+  std::filesystem::create_directories(whole.parent_path(), error);
+  if (!error && ::mkdir(whole.c_str(), kFolderMode) != 0 &&
+      !(errno == EEXIST && std::filesystem::is_directory(whole))) {
+    error = std::error_code(errno, std::generic_category());
+  }
   if (error) return failure(StoreError::Kind::io, file, "the folder cannot be made: " + error.message());
-  const auto parent = std::filesystem::absolute(folder, error).lexically_normal() / "..";
+  const auto parent = whole / "..";
   const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
     ::fsync(descriptor);  // best effort: some file systems cannot sync a folder
@@ -148,6 +172,9 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
   const auto there = exists(file, options.vfs);
   if (!there) return Unexpected<StoreError>{there.error()};
   if (*there) return failure(StoreError::Kind::exists, file, "is there already");
+  if (options.vfs.empty()) {  // another VFS keeps its files where it likes
+    if (const auto made = make_file(file); !made) return Unexpected<StoreError>{made.error()};
+  }
   {
     auto database = sql::Database::open(file, sql::Database::Mode::create, options.vfs);
     if (!database) return Unexpected<StoreError>{database.error()};

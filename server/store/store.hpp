@@ -113,7 +113,6 @@ class Store {
                                      const std::function<bool(const EditRecord&)>& each) = 0;
   /// Keys and versions of all snapshots, ascending.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() = 0;
-  virtual StoreResult<std::vector<ChunkKey>> base_keys() = 0;
 
   /// Reads and verifies every row of every table, and runs the database's own check. Slow: for audits.
   virtual StoreResult<void> check() = 0;

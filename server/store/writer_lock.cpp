@@ -13,7 +13,7 @@ namespace runstone {
 StoreResult<WriterLock> WriterLock::take(const std::string& folder, const std::string& file) {
   const std::string path = folder + "/world.lock";
   WriterLock lock;
-  lock.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  lock.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock.descriptor_ < 0) {
     return Unexpected<StoreError>{
         {StoreError::Kind::io, path, "", "cannot be written: " + std::generic_category().message(errno)}};

@@ -92,6 +92,7 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
   mine.edits = TokenBucket(world.config.edits_per_second, world.config.edit_burst);
   mine.heard_us = now.steady_us;
   world.interest.open(session);
+  world.ports.opened(session);
   ++world.counters.sessions_opened;
   world.ports.log(WorldLogLevel::info, "session=" + std::to_string(session) + " open author=" +
                                            std::to_string(mine.author) + " name=\"" + mine.name + "\"");

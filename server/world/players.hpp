@@ -1,7 +1,9 @@
 // Players: which author a public key is. A key gets the next free author number when it first shows that it
 // owns its secret, but the row is written only with the author's first edit: keys that never edit leave
-// nothing on disk. A name that an author with a row comes back under is written anew: the last one wins.
+// nothing on disk, and nothing in memory once they are gone. Within a run no number is given twice. A name
+// that an author with a row comes back under is written anew: the last one wins.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +20,7 @@ class Players {
   void restore(const PlayerRow& stored) {
     by_key_[stored.key] = stored.author;
     known_[stored.author] = {stored, stored.name};
+    next_ = std::max(next_, stored.author + 1);
   }
   /// The key's author; a new one for a new key. The name replaces the one known.
   AuthorId enter(const PublicKey& key, const std::string& name) {
@@ -26,11 +29,20 @@ class Players {
       known_[found->second].row.name = name;
       return found->second;
     }
-    const AuthorId author = known_.empty() ? 1 : known_.rbegin()->first + 1;
+    const AuthorId author = next_++;
     by_key_[key] = author;
     known_[author] = {{author, key, name}, std::nullopt};
     return author;
   }
+  /// Forgets an author that has no row and no session; true if it is forgotten.
+  bool forget_unsaved(AuthorId author) {
+    const auto found = known_.find(author);
+    if (found == known_.end() || found->second.stored_name) return false;
+    by_key_.erase(found->second.row.key);
+    known_.erase(found);
+    return true;
+  }
+  std::size_t count() const { return known_.size(); }
   /// Whether the store has the author under another name.
   bool is_renamed(AuthorId author) const {
     const auto found = known_.find(author);
@@ -54,6 +66,7 @@ class Players {
   };
   std::map<PublicKey, AuthorId> by_key_;
   std::map<AuthorId, Known> known_;
+  AuthorId next_ = 1;
 };
 
 }  // namespace runstone

@@ -1,7 +1,7 @@
-// View turns: when a session's view takes effect. A view replaces the last one, so only the newest waits, and a
-// session gets a turn at most every view_interval_us; all sessions together bring in no more than
-// view_chunks_per_tick chunks in one tick (and one view more). So a peer that looks elsewhere a thousand times
-// a second costs the world strand what one that does so twenty times costs, and edits go on in between.
+// View turns: when a session's view takes effect. A view replaces the last one, so only the newest waits, and
+// a session gets a turn at most every view_interval_us; all sessions together bring in no more than
+// view_chunks_per_tick chunks in one tick (and one view more). So a peer that looks elsewhere a thousand
+// times a second costs the world strand what one that does so twenty times costs, and edits go on in between.
 #pragma once
 #include "server/world/world_state.hpp"
 

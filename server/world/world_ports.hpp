@@ -29,6 +29,8 @@ class WorldPorts {
   virtual bool send(SessionId session, const EncodedMessage& message) = 0;
   /// The encoding agreed with a session; called once, before its first send_snapshot().
   virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
+  /// The session has proved its key: from now on it is a player.
+  virtual void opened(SessionId /*session*/) {}
   /// Encodes a snapshot on a worker in the session's encoding and queues it like send(). False as above; a
   /// port with a bounded queue calls WorldServer::drained() when there is room again.
   virtual bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) = 0;

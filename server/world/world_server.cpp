@@ -127,6 +127,7 @@ void WorldServer::step_keeper(const Now& now) {
 void WorldServer::tick(const Now& now) {
   WorldState& world = *state_;
   commit(now);
+  forget_gone_authors(world);
   close_silent_sessions(world, now);
   give_view_turns(world, now);
   broadcast_roster(world);

@@ -1,6 +1,9 @@
 #include "server/world/world_state.hpp"
 
+#include <set>
 #include <utility>
+
+#include "common/core/assert.hpp"
 
 namespace runstone {
 namespace {
@@ -37,10 +40,26 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts&
 void forget_session(WorldState& world, SessionId session) {
   const auto found = world.sessions.find(session);
   if (found == world.sessions.end()) return;
-  if (found->second.state == SessionState::open) world.roster_changed = true;
+  if (found->second.state == SessionState::open) {
+    world.roster_changed = true;
+    world.gone_authors.push_back(found->second.author);
+  }
   world.sessions.erase(found);
   world.interest.close(session);
   world.loads.take_back(session);
+}
+
+void forget_gone_authors(WorldState& world) {
+  if (world.gone_authors.empty()) return;
+  RUNSTONE_ASSERT(world.authority.queued() == 0);  // or their rows would be missing when they are ordered
+  std::set<AuthorId> present;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionState::open) present.insert(session.author);
+  }
+  for (const AuthorId author : std::exchange(world.gone_authors, {})) {
+    if (present.contains(author) || !world.players.forget_unsaved(author)) continue;
+    world.authority.decided().forget(author);
+  }
 }
 
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text) {

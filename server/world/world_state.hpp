@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include "server/interest/interest.hpp"
 #include "server/world/authority.hpp"
@@ -28,6 +29,7 @@ struct WorldState {
   LoadQueue loads;
   Players players;
   std::map<SessionId, WorldSession> sessions;  // by number: who receives first never depends on a hash
+  std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;
   Sequence durable = 0;
   bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
@@ -46,6 +48,8 @@ struct WorldState {
 
 /// Sends goodbye with a reason and forgets the session. Unknown sessions are allowed.
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text);
+/// Once no edit is queued: forgets what only authors without a row and without a session have left.
+void forget_gone_authors(WorldState& world);
 /// Forgets a session that is gone.
 void forget_session(WorldState& world, SessionId session);
 /// Sends a message the session must not miss: closes the session if its queue is full. True if it is queued.

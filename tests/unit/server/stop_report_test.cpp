@@ -78,6 +78,28 @@ TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and na
   CHECK(world.with(key, live, false).error.empty());
 }
 
+TEST_CASE(
+    "a stop that was not clean lists what is stored, and neither line nor file passes for a digest of its "
+    "seq",
+    "[server]") {
+  const StoppedWorld world;
+  Chunk live = *world.here;
+  live.version = {1, 9};  // never on disk
+  const StopReport report = world.with(kHere, live, false);
+  CHECK_FALSE(report.is_clean);
+  CHECK(report.digests.chunks == std::vector<AuditEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
+                                                         {kThere, {1, 3}, digest_of(world.there->voxels)}});
+  CHECK(stop_line(report) == "stopped unclean seq=3 snapshots=2 live=1");
+  const auto read = parse_digests_json(to_json(report.digests), "d.json");
+  REQUIRE_FALSE(read.has_value());
+  CHECK(read.error().message().find("clean") != std::string::npos);
+
+  const StopReport clean = world.with(kHere, *world.here);
+  CHECK(stop_line(clean) ==
+        "stopped seq=3 edited_chunks=2 live=1 world_digest=" + to_hex(clean.world_digest));
+  CHECK(parse_digests_json(to_json(clean.digests), "d.json").has_value());
+}
+
 TEST_CASE("a snapshot that cannot be read is named, and the sum goes on", "[server]") {
   const StoppedWorld world;
   REQUIRE(

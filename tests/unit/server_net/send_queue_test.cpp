@@ -57,6 +57,15 @@ TEST_CASE("each class is bounded by itself, and says no instead of growing", "[n
   CHECK_FALSE(queue.reserve_chunk().has_value());  // places count even before they are filled
 }
 
+TEST_CASE("small messages of the chunk class take places as chunks do", "[net]") {
+  SendQueue queue(limits());
+  CHECK(queue.reserve_chunk().has_value());
+  for (int i = 0; i < 3; ++i) CHECK(queue.push(message(FrameClass::chunks, 8)));
+  CHECK_FALSE(queue.push(message(FrameClass::chunks, 8)));
+  CHECK_FALSE(queue.reserve_chunk().has_value());
+  for (int i = 0; i < 10; ++i) CHECK(queue.push(message(FrameClass::edits, 8)));  // bounded by bytes alone
+}
+
 TEST_CASE("a message larger than its bound still fits an empty class", "[net]") {
   SendQueue queue(limits());
   CHECK(queue.push(message(FrameClass::edits, 5'000)));

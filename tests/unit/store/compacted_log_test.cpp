@@ -80,7 +80,7 @@ TEST_CASE("a base chunk carries the version at which it was completed", "[store]
   REQUIRE((loaded.has_value() && loaded->has_value()));
   CHECK((*loaded)->version == Version{1, 5});
   CHECK((*loaded)->voxels == completed->voxels);
-  CHECK(store->base_keys()->size() == 2);
+  CHECK(store->load_base({0, {9, 9, 9}})->has_value());
   CHECK(store->check().has_value());
 }
 

@@ -63,7 +63,6 @@ class FakeStore final : public Store {
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {
     return std::vector<std::pair<ChunkKey, Version>>();
   }
-  StoreResult<std::vector<ChunkKey>> base_keys() override { return std::vector<ChunkKey>(); }
   StoreResult<void> check() override { return {}; }
 
   std::counting_semaphore<> entered{0}, gate{0};

@@ -1,6 +1,9 @@
 #include "server/store/sqlite_store.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -71,7 +74,6 @@ TEST_CASE("a new world opens again with everything that creation pinned", "[stor
   CHECK(store->players()->empty());
   CHECK(store->high_waters()->empty());
   CHECK(store->snapshot_keys()->empty());
-  CHECK(store->base_keys()->empty());
   CHECK(store->check().has_value());
 }
 
@@ -276,6 +278,34 @@ TEST_CASE("a snapshot that would harm the world is refused and nothing of its jo
   CHECK(store->snapshot_keys()->size() == 1);
 }
 
+TEST_CASE("a new world is for its owner alone, and a folder that is there stays as it is", "[store]") {
+  using std::filesystem::perms;
+  const auto mode = [](const std::string& path) { return std::filesystem::status(path).permissions(); };
+  const perms own_file = perms::owner_read | perms::owner_write;
+  const TempFolder folder;
+  const std::string fresh = folder / "deep/world";
+  const auto umask_before = ::umask(0);  // the most open one
+  {
+    auto store = create_world(fresh, sample_meta());
+    REQUIRE(store.has_value());
+    SplitMix64 rng(3);
+    REQUIRE((*store)->raise_epoch().has_value());
+    REQUIRE((*store)->append({}, sample_records(rng, 1, 1, 1)).has_value());
+    CHECK(mode(fresh) == perms::owner_all);
+    CHECK(mode(fresh + "/world.sqlite") == own_file);
+    CHECK(mode(fresh + "/world.sqlite-wal") == own_file);
+    CHECK(mode(fresh + "/world.sqlite-shm") == own_file);
+  }
+  const std::string given = folder / "given";
+  std::filesystem::create_directory(given);
+  std::filesystem::permissions(given, perms::owner_all | perms::group_all);
+  const bool is_made = create_world(given + "/", sample_meta()).has_value();
+  ::umask(umask_before);
+  CHECK(is_made);
+  CHECK(mode(given) == (perms::owner_all | perms::group_all));
+  CHECK(mode(given + "/world.sqlite") == own_file);
+}
+
 TEST_CASE("base chunks are taken once, and only while the log is empty", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(7);
@@ -284,9 +314,9 @@ TEST_CASE("base chunks are taken once, and only while the log is empty", "[store
   const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{b, sample_chunk(rng, {})},
                                                              {a, sample_chunk(rng, {})}};
   REQUIRE(store->save_base(chunks).has_value());
-  CHECK(*store->base_keys() == std::vector<ChunkKey>{a, b});
   CHECK((*store->load_base(a))->voxels == chunks[1].second->voxels);
   CHECK((*store->load_base(a))->version == Version{});
+  CHECK((*store->load_base(b))->voxels == chunks[0].second->voxels);
   CHECK(store->save_base({chunks.data(), 1}).error().kind == StoreError::Kind::bad_request);  // twice
   const std::vector<std::pair<ChunkKey, ChunkPtr>> edited = {{{0, {9, 9, 9}}, sample_chunk(rng, {1, 1})}};
   CHECK(store->save_base(edited).error().where == "base chunk=9,9,9");
@@ -294,7 +324,8 @@ TEST_CASE("base chunks are taken once, and only while the log is empty", "[store
   REQUIRE(store->append({}, sample_records(rng, 1, 1, 1)).has_value());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> late = {{{0, {8, 8, 8}}, sample_chunk(rng, {})}};
   CHECK(store->save_base(late).error().kind == StoreError::Kind::bad_request);
-  CHECK(store->base_keys()->size() == 2);
+  CHECK_FALSE(store->load_base(edited[0].first)->has_value());
+  CHECK_FALSE(store->load_base(late[0].first)->has_value());
   CHECK(store->check().has_value());
 }
 

@@ -24,7 +24,8 @@ std::size_t cells_of(const View& view) {
   return cells.size();
 }
 
-TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor an editor's turn", "[world]") {
+TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor an editor's turn",
+          "[world]") {
   WorldConfig c = config();
   c.loads_in_flight_max = 4;
   WorldBench bench(c);

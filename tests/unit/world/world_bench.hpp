@@ -1,4 +1,5 @@
-// WorldBench: a world strand with fake ports and a clock that the test moves, and clients that know the handshake.
+// WorldBench: a world strand with fake ports and a clock that the test moves, and clients that know the
+// handshake.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -334,6 +334,32 @@ TEST_CASE("a new name of a known author is handed to the store once, without an 
   CHECK(bench.ports.records.size() == 1);
 }
 
+TEST_CASE("an author who never edited is forgotten with its last session, and its number stays unused",
+          "[world]") {
+  Bench bench;
+  CHECK(bench.join(1, 1).author == 1);
+  bench.edit(1, 7, SetVoxel{{1, 1, 1}}, 99);  // refused: no such material
+  bench.server.disconnected(1);
+  bench.tick();
+  const Ready again = bench.join(2, 1);
+  CHECK(again.author == 2);
+  CHECK(again.decided == 0);
+  CHECK(bench.join(3, 1, 2).author == 2);  // another instance of the same key
+  bench.server.disconnected(2);
+  bench.tick();
+  CHECK(bench.join(4, 1).author == 2);  // one session was left
+  bench.edit(4, 1, kAtOrigin);
+  bench.server.disconnected(4);  // before the edit is ordered
+  bench.server.disconnected(3);
+  bench.tick();
+  REQUIRE(bench.ports.players.size() == 1);
+  CHECK(bench.ports.players[0].author == 2);
+  const Ready known = bench.join(5, 1);
+  CHECK(known.author == 2);
+  CHECK(known.decided == 1);
+  CHECK(bench.join(6, 6).author == 3);
+}
+
 TEST_CASE("the durable watermark goes to every open session, and again if it did not fit", "[world]") {
   Bench bench;
   bench.join(1, 1);
