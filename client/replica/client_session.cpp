@@ -141,7 +141,8 @@ void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
                             .durable = welcome_->durable,
                             .head = welcome_->head,
                             .decided = ready.decided,
-                            .heights = welcome_->heights});
+                            .heights = welcome_->heights,
+                            .edit_volume_max = welcome_->edit_volume_max});
   send_view();
   tick(now_us);
   for (auto& [message, arrival] : std::exchange(early_, {})) receive(std::move(message), arrival);

@@ -19,6 +19,7 @@
 // a snapshot that contains them).
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,7 +49,8 @@ struct Opening {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   ClientSequence decided = 0;
-  HeightLimits heights{};  // of edits
+  HeightLimits heights{};                                                     // of edits
+  std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();  // voxels per edit
 };
 
 class Replica {
@@ -66,8 +68,8 @@ class Replica {
   const std::optional<View>& view() const { return view_; }
 
   /// Shows an own edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled
-  /// time. Fails on an invalid descriptor, beyond the world's heights, on an unavailable chunk, before the
-  /// first opening, and when kOwnEditsMax are held.
+  /// time. Fails on an invalid descriptor, beyond the world's heights or volume, on an unavailable chunk,
+  /// before the first opening, and when kOwnEditsMax are held.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void mark_sent(ClientSequence seq, TimeUs now_us);
 

@@ -139,16 +139,20 @@ TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to 
   CHECK_FALSE(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a session keeps to the heights that welcome announces", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that welcome announces",
+                 "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.heights = {-4, 4};
+  welcome.edit_volume_max = 27;
   welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
   receive(welcome);
   receive(Ready{6, 0});
   REQUIRE(session.is_open());
   CHECK(session.submit(set({0, 3, 0}, 1), now, now).has_value());
   CHECK_FALSE(session.submit(set({0, 4, 0}, 1), now, now).has_value());
+  CHECK(session.submit({FillBox{{{0, 0, 0}, {3, 3, 3}}}, {}, 1}, now, now).has_value());
+  CHECK_FALSE(session.submit({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
 }
 
 TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add any", "[replica]") {

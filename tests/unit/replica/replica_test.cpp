@@ -587,6 +587,20 @@ TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before 
   CHECK(replica.own_edits().all().size() == 1);
 }
 
+TEST_CASE_METHOD(Fixture, "an edit larger than the server allows is refused before it is shown",
+                 "[replica]") {
+  Opening small = opening();
+  small.edit_volume_max = 8;
+  static_cast<void>(replica.open(small));
+  load(kHere);
+  CHECK(replica.submit({FillBox{{{1, 1, 1}, {3, 3, 3}}}, {}, 2}, 0, 0).has_value());
+  const auto refused = replica.submit({FillBox{{{4, 1, 1}, {7, 4, 2}}}, {}, 2}, 0, 0);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().code == ErrorCode::limit_exceeded);
+  CHECK(replica.shown_at({4, 1, 1}) == kEmpty);
+  CHECK(replica.own_edits().all().size() == 1);
+}
+
 TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing that was edited",
                  "[replica]") {
   load(kRight);
