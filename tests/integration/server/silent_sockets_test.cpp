@@ -38,7 +38,7 @@ TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them
   RawClient late(server->port());
   REQUIRE(late.join(2).has_value());
   CHECK(is_ended(*silent.front()));
-  CHECK(is_ended(*silent[10]));       // one player, 65 silent ones and the newcomer were too many
+  CHECK(is_ended(*silent[10]));  // one player, 65 silent ones and the newcomer were too many
   CHECK_FALSE(is_ended(*silent.back()));
   early.send(Ping{5});
   CHECK(early.next_of<Pong>().has_value());  // a player's connection never goes
