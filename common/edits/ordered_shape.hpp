@@ -18,8 +18,8 @@ namespace runstone {
 constexpr std::uint32_t isqrt(std::uint32_t v) {
   std::uint32_t root = 0;
   if (v == 0) return 0;
-  for (std::uint32_t bit = 1u << ((std::bit_width(v) - 1) / 2); bit != 0; bit >>= 1) {
-    const std::uint32_t trial = root | bit;
+  for (int shift = (std::bit_width(v) - 1) / 2; shift >= 0; --shift) {
+    const std::uint32_t trial = root | 1u << shift;
     if (static_cast<std::uint64_t>(trial) * trial <= v) root = trial;
   }
   return root;
