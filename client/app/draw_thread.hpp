@@ -1,9 +1,8 @@
 // DrawThread: the thread that owns the screen. A frame may take long (a tenth of a second in software); what
 // changes meanwhile waits here, so that the main thread never does: edits are applied, meshed and sent on
 // time.
-//   in    changes (meshes, removals, materials), the newest of each chunk, and at most one frame order:
-//   bounded
-//         by the number of chunks
+//   in    changes (meshes, removals, materials), the newest of each chunk, and at most one frame order;
+//         bounded by the number of chunks
 //   out   what was done, in its order; bounded by what went in since it was last taken
 // A frame shows every change that was handed over before its order. Hand-overs cost a lock and a map
 // insertion. Threads: made, called and destroyed by the main thread; `wake` is called from the draw thread.
