@@ -18,6 +18,8 @@ endif()
 if(RUNSTONE_SANITIZE)
   add_compile_options(-fsanitize=${RUNSTONE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${RUNSTONE_SANITIZE})
+  # Vector code for the lowest instruction set alone: for each of them it takes minutes to instrument.
+  add_compile_definitions(HWY_COMPILE_ONLY_STATIC)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # g++ 12 pairs coroutine frames with the wrong delete in this warning (false positive under ASan).
     add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-mismatched-new-delete>)
