@@ -2,7 +2,7 @@
 // resumption. It consumes messages and produces messages; who carries them (a socket, a simulated link) is
 // not its business.
 //   offline -> connected() -> greeting (hello sent) -> proving (welcome checked, proof sent) -> open (ready
-//   came) disconnected() leads back to offline from everywhere; the replica and own edits stay, and are
+//   came). disconnected() leads back to offline from everywhere; the replica and own edits stay, and are
 //   resumed.
 // The server proves its key with a signature; the key is pinned per world (first use trusts it, a change
 // refuses). Pure: randomness and times are arguments (microseconds of the client's steady clock). One thread.

@@ -1,14 +1,12 @@
 // Replica: the client's copy of the chunks in view, always the runs as they came, never a grid.
 //   confirmed  what the server said: the last snapshot and every commit that follows it without a gap
-//   shown      confirmed plus our own edits that the server has not answered yet (the pending stack), by the
-//   same
-//              apply_stack(); the very same object as confirmed where nothing is pending
+//   shown      confirmed plus our own edits that the server has not answered yet (the pending stack), by
+//              the same apply_stack(); the very same object as confirmed where nothing is pending
 // Order comes from versions alone, so messages of different classes may overtake each other:
 //   - an edit of a commit names the sequence its chunk stood at before (`previous`): it is applied if the
-//   chunk stands
-//     there, dropped if the chunk already stands at the edit or later, and held back otherwise;
-//   - a chunk with a gap, or whose digest an audit found wrong, takes nothing but a snapshot that it asks
-//   for;
+//     chunk stands there, dropped if the chunk already stands at the edit or later, and held back otherwise;
+//   - a chunk with a gap, or whose digest an audit found wrong, takes nothing but a snapshot that it
+//     asks for;
 //   - a snapshot older than what is held is ignored.
 // After a restart of the server (new epoch) everything newer than what it kept on disk is distrusted, and own
 // edits it lost are offered again; operation ids make that exactly-once. A server whose log ends before what

@@ -1,7 +1,6 @@
 // SessionInterest: the chunks one session sees or waits for. Every chunk of its view is in one state:
-//   wanted       in the queue, nearest first; the state of all chunks nothing was done for yet, so it costs
-//   no
-//                entry: a peer that looks elsewhere again and again pays for its queue, not for a table
+//   wanted       in the queue, nearest first; the state of all chunks nothing was done for yet, so it
+//                costs no entry: a peer that looks elsewhere again and again pays for its queue, not for a table
 //   waiting      not in memory: a load was asked for
 //   subscribed   a snapshot was sent; every later commit that touches the chunk goes to the session
 //   unavailable  it could not be loaded, and the session was told; loading again would fail again

@@ -3,8 +3,8 @@
 // each touched chunk that is in memory exactly once. It knows no clock, socket, disk or thread; same offers,
 // same result. Rules:
 //   - sequences have no gaps and continue the log of the last start; the epoch is that of this start;
-//   - a commit needs no voxels: a chunk that is not in memory keeps its edits on its stack until it is
-//   loaded;
+//   - a commit needs no voxels: a chunk that is not in memory keeps its edits on its stack until
+//     it is loaded;
 //   - an operation (author, instance, client sequence) is decided once: see DecidedMarks.
 #pragma once
 #include <cstdint>

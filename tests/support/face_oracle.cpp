@@ -213,37 +213,42 @@ std::ostream& operator<<(std::ostream& out, const UnitFace& face) {
              << " in material " << face.material;
 }
 
-std::vector<UnitFace> exposed_faces(const DenseChunk& chunk, const DenseNeighbours& neighbours,
-                                    const MaterialTable& materials) {
-  std::vector<UnitFace> faces;
+namespace {
+
+/// Calls visit(x, y, z, material) for each voxel that is drawn at all.
+template <class F>
+void each_drawn_voxel(const DenseChunk& chunk, const MaterialTable& materials, F&& visit) {
   for (int z = 0; z < chunk.side_z(); ++z) {
     for (int y = 0; y < chunk.side_y(); ++y) {
       for (int x = 0; x < chunk.side_x(); ++x) {
         const Material here = chunk.at(x, y, z);
-        if (visibility_of(materials, here) == Visibility::empty) continue;
-        for (const Step& step : kSteps) {
-          const Material there = material_beside(chunk, neighbours, x, y, z, step);
-          if (there == here || visibility_of(materials, there) == Visibility::opaque) continue;
-          faces.push_back({x, y, z, step.direction, here});
-        }
+        if (visibility_of(materials, here) != Visibility::empty) visit(x, y, z, here);
       }
     }
   }
+}
+
+}  // namespace
+
+std::vector<UnitFace> exposed_faces(const DenseChunk& chunk, const DenseNeighbours& neighbours,
+                                    const MaterialTable& materials) {
+  std::vector<UnitFace> faces;
+  each_drawn_voxel(chunk, materials, [&](int x, int y, int z, Material here) {
+    for (const Step& step : kSteps) {
+      const Material there = material_beside(chunk, neighbours, x, y, z, step);
+      if (there == here || visibility_of(materials, there) == Visibility::opaque) continue;
+      faces.push_back({x, y, z, step.direction, here});
+    }
+  });
   std::sort(faces.begin(), faces.end());
   return faces;
 }
 
 std::vector<UnitFace> all_faces(const DenseChunk& chunk, const MaterialTable& materials) {
   std::vector<UnitFace> faces;
-  for (int z = 0; z < chunk.side_z(); ++z) {
-    for (int y = 0; y < chunk.side_y(); ++y) {
-      for (int x = 0; x < chunk.side_x(); ++x) {
-        const Material here = chunk.at(x, y, z);
-        if (visibility_of(materials, here) == Visibility::empty) continue;
-        for (const Step& step : kSteps) faces.push_back({x, y, z, step.direction, here});
-      }
-    }
-  }
+  each_drawn_voxel(chunk, materials, [&](int x, int y, int z, Material here) {
+    for (const Step& step : kSteps) faces.push_back({x, y, z, step.direction, here});
+  });
   std::sort(faces.begin(), faces.end());
   return faces;
 }

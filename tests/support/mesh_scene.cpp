@@ -61,6 +61,15 @@ MeshScene random_scene(SplitMix64& rng, unsigned side_max) {
   return scene;
 }
 
+MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order) {
+  MeshScene scene;
+  scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
+  for (auto& neighbour : scene.neighbours) {
+    neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
+  }
+  return scene;
+}
+
 std::vector<UnitFace> expected_faces(const MeshScene& scene) {
   std::array<std::optional<DenseChunk>, kDirectionCount> dense;
   DenseNeighbours around{};

@@ -32,6 +32,9 @@ struct MeshScene {
 /// there or missing, and as deep as it likes along its direction.
 MeshScene random_scene(SplitMix64& rng, unsigned side_max);
 
+/// Seeded scene of one extent: any shapes in the chunk, boxes in all six neighbours, in any axis order.
+MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order);
+
 /// What the oracle says of a scene. Dense.
 std::vector<UnitFace> expected_faces(const MeshScene& scene);
 

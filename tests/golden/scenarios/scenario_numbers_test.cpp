@@ -108,6 +108,16 @@ std::map<std::pair<unsigned, std::string>, ThesisRow> defects() {
   return out;
 }
 
+/// What both tables say of a chunk's storage.
+void check_storage(Ledger& ledger, const ThesisRow& row, const MeshScene& scene,
+                   const ScenarioNumbers& numbers) {
+  ledger.check(row, "opaque_voxels", numbers.opaque_voxels);
+  ledger.check(row, "empty_voxels", kEdge * kEdge * kEdge - numbers.opaque_voxels);
+  ledger.check(row, "runs", numbers.runs);
+  ledger.check(row, "rle_bytes", 12 * std::size_t{numbers.runs});
+  ledger.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
+}
+
 TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices", "[scenarios][golden]") {
   Ledger ledger("scenarios alone");
   int rows = 0;
@@ -119,11 +129,7 @@ TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices
     const auto world = scenario_generator(number, kEdge);
     const MeshScene scene = scenario_scene(*world, {0, 0, 0}, kEdge, true);
     const ScenarioNumbers numbers = numbers_of(scene);
-    ledger.check(row, "opaque_voxels", numbers.opaque_voxels);
-    ledger.check(row, "empty_voxels", kEdge * kEdge * kEdge - numbers.opaque_voxels);
-    ledger.check(row, "runs", numbers.runs);
-    ledger.check(row, "rle_bytes", 12 * std::size_t{numbers.runs});
-    ledger.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
+    check_storage(ledger, row, scene, numbers);
     ledger.check(row, "vertices_culled_isolated", numbers.vertices_culled);
     ledger.check(row, "vertices_merged_isolated", numbers.vertices_grid);
     ledger.check(row, "vertices_rle_mesher", numbers.vertices_rle);
@@ -189,11 +195,7 @@ TEST_CASE("scenario 5 has the thesis' numbers chunk by chunk", "[scenarios][gold
     CAPTURE(at.x, at.y, at.z);
     const MeshScene scene = scenario_scene(*world, at, kEdge, false);
     const ScenarioNumbers numbers = numbers_of(scene);
-    ledger.check(row, "opaque_voxels", numbers.opaque_voxels);
-    ledger.check(row, "empty_voxels", kEdge * kEdge * kEdge - numbers.opaque_voxels);
-    ledger.check(row, "runs", numbers.runs);
-    ledger.check(row, "rle_bytes", 12 * std::size_t{numbers.runs});
-    ledger.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
+    check_storage(ledger, row, scene, numbers);
     ledger.check(row, "vertices_vp", vertices_from_octree(octree, at, kEdge));
     ledger.check(row, "vertices_grid", numbers.vertices_grid);
     ledger.check(row, "vertices_rle", numbers.vertices_rle);

@@ -51,11 +51,7 @@ TEST_CASE("the largest and the flattest extents mesh to the exposed faces", "[me
   for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{128, 128, 8},
                               Extent{8, 127, 128}, Extent{65, 64, 63}}) {
     for (const AxisOrder order : kAxisOrders) {
-      MeshScene scene;
-      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
-      for (auto& neighbour : scene.neighbours) {
-        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
-      }
+      const MeshScene scene = scene_of_extent(rng, extent, order);
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
       REQUIRE(scene_difference(scene, mesh_of(scene)).value_or("") == "");
     }

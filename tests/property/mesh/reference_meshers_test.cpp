@@ -48,11 +48,7 @@ TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh
   for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
                               Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders) {
-      MeshScene scene;
-      scene.chunk = random_chunk(rng, extent, order, kMeshMaterialCount);
-      for (auto& neighbour : scene.neighbours) {
-        neighbour = random_chunk(rng, extent, random_order(rng), kMeshMaterialCount, Shape::boxes);
-      }
+      const MeshScene scene = scene_of_extent(rng, extent, order);
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
       REQUIRE(jury.fault(scene) == "");
     }
