@@ -17,6 +17,7 @@
 #include "client/app/body_marker.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
+#include "common/core/key_text.hpp"
 
 namespace runstone {
 namespace {
@@ -219,7 +220,7 @@ void Client::take_news() {
   const ReplicaNews news = session_.replica().take_news();
   picture_.take(news, session_.clock(), steady_now_us());
   for (const auto& [key, reason] : news.unavailable) {
-    spdlog::warn("chunk={},{},{} unavailable: {}", key.at.x, key.at.y, key.at.z, to_string(reason));
+    spdlog::warn("chunk={} unavailable: {}", text_of(key), to_string(reason));
   }
   for (const RejectNews& reject : news.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
