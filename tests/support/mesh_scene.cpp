@@ -70,6 +70,20 @@ MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order) {
   return scene;
 }
 
+DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material) {
+  const RunChunk before = chunk;
+  fill(chunk, first, count, material);
+  DirtyLayers dirty;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const LocalPos at = pos_of(i, chunk.extent, chunk.order);
+    if (material_at(before, at) == material_at(chunk, at)) continue;
+    dirty.layer[0].set(at.x);
+    dirty.layer[1].set(at.y);
+    dirty.layer[2].set(at.z);
+  }
+  return dirty;
+}
+
 std::vector<UnitFace> expected_faces(const MeshScene& scene) {
   std::array<std::optional<DenseChunk>, kDirectionCount> dense;
   DenseNeighbours around{};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
+#include "common/edits/edit_stack.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/reference/dense_grid.hpp"
@@ -34,6 +35,10 @@ MeshScene random_scene(SplitMix64& rng, unsigned side_max);
 
 /// Seeded scene of one extent: any shapes in the chunk, boxes in all six neighbours, in any axis order.
 MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order);
+
+/// Fills voxels of the flattened chunk, and says in which layers any has another material than before.
+/// Requires first + count <= volume. O(count * log runs).
+DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material);
 
 /// What the oracle says of a scene. Dense.
 std::vector<UnitFace> expected_faces(const MeshScene& scene);

@@ -18,14 +18,19 @@ class MesherJury {
   /// What is wrong with the first wrong mesh of a scene, and whose it is; nothing if all is well. Binary
   /// greedy is left out where a side is above 64.
   std::string fault(const MeshScene& scene);
+  /// The same of those meshers alone that show the exposed faces and no others: culled, grid RDM, binary
+  /// greedy. Several times quicker.
+  std::string fault_of_exposed(const MeshScene& scene);
 
   /// Of the last scene.
+  const std::vector<UnitFace>& exposed() const { return exposed_; }
   std::size_t culled_quads() const { return culled_quads_; }
   const ChunkMesh& binary_mesh() const { return mesh_; }
 
  private:
   std::string fault_of_quads(const char* mesher, const MeshScene& scene,
                              const std::vector<UnitFace>& owed) const;
+  std::string fault_of_supersets(const MeshScene& scene);
 
   reference::DenseGrid grid_;
   std::vector<Material> layer_;
@@ -33,6 +38,7 @@ class MesherJury {
   reference::GridRdmScratch grid_rdm_;
   reference::BinaryScratch binary_;
   ChunkMesh mesh_;
+  std::vector<UnitFace> exposed_;
   std::size_t culled_quads_ = 0;
 };
 

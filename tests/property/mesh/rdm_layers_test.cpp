@@ -1,7 +1,6 @@
 // Remeshing dirty layers against a full mesh: equal quad for quad, in the same order.
 #include <catch2/catch.hpp>
 
-#include "common/edits/edit_stack.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -13,22 +12,12 @@ void require_equal(const QuadLayers& a, const QuadLayers& b) {
   REQUIRE(a.first == b.first);
 }
 
-/// Changes some voxels: one, or a stretch of the flattened chunk. Returns the layers in which any did change.
+/// Changes some voxels: one, or a stretch of the flattened chunk.
 DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   const std::uint32_t first = rng.below(chunk.volume());
   const std::uint32_t longest = std::min(chunk.volume() - first, rng.below(3) == 0 ? 200u : 1u);
   const std::uint32_t count = 1 + rng.below(longest);
-  const RunChunk before = chunk;
-  fill(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
-  DirtyLayers dirty;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const LocalPos at = pos_of(i, chunk.extent, chunk.order);
-    if (material_at(before, at) == material_at(chunk, at)) continue;
-    dirty.layer[0].set(at.x);
-    dirty.layer[1].set(at.y);
-    dirty.layer[2].set(at.z);
-  }
-  return dirty;
+  return fill_and_mark(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
 }
 
 void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
