@@ -71,11 +71,11 @@ Cut cut_region(const VoxelWorld& world, unsigned edge) {
   return out;
 }
 
-void measure_edits_of(Cut& cut, const VisibilityTable& visibility) {
+void measure_edits_of(Cut& cut, const VoxelWorld& world) {
   std::erase_if(cut.volumes, [](const Volume& volume) { return volume.scene.chunk.is_uniform(); });
   const auto per_volume = static_cast<unsigned>(kEdits / (cut.volumes.size() + 1) + 1);
-  const EditTiming edits = measure_edits(cut.volumes, visibility, per_volume, 1);
-  cut.row.edit_ns = edits.both_ns;
+  const EditTiming edits = measure_edits(world, cut.volumes, per_volume, 1);
+  cut.row.edit_ns = edits.all_ns;
   cut.row.edit_full_mesh_ns = edits.full_mesh_ns;
 }
 
@@ -93,7 +93,7 @@ void measure(const VoxelWorld& world, const std::vector<unsigned>& edges, std::v
   }
   for (Cut& cut : cuts) {
     cut.row.mesh_ns = median(cut.passes);
-    measure_edits_of(cut, *world.visibility);
+    measure_edits_of(cut, world);
     out.push_back(cut.row);
   }
 }

@@ -22,7 +22,7 @@ struct ChunkEdgeRow {
   std::size_t memory_bytes = 0;  // runs with their spare capacity and the chunk around them
   std::size_t packed_bytes = 0;  // on the wire
   double mesh_ns = 0;            // all chunks once: median over passes
-  double edit_ns = 0;            // splice and remesh after one voxel: median
+  double edit_ns = 0;            // splice and remesh after one voxel, neighbours included: median
   double edit_full_mesh_ns = 0;  // a full mesh of the edited chunks: median
 };
 

@@ -1,6 +1,7 @@
 // The edit case: a builder removes a voxel that shows, or puts one before it. Timed are the splice of the
-// chunk's runs (apply_stack) and the remeshing of that chunk's dirty layers, next to a full mesh of it, which
-// has to give the same quads. By the monotonic clock: each is too short for the one of the core.
+// chunk's runs (apply_stack), the remeshing of its dirty layers, and then that of each neighbour whose border
+// the voxel lies at. Each remeshed chunk is held to a full mesh of it. By the monotonic clock: each is too
+// short for the one of the core.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,12 +13,18 @@ namespace runstone::bench {
 
 struct EditTiming {
   std::size_t edits = 0;
-  double apply_ns = 0, remesh_ns = 0, both_ns = 0, full_mesh_ns = 0;  // medians
+  std::size_t at_borders = 0;  // of those: a neighbour is meshed as well, up to three
+  // Medians over all edits.
+  double apply_ns = 0, remesh_ns = 0;  // of the chunk
+  double own_ns = 0;                   // both
+  double all_ns = 0;                   // both, and the neighbours
+  double full_mesh_ns = 0;             // of the chunk
+  double border_all_ns = 0;            // as all_ns, over the edits at borders; 0 if there are none
 };
 
 /// Edits each volume that shows anything `per_volume` times, and takes every edit back, which is an edit as
-/// well. Seeded.
-EditTiming measure_edits(const std::vector<Volume>& volumes, const VisibilityTable& visibility,
-                         unsigned per_volume, std::uint64_t seed);
+/// well. Volumes are of `world`; what lies around their neighbours is cut from it. Seeded.
+EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes, unsigned per_volume,
+                         std::uint64_t seed);
 
 }  // namespace runstone::bench

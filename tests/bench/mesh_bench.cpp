@@ -124,7 +124,7 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options, std:
         }
       }
       if (world.name == "luanti" && edge == 32) {
-        edits = measure_edits(world.volumes, *world.visibility, options.repetitions, 1);
+        edits = measure_edits(*worlds->voxels(w), world.volumes, options.repetitions, 1);
       }
       fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge, world.volumes.size(),
                  static_cast<double>(now_ns() - start) * 1e-9);

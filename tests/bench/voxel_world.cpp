@@ -2,6 +2,7 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
@@ -14,7 +15,15 @@ VoxelBox cube_at(VoxelPos origin, std::int32_t side) {
 }
 
 bool knows(const VoxelWorld& world, const VoxelBox& box) {
-  return !world.bounds || intersect(*world.bounds, box) == box;
+  return !world.bounds || !intersect(*world.bounds, box).empty();
+}
+
+/// Lowest coordinates of volumes along one axis.
+std::vector<std::int32_t> places(std::int32_t low, std::int32_t high, std::int32_t side) {
+  std::vector<std::int32_t> out;
+  for (std::int32_t at = low; at + side <= high; at += side) out.push_back(at);
+  if (!out.empty() && out.back() + side < high) out.push_back(high - side);
+  return out;
 }
 
 }  // namespace
@@ -22,10 +31,17 @@ bool knows(const VoxelWorld& world, const VoxelBox& box) {
 RunChunk chunk_of_world(const VoxelWorld& world, VoxelPos origin, unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   RunBuilder builder(Extent::cube(edge), AxisOrder::yxz);
+  const VoxelBox all = cube_at(origin, side);
+  const VoxelBox known = world.bounds ? intersect(*world.bounds, all) : all;
   std::array<Material, kSideMax> column{};
   for (std::int32_t z = 0; z < side; ++z) {
     for (std::int32_t x = 0; x < side; ++x) {
-      world.column({origin.x + x, origin.y, origin.z + z}, std::span(column).first(edge));
+      column.fill(kEmpty);
+      const VoxelPos low = {origin.x + x, known.min.y, origin.z + z};
+      if (known.contains(low)) {
+        const auto height = static_cast<std::size_t>(known.max.y - known.min.y);
+        world.column(low, std::span(column).subspan(static_cast<std::size_t>(low.y - origin.y), height));
+      }
       for (unsigned y = 0; y < edge; ++y) builder.append(1, column[y]);
     }
   }
@@ -48,9 +64,9 @@ Volume cut_volume(const VoxelWorld& world, VoxelPos origin, unsigned edge) {
 std::vector<Volume> volumes_in(const VoxelWorld& world, const VoxelBox& box, unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   std::vector<Volume> out;
-  for (std::int32_t z = box.min.z; z + side <= box.max.z; z += side) {
-    for (std::int32_t y = box.min.y; y + side <= box.max.y; y += side) {
-      for (std::int32_t x = box.min.x; x + side <= box.max.x; x += side) {
+  for (const std::int32_t z : places(box.min.z, box.max.z, side)) {
+    for (const std::int32_t y : places(box.min.y, box.max.y, side)) {
+      for (const std::int32_t x : places(box.min.x, box.max.x, side)) {
         out.push_back(cut_volume(world, {x, y, z}, edge));
       }
     }

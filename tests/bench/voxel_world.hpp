@@ -20,9 +20,10 @@ namespace runstone::bench {
 struct VoxelWorld {
   std::string name;
   std::shared_ptr<const VisibilityTable> visibility;
-  /// What is known of it; a chunk that is not wholly inside is missing. None: everything is.
+  /// What is known of it: voxels outside count as empty, and a chunk without any inside is missing. None:
+  /// everything is.
   std::optional<VoxelBox> bounds;
-  /// Writes the voxels (at.x, at.y + i, at.z).
+  /// Writes the voxels (at.x, at.y + i, at.z). Requires them inside the bounds.
   std::function<void(VoxelPos at, std::span<Material> out)> column;
 };
 
@@ -37,10 +38,12 @@ struct Volume {
 };
 Volume cut_volume(const VoxelWorld& world, VoxelPos origin, unsigned edge);
 
-/// All volumes that fit side by side into a box, from its lowest corner on.
+/// All volumes that fit side by side into a box, from its lowest corner on. Where they do not fill a side of
+/// it, a last one lies flush with the upper corner and overlaps the one before, so that every voxel is in
+/// one. None in a box that is narrower than one.
 std::vector<Volume> volumes_in(const VoxelWorld& world, const VoxelBox& box, unsigned edge);
 
-/// Those of a world's bounds, without the ones of a single material; of an endless world the volume around
+/// Those of a world's bounds, upper margins included, without the ones of a single material; of an endless world the volume around
 /// the origin.
 std::vector<Volume> volumes_of(const VoxelWorld& world, unsigned edge);
 
