@@ -23,6 +23,20 @@ const MaterialTable& mesh_materials() {
   return table;
 }
 
+const MaterialTable& many_materials() {
+  static const MaterialTable table = [] {
+    MaterialTable t;
+    for (unsigned id = 1; id < kManyMaterialCount; ++id) {
+      MaterialInfo info;
+      info.name = "m" + std::to_string(id);
+      if (id >= 150) info.visibility = Visibility::transparent;
+      RUNSTONE_ASSERT(t.add(info).has_value());
+    }
+    return t;
+  }();
+  return table;
+}
+
 const VisibilityTable& mesh_visibility() {
   static const VisibilityTable table(mesh_materials());
   return table;
@@ -84,7 +98,7 @@ DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count
   return dirty;
 }
 
-std::vector<UnitFace> expected_faces(const MeshScene& scene) {
+std::vector<UnitFace> expected_faces(const MeshScene& scene, const MaterialTable& materials) {
   std::array<std::optional<DenseChunk>, kDirectionCount> dense;
   DenseNeighbours around{};
   for (std::size_t d = 0; d < dense.size(); ++d) {
@@ -92,7 +106,7 @@ std::vector<UnitFace> expected_faces(const MeshScene& scene) {
     dense[d] = DenseChunk::of(*scene.neighbours[d]);
     around[d] = &*dense[d];
   }
-  return exposed_faces(DenseChunk::of(scene.chunk), around, mesh_materials());
+  return exposed_faces(DenseChunk::of(scene.chunk), around, materials);
 }
 
 reference::DenseGrid grid_of(const MeshScene& scene) {

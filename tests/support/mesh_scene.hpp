@@ -23,6 +23,10 @@ inline constexpr unsigned kMeshMaterialCount = 6;
 const MaterialTable& mesh_materials();
 const VisibilityTable& mesh_visibility();
 
+/// More materials than fit a byte: ids 1 to 149 are opaque, 150 to 299 transparent.
+inline constexpr unsigned kManyMaterialCount = 300;
+const MaterialTable& many_materials();
+
 struct MeshScene {
   RunChunk chunk;
   std::array<std::optional<RunChunk>, kDirectionCount> neighbours;  // by Direction
@@ -41,7 +45,8 @@ MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order);
 DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material);
 
 /// What the oracle says of a scene. Dense.
-std::vector<UnitFace> expected_faces(const MeshScene& scene);
+std::vector<UnitFace> expected_faces(const MeshScene& scene,
+                                     const MaterialTable& materials = mesh_materials());
 
 /// The scene as the dense meshers get it.
 reference::DenseGrid grid_of(const MeshScene& scene);

@@ -15,9 +15,6 @@
 
 namespace runstone::rdm {
 
-/// Planes that may be asked for: hiding, transparent, and up to 16 bits of a number.
-inline constexpr unsigned kLayerPlanesMax = 18;
-
 /// A layer of a chunk, and which of its two axes runs along the bits of a row.
 struct LayerPlace {
   Axis axis, bit_axis;
@@ -26,16 +23,15 @@ struct LayerPlace {
 
 /// One layer as rows of bits, a plane per bit of the codes that `code_of(material)` gives.
 /// Row b of plane k: bit i says whether bit k of the code of the voxel at (i, b) is set.
-template <class Row, class CodeOf>
+template <unsigned kPlanes, class Row, class CodeOf>
 class LayerReader {
  public:
   using Rows = std::array<Row, kRowBits<Row>>;
 
-  /// Planes 0 .. count - 1 are replaced. Requires count <= kLayerPlanesMax, codes below 2^count and sides up
-  /// to kRowBits<Row>.
-  LayerReader(const RunChunk& chunk, LayerPlace place, Rows* planes, unsigned count, CodeOf code_of)
-      : e_(ordered(chunk.extent, chunk.order)), planes_(planes), count_(count), code_of_(code_of) {
-    for (unsigned k = 0; k < count_; ++k) planes_[k].fill(0);
+  /// All planes are replaced. Requires codes below 2^kPlanes and sides up to kRowBits<Row>.
+  LayerReader(const RunChunk& chunk, LayerPlace place, std::array<Rows, kPlanes>& planes, CodeOf code_of)
+      : e_(ordered(chunk.extent, chunk.order)), planes_(planes), code_of_(code_of) {
+    for (Rows& rows : planes_) rows.fill(0);
     const int rank = rank_of(place.axis, chunk.order);
     chunk.runs.visit([&](const auto& runs) {
       if (rank == 2) {
@@ -47,17 +43,17 @@ class LayerReader {
       }
     });
     if (rank_of(place.bit_axis, chunk.order) == (rank == 0 ? 1 : 0)) return;
-    for (unsigned k = 0; k < count_; ++k) transpose(planes_[k]);
+    for (Rows& rows : planes_) transpose(rows);
   }
 
  private:
   void mark(std::uint32_t row, unsigned bit, Code change) {
-    for (unsigned k = 0; k < count_; ++k) planes_[k][row] ^= Row{change >> k & 1} << bit;
+    for (unsigned k = 0; k < kPlanes; ++k) planes_[k][row] ^= Row{change >> k & 1} << bit;
   }
   /// Marks of change become bits: along each row, and on into the next if `carried`.
   void fill(std::uint32_t rows, std::uint32_t bits) {
     const Row valid = bits_below<Row>(bits);
-    for (unsigned k = 0; k < count_; ++k) {
+    for (unsigned k = 0; k < kPlanes; ++k) {
       Row carry = 0;
       for (std::uint32_t r = 0; r < rows; ++r) {
         const Row row = prefix_xor(planes_[k][r]) ^ carry;
@@ -112,23 +108,23 @@ class LayerReader {
   void read_fast(const Runs& runs, std::uint32_t at) {
     // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
     using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
-    std::array<Marks, kLayerPlanesMax> marks;
-    for (unsigned k = 0; k < count_; ++k) std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
+    std::array<Marks, kPlanes> marks;
+    for (unsigned k = 0; k < kPlanes; ++k) std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
     const Divider line_of(e_.f);
     const std::uint32_t ahead = e_.f - 1 - at;
     const CodeOf code_of = code_of_;
     const std::size_t last = runs.size() - 1;
     Code code = code_of(runs.material(0));
-    for (unsigned k = 0; k < count_; ++k) marks[k][0] = code >> k & 1;
+    for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = code >> k & 1;
     for (std::size_t i = 0; i < last; ++i) {
       const Code next = code_of(runs.material(i + 1));
       if (next == code) continue;  // most runs of a world lie between two materials that hide alike
       const std::uint32_t line = line_of(runs.end(i) + ahead);
       const Code change = code ^ next;
       code = next;
-      for (unsigned k = 0; k < count_; ++k) marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
+      for (unsigned k = 0; k < kPlanes; ++k) marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
     }
-    for (unsigned k = 0; k < count_; ++k) cut_rows(marks[k].data(), planes_[k]);
+    for (unsigned k = 0; k < kPlanes; ++k) cut_rows(marks[k].data(), planes_[k]);
   }
   /// Turns marks of change, a bit a line, into rows of e_.m bits.
   void cut_rows(Row64* marks, Rows& rows) const {
@@ -151,9 +147,27 @@ class LayerReader {
   }
 
   const OrderedExtent e_;
-  Rows* const planes_;
-  const unsigned count_;
+  std::array<Rows, kPlanes>& planes_;
   CodeOf code_of_;
 };
+
+/// Reads a layer with LayerReader; of a chunk of one material, the same without looking at it.
+template <std::size_t kPlanes, class Row, std::size_t kRows, class CodeOf>
+void read_layer_rows(const RunChunk& chunk, LayerPlace place,
+                     std::array<std::array<Row, kRows>, kPlanes>& planes, CodeOf code_of) {
+  if (!chunk.is_uniform()) {
+    LayerReader<kPlanes, Row, CodeOf>(chunk, place, planes, code_of);
+    return;
+  }
+  const auto side_of = [&chunk](Axis axis) { return chunk.extent.sides()[static_cast<std::size_t>(axis)]; };
+  const Axis row_axis =
+      static_cast<Axis>(3 - static_cast<int>(place.axis) - static_cast<int>(place.bit_axis));
+  const Code code = code_of(chunk.runs.material(0));
+  const Row row = bits_below<Row>(side_of(place.bit_axis));
+  for (unsigned k = 0; k < kPlanes; ++k) {
+    planes[k].fill(0);
+    std::fill_n(planes[k].begin(), side_of(row_axis), (code >> k & 1) != 0 ? row : Row{0});
+  }
+}
 
 }  // namespace runstone::rdm

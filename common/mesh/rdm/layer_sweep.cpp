@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "common/core/assert.hpp"
-#include "common/mesh/rdm/divider.hpp"
 #include "common/mesh/rdm/row_strips.hpp"
 
 // The rest of this file is compiled once per instruction set; Highway picks one at run time.
@@ -15,96 +13,22 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
+#include "common/mesh/rdm/code_lanes-inl.hpp"
+#include "common/mesh/rdm/row_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-/// One row a step: the plain path, and rows wider than a vector's lane.
-template <class R>
-struct OneRow {
-  using Row = R;
-  using V = R;
-  static constexpr unsigned kLanes = 1;
-  static V load(const Row* p) { return *p; }
-  static void store(V v, Row* p) { *p = v; }
-  static V all(Row row) { return row; }
-  static V both(V a, V b) { return a & b; }
-  static V either(V a, V b) { return a | b; }
-  static V differing(V a, V b) { return a ^ b; }
-  static V without(V a, V b) { return a & ~b; }
-  static V sum(V a, V b) { return a + b; }
-  template <int kBits>
-  static V up(V a) {
-    return a << kBits;
-  }
-  static V down(V a) { return a >> 1; }
-  /// Bit i: lane i is not zero.
-  static std::uint64_t any(V a) { return a != 0 ? 1 : 0; }
-  /// Bit i: the highest bit of lane i.
-  static std::uint64_t tops(V a) { return static_cast<std::uint64_t>(a >> (kRowBits<Row> - 1)); }
-  /// `row` in the lanes whose bit is set.
-  static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
-  /// Flips `bit` in those of eight rows whose bit in `which` is set.
-  static void flip(Row* eight, unsigned which, Row bit) {
-    for (unsigned k = 0; k < 8; ++k) eight[k] ^= (which >> k & 1) != 0 ? bit : 0;
-  }
-};
-
-#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
-/// As many rows a step as a vector holds.
-struct VectorRows {
-  using Row = Row64;
-  using D = hn::CappedTag<Row64, 8>;
-  using V = hn::Vec<D>;
-  static constexpr unsigned kLanes = hn::MaxLanes(D());
-  static HWY_INLINE V load(const Row* p) { return hn::LoadU(D(), p); }
-  static HWY_INLINE void store(V v, Row* p) { hn::StoreU(v, D(), p); }
-  static HWY_INLINE V all(Row row) { return hn::Set(D(), row); }
-  static HWY_INLINE V both(V a, V b) { return hn::And(a, b); }
-  static HWY_INLINE V either(V a, V b) { return hn::Or(a, b); }
-  static HWY_INLINE V differing(V a, V b) { return hn::Xor(a, b); }
-  static HWY_INLINE V without(V a, V b) { return hn::AndNot(b, a); }
-  static HWY_INLINE V sum(V a, V b) { return hn::Add(a, b); }
-  template <int kBits>
-  static HWY_INLINE V up(V a) {
-    return hn::ShiftLeft<kBits>(a);
-  }
-  static HWY_INLINE V down(V a) { return hn::ShiftRight<1>(a); }
-  static HWY_INLINE std::uint64_t bits_of(hn::Mask<D> mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(D(), mask, bytes);
-    return bytes[0];
-  }
-  static HWY_INLINE std::uint64_t any(V a) { return bits_of(hn::Ne(a, hn::Zero(D()))); }
-  static HWY_INLINE std::uint64_t tops(V a) {
-    const hn::RebindToSigned<D> d;
-    return bits_of(hn::RebindMask(D(), hn::Lt(hn::BitCast(d, a), hn::Zero(d))));
-  }
-  static HWY_INLINE V where(std::uint64_t lanes, Row row) {
-    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
-    return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
-  }
-  static HWY_INLINE void flip(Row* eight, unsigned which, Row bit) {
-    for (unsigned k = 0; k < 8; k += kLanes) {
-      store(differing(load(eight + k), where(which >> k, bit)), eight + k);
-    }
-  }
-};
-#else
-using VectorRows = OneRow<Row64>;
-#endif
-
-/// One call of sweep_layers(). kNumbered: the chunk has more than one material, so faces are cut where it
-/// changes, and planes beyond the first exist.
-template <class Lanes, bool kNumbered>
+/// One call of sweep_layers(). C: the form of its codes. kNumbered: the chunk has more than one material, so
+/// faces are cut where it changes.
+template <class Lanes, class CodeLanes, class C, bool kNumbered>
 class Sweep {
   using Row = typename Lanes::Row;
   using V = typename Lanes::V;
   using Rows = LayerRows<Row>;
   static constexpr unsigned kLanes = Lanes::kLanes;
-  static constexpr std::size_t kStride = sizeof(Rows) / sizeof(Row);  // from a plane to the next
+  static_assert(CodeLanes::template kBehind<C> <= LayerCodes<Row, C>::kRoom);
 
  public:
   Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
@@ -112,10 +36,8 @@ class Sweep {
         borders_(borders),
         st_(state),
         e_(input.extent),
-        line_of_(input.extent.f),
-        number_bits_(kNumbered ? input.codes->number_bits() : 0),
+        codes_(codes_of(state)),
         mixed_(kNumbered && input.codes->has_transparent()),
-        planes_(1 + number_bits_ + (mixed_ ? 1 : 0)),
         valid_(bits_below<Row>(input.extent.f)),
         last_(Row{1} << (input.extent.f - 1)) {}
 
@@ -136,7 +58,16 @@ class Sweep {
  private:
   const CodedRun* runs() const { return in_.runs.data(); }
   static constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
-  Row* plane(unsigned ring, unsigned k) { return st_.plane[ring][k].data(); }
+  static auto& codes_of(SweepState<Row>& state) {
+    if constexpr (sizeof(C) == 1) {
+      return state.byte_codes;
+    } else {
+      if (!state.whole_codes)
+        state.whole_codes = std::make_unique<typename SweepState<Row>::template Codes<C>>();
+      return *state.whole_codes;
+    }
+  }
+  C* codes(unsigned ring) { return codes_[ring].data(); }
 
   /// A set of rows in which something happens: a bit each.
   using RowSet = Row;
@@ -158,7 +89,6 @@ class Sweep {
       clear(st_.face[side][there_]);
       clear(st_.face[side][here_]);
     }
-    for (unsigned k = 0; k < planes_; ++k) clear(st_.plane[there_][k]);
     if constexpr (kNumbered) {
       clear(st_.cut_fast[there_]);
       clear(st_.cut_mid[there_]);
@@ -174,165 +104,100 @@ class Sweep {
     if (run_begin + e_.layer() > begin || run.end < begin + e_.layer()) return false;
     if (run.code == 0) return true;
     for (unsigned side = at(Side::mid_neg); side <= at(Side::fast_pos); ++side) {
-      if (borders_.plane[side][0][s] != borders_.plane[side][0][s - 1]) return false;
-      if (borders_.clear[side] && (run.code & kTransparentBit) != 0) return false;
+      if (borders_.hiding[side][s] != borders_.hiding[side][s - 1]) return false;
+      if (borders_.meets[side] && (run.code & kTransparentBit) != 0) return false;
     }
     return true;
   }
 
-  /// Makes the planes of layer s from the runs that lie in it.
+  /// Makes the codes and the rows of layer s from the runs that lie in it.
   void build(std::uint32_t s) {
-    const std::uint32_t begin = s * e_.layer();
-    const std::uint32_t end = begin + e_.layer();
-    const Code first = runs()[run_].code;
-    for (unsigned k = 0; k < planes_; ++k) std::fill_n(plane(here_, k), e_.m, Row{0});
-    if (runs()[run_].end < end) {
-      switch (planes_) {
-        case 1:
-          mark_changes<1>(begin, end);
-          break;
-        case 2:
-          mark_changes<2>(begin, end);
-          break;
-        case 3:
-          mark_changes<3>(begin, end);
-          break;
-        default:
-          planes_ <= 8 ? mark_eight(begin, end) : mark_changes<kPlanesMax>(begin, end);
-          break;
-      }
-    }
-    for (unsigned k = 0; k < planes_; ++k) fill_plane(plane(here_, k), (first >> code_bit(k) & 1) != 0);
-    join_planes();
-    hide_middle(s);
-    if constexpr (kNumbered) find_cuts(s);
-  }
-
-  /// The bit of a code that plane k holds.
-  unsigned code_bit(unsigned k) const {
-    return mixed_ && k + 1 == planes_ ? static_cast<unsigned>(std::countr_zero(kTransparentBit)) : k;
-  }
-
-  /// Sets a bit in each plane where the material's bit changes; the first change of the layer is not one.
-  template <unsigned kPlanes>
-  void mark_changes(std::uint32_t begin, std::uint32_t end) {
-    const CodedRun* run = runs() + run_;
-    Row* const rows = plane(here_, 0);
-    const unsigned planes = kPlanes == kPlanesMax ? planes_ : kPlanes;
-    const unsigned top_bit = code_bit(planes - 1);
-    for (; run->end < end; ++run) {
-      const std::uint32_t at = run->end - begin;
-      const std::uint32_t line = line_of_(at);
-      const unsigned bit = at - line * e_.f;
-      const Code change = run[0].code ^ run[1].code;
-      Row* row = rows + line;
-      for (unsigned k = 0; k + 1 < planes; ++k, row += kStride) *row ^= Row{change >> k & 1} << bit;
-      *row ^= Row{change >> top_bit & 1} << bit;
-    }
-    run_ = static_cast<std::size_t>(run - runs());
-  }
-
-  /// The same for up to eight planes, all of them in one step a run.
-  void mark_eight(std::uint32_t begin, std::uint32_t end) {
-    const std::uint32_t count = e_.m;
-    const unsigned planes = planes_;
-    auto* const marks = st_.marks.data();
-    std::fill_n(marks[0].data(), std::size_t{count} * 8, Row{0});
-    const Code low = mixed_ ? (Code{1} << (planes - 1)) - 1 : 0xff;
-    const unsigned top = code_bit(planes - 1) - (planes - 1);
-    const CodedRun* run = runs() + run_;
-    for (; run->end < end; ++run) {
-      const std::uint32_t at = run->end - begin;
-      const std::uint32_t line = line_of_(at);
-      const Code change = run[0].code ^ run[1].code;
-      Lanes::flip(marks[line].data(), (change & low) | (change & ~low) >> top, Row{1} << (at - line * e_.f));
-    }
-    run_ = static_cast<std::size_t>(run - runs());
-    Row* const rows = plane(here_, 0);
-    for (unsigned k = 0; k < planes; ++k) {
-      for (std::uint32_t m = 0; m < count; ++m) rows[k * kStride + m] = marks[m][k];
-    }
-  }
-
-  /// Turns marks of change into the bits themselves, from the first voxel's on.
-  void fill_plane(Row* rows, bool first) {
-    const std::uint32_t count = e_.m;
-    RowSet tops = 0;
-    for (std::uint32_t m = 0; m < count; m += kLanes) {
-      V v = Lanes::load(rows + m);
-      v = Lanes::differing(v, Lanes::template up<1>(v));
-      v = Lanes::differing(v, Lanes::template up<2>(v));
-      v = Lanes::differing(v, Lanes::template up<4>(v));
-      v = Lanes::differing(v, Lanes::template up<8>(v));
-      v = Lanes::differing(v, Lanes::template up<16>(v));
-      v = Lanes::differing(v, Lanes::template up<32>(v));
-      if constexpr (kRowBits<Row> == 128) v = Lanes::differing(v, Lanes::template up<64>(v));
-      Lanes::store(v, rows + m);
-      add_rows(tops, Lanes::tops(v), m);
-    }
-    // Bit m: whether row m starts with ones.
-    const Row starts = prefix_xor(tops) << 1 ^ (first ? ~Row{0} : Row{0});
-    const V valid = Lanes::all(valid_);
-    for (std::uint32_t m = 0; m < count; m += kLanes) {
-      const V flip = Lanes::where(static_cast<std::uint64_t>(starts >> m), ~Row{0});
-      Lanes::store(Lanes::both(Lanes::differing(Lanes::load(rows + m), flip), valid), rows + m);
-    }
-  }
-
-  void join_planes() {
-    const Row* const opaque = plane(here_, 0);
+    decode(s);
+    const C* line = codes(here_);
+    const C* line_there = codes(there_);
     Row* const solid = st_.solid[here_].data();
     Row* const hiding = st_.hiding[here_].data();
-    if (mixed_) {
-      const Row* const clear = plane(here_, planes_ - 1);
-      for_rows([&](std::uint32_t m) {
-        const V v = Lanes::load(opaque + m);
-        Lanes::store(v, hiding + m);
-        Lanes::store(Lanes::either(v, Lanes::load(clear + m)), solid + m);
-      });
-    } else {
-      for_rows([&](std::uint32_t m) {
-        const V v = Lanes::load(opaque + m);
-        Lanes::store(v, hiding + m);
-        Lanes::store(v, solid + m);
-      });
+    Row* const transparent = st_.transparent.data();
+    Row* const fast = st_.cut_fast[here_].data();
+    Row* const mid = st_.cut_mid[here_].data();
+    Row* const slow = st_.cut_slow.data();
+    const std::uint32_t count = e_.m;
+    for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_there += e_.f) {
+      const Row own = CodeLanes::template solid<Row>(line) & valid_;
+      solid[m] = own;
+      hiding[m] = own;
+      if constexpr (kNumbered) {
+        if (mixed_) {
+          transparent[m] = CodeLanes::template transparent<Row>(line) & valid_;
+          hiding[m] = own & ~transparent[m];
+        }
+        fast[m] = CodeLanes::template differing<Row>(line, line - 1) | 1;
+        mid[m] = CodeLanes::template differing<Row>(line, line - e_.f);
+        slow[m] = CodeLanes::template differing<Row>(line, line_there);
+      }
     }
-    std::fill_n(solid + e_.m, Rows::kBehind, Row{0});
+    std::fill_n(solid + count, Rows::kBehind, Row{0});
+    if constexpr (kNumbered) {
+      mid[0] = mid[count] = ~Row{0};
+      if (s == 0) std::fill_n(slow, count, ~Row{0});
+    }
+    hide_middle(s);
   }
 
-  /// Bits where our transparent voxels meet their own kind beyond a border. `ours(k)`: our bits of plane k.
-  template <class Ours>
-  Row same_beyond(Side side, std::uint32_t row, Ours&& ours) const {
-    const auto& theirs = borders_.plane[at(side)];
-    const unsigned bits = in_.codes->clear_bits();
-    Row same = theirs[1 + bits][row];
-    if (same == 0) return 0;
-    same &= ours(planes_ - 1);
-    for (unsigned k = 1; k <= bits && same != 0; ++k) same &= ~(theirs[k][row] ^ ours(k));
+  /// Writes the codes of layer s, and some behind them.
+  void decode(std::uint32_t s) {
+    const std::uint32_t begin = s * e_.layer();
+    const std::uint32_t end = begin + e_.layer();
+    C* const first = codes(here_);
+    C* to = first;
+    const CodedRun* run = runs() + run_;
+    for (; run->end < end; ++run) {
+      C* const stop = first + (run->end - begin);
+      CodeLanes::fill(to, stop, code_as<C>(run->code));
+      to = stop;
+    }
+    CodeLanes::fill(to, first + e_.layer(), code_as<C>(run->code));
+    run_ = static_cast<std::size_t>(run - runs());
+  }
+
+  /// Where transparent voxels of ours meet their own kind beyond a border: `ours` are the transparent ones of
+  /// a row, and `code_at(bit)` their codes.
+  template <class CodeAt>
+  Row same_beyond(Side side, std::uint32_t row, std::uint32_t bits, Row ours, CodeAt&& code_at) const {
+    Row same = ours & borders_.transparent[at(side)][row];
+    if (const auto& theirs = borders_.codes[at(side)]; !theirs.empty()) {
+      for (Row left = same; left != 0; left &= left - 1) {
+        const unsigned bit = lowest_bit(left);
+        if (whole_code(code_at(bit)) != theirs[std::size_t{row} * bits + bit]) same ^= Row{1} << bit;
+      }
+    }
     return same;
+  }
+  /// The same for a line of ours.
+  Row same_beyond_line(Side side, std::uint32_t row, const C* line) const {
+    const Row ours = CodeLanes::template transparent<Row>(line) & valid_;
+    return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });
   }
 
   /// Puts what lies beyond a slow side into the hiding rows of `ring`, as if it were a layer; `ours` is the
   /// ring of our layer there.
   void hide_slow(Side side, unsigned ring, [[maybe_unused]] unsigned ours) {
     Row* const hiding = st_.hiding[ring].data();
-    std::copy_n(borders_.plane[at(side)][0].data(), e_.m, hiding);
+    std::copy_n(borders_.hiding[at(side)].data(), e_.m, hiding);
     if constexpr (kNumbered) {
-      if (!borders_.clear[at(side)]) return;
-      for (std::uint32_t m = 0; m < e_.m; ++m) {
-        hiding[m] |= same_beyond(side, m, [&](unsigned k) { return plane(ours, k)[m]; });
-      }
+      if (!borders_.meets[at(side)]) return;
+      const C* line = codes(ours);
+      for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f) hiding[m] |= same_beyond_line(side, m, line);
     }
   }
 
   void hide_middle(std::uint32_t s) {
     for (const Side side : {Side::mid_neg, Side::mid_pos}) {
       const bool negative = side == Side::mid_neg;
-      const std::uint32_t own = negative ? 0 : e_.m - 1;
-      Row hide = borders_.plane[at(side)][0][s];
+      Row hide = borders_.hiding[at(side)][s];
       if constexpr (kNumbered) {
-        if (borders_.clear[at(side)]) {
-          hide |= same_beyond(side, s, [&](unsigned k) { return plane(here_, k)[own]; });
+        if (borders_.meets[at(side)]) {
+          hide |= same_beyond_line(side, s, codes(here_) + (negative ? 0 : (e_.m - 1) * e_.f));
         }
       }
       *(st_.hiding[here_].data() + (negative ? -1 : static_cast<std::ptrdiff_t>(e_.m))) = hide;
@@ -341,45 +206,20 @@ class Sweep {
 
   /// What hides the faces of a fast side in layer s: bit m is line m.
   Row hide_fast(Side side, std::uint32_t s) {
-    Row hide = borders_.plane[at(side)][0][s];
+    Row hide = borders_.hiding[at(side)][s];
     if constexpr (kNumbered) {
-      if (borders_.clear[at(side)]) {
+      if (borders_.meets[at(side)]) {
         const V bit = Lanes::all(side == Side::fast_neg ? Row{1} : last_);
-        hide |= same_beyond(side, s, [&](unsigned k) {
-          Row column = 0;
-          for_rows([&](std::uint32_t m) {
-            add_rows(column, Lanes::any(Lanes::both(Lanes::load(plane(here_, k) + m), bit)), m);
-          });
-          return column;
+        Row ours = 0;
+        for_rows([&](std::uint32_t m) {
+          add_rows(ours, Lanes::any(Lanes::both(Lanes::load(st_.transparent.data() + m), bit)), m);
         });
+        const C* const column = codes(here_) + (side == Side::fast_neg ? 0 : e_.f - 1);
+        hide |= same_beyond(side, s, e_.m, ours & bits_below<Row>(e_.m),
+                            [column, f = e_.f](unsigned m) { return column[m * f]; });
       }
     }
     return hide;
-  }
-
-  /// Where the material differs from the voxel before, along each axis; at the borders always.
-  void find_cuts(std::uint32_t s) {
-    Row* const fast = st_.cut_fast[here_].data();
-    Row* const mid = st_.cut_mid[here_].data();
-    Row* const slow = st_.cut_slow.data();
-    const Row* const here = plane(here_, 0);
-    const Row* const there = plane(there_, 0);
-    for_rows([&](std::uint32_t m) {
-      V f = Lanes::all(Row{1});
-      V mm = Lanes::all(Row{0});
-      V ss = mm;
-      for (unsigned k = 0; k < planes_; ++k) {
-        const V v = Lanes::load(here + k * kStride + m);
-        f = Lanes::either(f, Lanes::differing(v, Lanes::template up<1>(v)));
-        mm = Lanes::either(mm, Lanes::differing(v, Lanes::load(here + k * kStride + m - 1)));
-        ss = Lanes::either(ss, Lanes::differing(v, Lanes::load(there + k * kStride + m)));
-      }
-      Lanes::store(f, fast + m);
-      Lanes::store(mm, mid + m);
-      Lanes::store(ss, slow + m);
-    });
-    mid[0] = mid[e_.m] = ~Row{0};
-    if (s == 0) std::fill_n(slow, e_.m, ~Row{0});
   }
 
   /// Finds the faces of layer s across the middle and the fastest axis, and those between it and the layer
@@ -491,9 +331,9 @@ class Sweep {
     QuadShape shape;
     QuadBuckets::Bucket* opaque;
     QuadBuckets::Bucket* transparent;
-    const Row* planes;  // of the layer that holds the strips' voxels: plane k at k * kStride
-    std::array<const Material*, 2> materials;  // opaque and transparent, by number
-    unsigned number_bits;
+    const C* layer;  // the codes of the strips' voxels
+    std::uint32_t line_size;
+    const MaterialCodes* codes;
     bool mixed;
     Material single;  // the material, if there is but one
   };
@@ -503,11 +343,11 @@ class Sweep {
     return {in_.shape[at(side)],
             (clear ? in_.transparent : in_.opaque)->of(direction),
             in_.transparent->of(direction),
-            plane(ring, 0),
-            {in_.codes->materials(false), in_.codes->materials(true)},
-            number_bits_,
+            codes(ring),
+            e_.f,
+            in_.codes,
             mixed_,
-            kNumbered ? kEmpty : in_.codes->material(clear, 0)};
+            kNumbered ? kEmpty : in_.codes->single()};
   }
 
   /// Says in an open quad that it is for the transparent pass; zero in a closed one.
@@ -519,16 +359,9 @@ class Sweep {
     if constexpr (!kNumbered) {
       return out.shape.open(strip, out.single);
     } else {
-      const Row* const row = out.planes + line;
-      // From the highest bit down: a recurrence, which compilers do not turn into gathers (3 bits are usual).
-      std::size_t number = 0;
-      const Row* plane = row + out.number_bits * kStride;
-      for (unsigned k = 0; k < out.number_bits; ++k, plane -= kStride) {
-        number = number * 2 + static_cast<std::size_t>(*plane >> bit & 1);
-      }
-      const bool transparent = out.mixed && (row[(1 + out.number_bits) * kStride] >> bit & 1) != 0;
-      Quad quad = out.shape.open(strip, out.materials[transparent ? 1 : 0][number]);
-      if (transparent) quad.bits ^= kTransparentQuad;
+      const C code = out.layer[line * out.line_size + bit];
+      Quad quad = out.shape.open(strip, out.codes->material(code));
+      if (out.mixed && whole_code(code) >= kTransparentBit) quad.bits ^= kTransparentQuad;
       return quad;
     }
   }
@@ -825,33 +658,33 @@ class Sweep {
   const Borders<Row>& borders_;
   SweepState<Row>& st_;
   const OrderedExtent e_;
-  const Divider line_of_;
-  const unsigned number_bits_;
+  typename SweepState<Row>::template Codes<C>& codes_;
   const bool mixed_;
-  const unsigned planes_;
   const Row valid_, last_;
   std::size_t run_ = 0;
   unsigned here_ = 0, there_ = 1;  // rings of the layer at hand and the one before it
 };
 
-template <class Lanes>
+template <class Lanes, class CodeLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
            SweepState<typename Lanes::Row>& state) {
-  if (input.codes->solid_count() > 1) {
-    Sweep<Lanes, true>(input, borders, state).run();
+  if (input.codes->solid_count() == 1) {
+    Sweep<Lanes, CodeLanes, ByteCode, false>(input, borders, state).run();
+  } else if (input.codes->fit_bytes()) {
+    Sweep<Lanes, CodeLanes, ByteCode, true>(input, borders, state).run();
   } else {
-    Sweep<Lanes, false>(input, borders, state).run();
+    Sweep<Lanes, CodeLanes, Code, true>(input, borders, state).run();
   }
 }
 
 void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<VectorRows>(input, borders, state);
+  sweep<VectorRows, VectorCodes>(input, borders, state);
 }
 void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
-  sweep<OneRow<Row128>>(input, borders, state);
+  sweep<OneRow<Row128>, VectorCodes>(input, borders, state);
 }
 void sweep_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<OneRow<Row64>>(input, borders, state);
+  sweep<OneRow<Row64>, PlainCodes>(input, borders, state);
 }
 
 }  // namespace HWY_NAMESPACE

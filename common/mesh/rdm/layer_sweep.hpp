@@ -1,10 +1,12 @@
 // The layer sweep: meshes a chunk in one pass over the layers of its slowest axis. Only two layers are ever
-// there as rows of bits (one row per line, one bit per voxel, one plane per bit of a material's code), made
-// from the runs that lie in them. Internal to rdm; docs/meshing.md draws it.
+// there, as codes made from the runs that lie in them, and as rows of bits (one row per line, one bit per
+// voxel). Internal to rdm; docs/meshing.md draws it.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "common/mesh/rdm/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
@@ -20,9 +22,6 @@ struct CodedRun {
   Code code = 0;
 };
 
-/// Bits of a code: one for opaque, one for transparent, up to 16 for the number.
-inline constexpr unsigned kPlanesMax = 18;
-
 /// A side of the chunk by the rank of its axis: slow, middle, fast; negative before positive.
 enum class Side : std::uint8_t {
   slow_neg = 0,
@@ -33,15 +32,20 @@ enum class Side : std::uint8_t {
   fast_pos = 5
 };
 
-/// What lies beyond the chunk, by Side, as rows of bits: the planes of MaterialCodes::border_code(). Those
-/// beyond plane 0 are there only where a transparent voxel may meet its own kind.
+/// What lies beyond the chunk, by Side, as rows of bits.
 /// Rows and bits: slow sides a row per middle coordinate and a bit per fast one; middle sides slow, fast;
 /// fast sides slow, middle.
 template <class Row>
 struct Borders {
   using Rows = std::array<Row, kRowBits<Row>>;
-  std::array<std::array<Rows, kPlanesMax>, 6> plane;
-  std::array<bool, 6> clear{};  // whether a transparent material of the chunk lies there
+  /// Voxels that hide any face of the chunk; for a chunk of one transparent material, those of it as well.
+  std::array<Rows, 6> hiding;
+  /// Voxels of a transparent material that the chunk has, too. Not set where `meets` is false.
+  std::array<Rows, 6> transparent;
+  /// Whether a side has such voxels; never in a chunk of one material.
+  std::array<bool, 6> meets{};
+  /// Their codes, a row behind the other; only if the chunk has more than one transparent material.
+  std::array<std::vector<Code>, 6> codes;
 };
 
 /// Rows of one layer, with room before and behind for steps of whole vectors.
@@ -54,15 +58,25 @@ struct alignas(64) LayerRows {
   const Row* data() const { return slots.data() + kBefore; }
 };
 
+/// The codes of one layer, line behind line, with room before and behind for whole rows and vectors.
+template <class Row, class C>
+struct LayerCodes {
+  static constexpr std::size_t kRoom = 128;
+  alignas(64) std::array<C, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
+  C* data() { return slots.data() + kRoom; }
+};
+
 template <class Row>
 struct SweepState {
   using Rows = LayerRows<Row>;
+  template <class C>
+  using Codes = std::array<LayerCodes<Row, C>, 2>;
   // Two layers each, the one at hand and the one before it.
-  std::array<std::array<Rows, kPlanesMax>, 2> plane;
-  /// Marks of change while a layer is made, by line: eight planes side by side.
-  alignas(64) std::array<std::array<Row, 8>, kRowBits<Row> + 1> marks;
-  std::array<Rows, 2> solid;   // voxels with faces
+  Codes<ByteCode> byte_codes;
+  std::unique_ptr<Codes<Code>> whole_codes;  // made for the first chunk whose codes do not fit bytes
+  std::array<Rows, 2> solid;                 // voxels with faces
   std::array<Rows, 2> hiding;  // voxels that hide a face, with the middle neighbours' in the slots around
+  Rows transparent;            // of the layer at hand
   std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
   Rows cut_slow;
   std::array<std::array<Rows, 2>, 6> face;  // voxels whose face shows, by side

@@ -1,14 +1,13 @@
-// MaterialCodes: the materials of one chunk as short bit strings, so that rows of bits can be compared
-// instead of materials. Numbers are given in the order in which materials come: opaque and transparent ones
-// count apart, and all empty ones are 0.
-//   bit 0         opaque
-//   bits 1 ..     number within the class
-//   bit kClear    transparent
+// MaterialCodes: the materials of one chunk as small numbers, so that a layer of them is a few cache lines and
+// 64 voxels can be compared at once. Numbers are given in the order in which materials come: opaque and
+// transparent ones count apart, and all empty ones are 0.
+//   opaque        1, 2, ...
+//   transparent   kTransparentBit + 0, 1, ...
+// A chunk with few materials has its codes in a byte, kTransparentBit becoming the highest bit of it.
 #pragma once
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <memory>
+#include <limits>
 #include <vector>
 
 #include "common/mesh/visibility.hpp"
@@ -16,70 +15,76 @@
 namespace runstone::rdm {
 
 using Code = std::uint32_t;
-inline constexpr Code kOpaqueBit = 1;
-inline constexpr Code kTransparentBit = Code{1} << 20;
+using ByteCode = std::uint8_t;
+inline constexpr Code kTransparentBit = Code{1} << 31;
+
+/// A code in the form C. ByteCode requires MaterialCodes::fit_bytes().
+template <class C>
+constexpr C code_as(Code code) {
+  return static_cast<C>(sizeof(C) == 1 ? code | code >> 24 : code);
+}
+/// What code_as() was given.
+constexpr Code whole_code(Code code) { return code; }
+constexpr Code whole_code(ByteCode code) { return (code & 0x7fu) | Code{code} >> 7 << 31; }
 
 class MaterialCodes {
  public:
-  MaterialCodes() : of_(kMaterialCountMax, 0) {}
+  MaterialCodes() : of_(kMaterialCountMax, kUnseen) {}
 
   /// Forgets all numbers. O(materials seen).
   void clear() {
-    for (const Material material : seen_) of_[material] = 0;
+    for (const Material material : seen_) of_[material] = kUnseen;
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
   /// The code of a material of the chunk, given when it is first seen. O(1).
   Code number(Material material, const VisibilityTable& visibility) {
     const Code code = of_[material];
-    return code != 0 ? code & ~kSeen : enter(material, visibility[material]);
+    return code != kUnseen ? code : enter(material, visibility[material]);
   }
-  /// What a material beyond the border means for faces of the chunk: bit 0 says that it hides any; a
-  /// transparent material of the chunk has its number from bit 1 on, and bit 1 + clear_bits() set.
-  Code border_code(Material material, const VisibilityTable& visibility) const {
+  /// The code of a material if it is a transparent one of the chunk, else 0.
+  Code transparent_code(Material material) const {
     const Code code = of_[material];
-    if ((code & kTransparentBit) != 0) return (code & (kTransparentBit - 2)) | Code{2} << clear_bits();
-    return visibility[material] == Visibility::opaque ? 1 : 0;
+    return code != kUnseen && (code & kTransparentBit) != 0 ? code : 0;
   }
 
-  bool has_transparent() const { return !of_class_[1].empty(); }
+  std::size_t transparent_count() const { return of_class_[1].size(); }
+  bool has_transparent() const { return transparent_count() != 0; }
   /// Materials that are not empty.
   std::size_t solid_count() const { return of_class_[0].size() + of_class_[1].size(); }
-  /// Bits that tell the numbers of a class apart.
-  unsigned number_bits() const {
-    std::size_t last = 0;
-    for (const auto& numbered : of_class_) last |= numbered.empty() ? 0 : numbered.size() - 1;
-    return static_cast<unsigned>(std::bit_width(last));
-  }
-  /// Those of a class, by number.
-  const Material* materials(bool transparent) const { return of_class_[transparent ? 1 : 0].data(); }
-  /// Bits that tell the transparent ones apart.
-  unsigned clear_bits() const {
-    return of_class_[1].empty() ? 0 : static_cast<unsigned>(std::bit_width(of_class_[1].size() - 1));
-  }
-  Material material(bool transparent, std::size_t number) const {
-    return of_class_[transparent ? 1 : 0][number];
+  /// The material, if there is but one that is not empty.
+  Material single() const { return of_class_[has_transparent() ? 1 : 0].front(); }
+
+  /// Whether all codes fit into a byte each.
+  bool fit_bytes() const { return of_class_[0].size() <= 127 && of_class_[1].size() <= 128; }
+  /// The material of a code that was given, 0 apart.
+  Material material(ByteCode code) const { return of_byte_[code]; }
+  Material material(Code code) const {
+    return (code & kTransparentBit) != 0 ? of_class_[1][code ^ kTransparentBit] : of_class_[0][code - 1];
   }
 
  private:
-  static constexpr Code kSeen = Code{1} << 31;
+  static constexpr Code kUnseen = std::numeric_limits<Code>::max();
 
   Code enter(Material material, Visibility visibility) {
     Code code = 0;
     if (visibility != Visibility::empty) {
       const bool transparent = visibility == Visibility::transparent;
       std::vector<Material>& numbered = of_class_[transparent ? 1 : 0];
-      code = (transparent ? kTransparentBit : kOpaqueBit) | static_cast<Code>(numbered.size()) << 1;
+      const auto number = static_cast<Code>(numbered.size());
+      code = transparent ? kTransparentBit | number : number + 1;
       numbered.push_back(material);
+      if (fit_bytes()) of_byte_[code_as<ByteCode>(code)] = material;
     }
-    of_[material] = code | kSeen;
+    of_[material] = code;
     seen_.push_back(material);
     return code;
   }
 
-  std::vector<Code> of_;  // by material; 0: not seen yet
+  std::vector<Code> of_;  // by material
   std::vector<Material> seen_;
   std::array<std::vector<Material>, 2> of_class_;  // opaque and transparent, by number
+  std::array<Material, 256> of_byte_{};            // by code, while they fit
 };
 
 }  // namespace runstone::rdm

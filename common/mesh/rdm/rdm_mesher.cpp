@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
+#include "common/runs/layer.hpp"
 
 namespace runstone {
 
@@ -46,28 +48,38 @@ void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch
   }
 }
 
-template <class Rows, class CodeOf>
-void read_planes(const RunChunk& neighbour, rdm::LayerPlace place, unsigned count, Rows* planes,
-                 CodeOf code_of) {
-  if (neighbour.is_uniform()) {
-    const Code code = code_of(neighbour.runs.material(0));
-    for (unsigned k = 0; k < count; ++k) {
-      planes[k].fill(typename Rows::value_type{0} - (code >> k & 1));
+/// Rows of bits from those that a neighbour's holder keeps, in the chunk's own orientation.
+template <class Rows>
+void copy_border(const ChunkBorders& borders, Direction side, Axis bit_axis, Rows& out) {
+  using Row = typename Rows::value_type;
+  const std::uint32_t* from = borders.rows(side);
+  const std::size_t words = borders.row_words(side);
+  const std::size_t count = borders.row_count(side);
+  if (words == 1) {
+    std::copy_n(from, count, out.begin());
+  } else {
+    for (std::size_t r = 0; r < count; ++r) {
+      Row row = 0;
+      for (std::size_t w = 0; w < words; ++w) row |= Row{*from++} << (32 * w);
+      out[r] = row;
     }
-    return;
   }
-  rdm::LayerReader<typename Rows::value_type, CodeOf>(neighbour, place, planes, count, code_of);
+  if (borders.bit_axis(side) == bit_axis) return;
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(count), out.end(), Row{0});
+  rdm::transpose(out);
 }
 
 template <class Row>
-void read_border(const RunChunk& chunk, Direction direction, const RunChunk* neighbour, const SideAxes& axes,
-                 const VisibilityTable& visibility, const rdm::MaterialCodes& codes, Side side,
-                 rdm::Borders<Row>& borders) {
+void read_border(const RunChunk& chunk, Direction direction, const RunChunk* neighbour,
+                 const ChunkBorders* kept, const SideAxes& axes, const VisibilityTable& visibility,
+                 Scratch& scratch, Side side, rdm::Borders<Row>& borders) {
   const auto at = static_cast<std::size_t>(side);
-  auto& planes = borders.plane[at];
-  borders.clear[at] = false;
+  const rdm::MaterialCodes& codes = scratch.codes;
+  auto& hiding = borders.hiding[at];
+  borders.meets[at] = false;
+  borders.codes[at].clear();
   if (neighbour == nullptr) {
-    planes[0].fill(0);
+    hiding.fill(0);
     return;
   }
   const auto side_of = [](const RunChunk& c, Axis axis) {
@@ -75,37 +87,44 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   };
   RUNSTONE_ASSERT(side_of(*neighbour, axes.bit) == side_of(chunk, axes.bit) &&
                   side_of(*neighbour, axes.row) == side_of(chunk, axes.row));
-  const bool single = codes.solid_count() == 1;
-  const bool mixed = !single && codes.has_transparent();
   const std::uint32_t layer = is_positive(direction) ? 0u : side_of(*neighbour, axes.layer) - 1u;
   const rdm::LayerPlace place{axes.layer, axes.bit, layer};
-  if (!mixed) {
-    // One material hides itself, whatever its class; it stands here as an opaque one does otherwise.
-    const Material own = single ? codes.material(codes.has_transparent(), 0) : kEmpty;
-    const Material hiding = own == kEmpty || visibility[own] == Visibility::opaque ? kEmpty : own;
-    if (hiding == kEmpty) {
-      read_planes(*neighbour, place, 1, planes.data(),
-                  [table = visibility.data()](Material material) -> Code {
-                    return table[material] == Visibility::opaque ? 1 : 0;
-                  });
-    } else {
-      read_planes(*neighbour, place, 1, planes.data(),
-                  [table = visibility.data(), hiding](Material material) -> Code {
-                    return table[material] == Visibility::opaque || material == hiding ? 1 : 0;
-                  });
-    }
+  std::array<typename rdm::Borders<Row>::Rows, 1> plane;
+  const Direction touching = opposite(direction);
+  if (!codes.has_transparent() || (kept != nullptr && !kept->may_be_transparent(touching))) {
+    if (kept != nullptr) return copy_border(*kept, touching, axes.bit, hiding);
+    rdm::read_layer_rows(*neighbour, place, plane, [table = visibility.data()](Material material) -> Code {
+      return table[material] == Visibility::opaque ? 1 : 0;
+    });
+    hiding = plane[0];
     return;
   }
-  const unsigned count = codes.clear_bits() + 2;
-  read_planes(*neighbour, place, count, planes.data(),
-              [&codes, &visibility](Material material) { return codes.border_code(material, visibility); });
-  const auto& clear = planes[count - 1];
-  borders.clear[at] = std::any_of(clear.begin(), clear.end(), [](Row row) { return row != 0; });
+  if (codes.solid_count() == 1) {
+    rdm::read_layer_rows(*neighbour, place, plane,
+                         [table = visibility.data(), own = codes.single()](Material material) -> Code {
+                           return table[material] == Visibility::opaque || material == own ? 1 : 0;
+                         });
+    hiding = plane[0];
+    return;
+  }
+  std::array<typename rdm::Borders<Row>::Rows, 2> planes;
+  rdm::read_layer_rows(*neighbour, place, planes, [&codes, &visibility](Material material) -> Code {
+    return codes.transparent_code(material) != 0 ? 2 : visibility[material] == Visibility::opaque ? 1 : 0;
+  });
+  hiding = planes[0];
+  borders.transparent[at] = planes[1];
+  borders.meets[at] = std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
+  if (!borders.meets[at] || codes.transparent_count() == 1) return;
+  scratch.border_voxels.resize(std::size_t{side_of(chunk, axes.bit)} * side_of(chunk, axes.row));
+  read_layer(*neighbour, axes.layer, layer, axes.bit, scratch.border_voxels);
+  std::transform(scratch.border_voxels.begin(), scratch.border_voxels.end(),
+                 std::back_inserter(borders.codes[at]),
+                 [&codes](Material material) { return codes.transparent_code(material); });
 }
 
 template <class Row>
-void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-                Scratch& scratch, std::unique_ptr<RowScratch<Row>>& rows) {
+void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
+                const VisibilityTable& visibility, Scratch& scratch, std::unique_ptr<RowScratch<Row>>& rows) {
   if (!rows) rows = std::make_unique<RowScratch<Row>>();
   const auto axes = side_axes(chunk.order);
   rdm::SweepInput input;
@@ -120,8 +139,9 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const V
     input.direction[side] = direction;
     // Strips run along the bits of a row, and from row to row where each bit is a layer of its own.
     input.shape[side] = rdm::QuadShape(direction, a.bit, a.row);
-    read_border(chunk, direction, neighbours[static_cast<std::size_t>(direction)], a, visibility,
-                scratch.codes, static_cast<Side>(side), rows->borders);
+    const auto d = static_cast<std::size_t>(direction);
+    read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch, static_cast<Side>(side),
+                rows->borders);
   }
   if constexpr (rdm::kRowBits<Row> == 64) {
     if (scratch.plain) return rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
@@ -162,6 +182,11 @@ bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const
 
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
               RdmScratch& scratch, ChunkMesh& out) {
+  mesh_rdm(chunk, neighbours, MeshBorders{}, visibility, scratch, out);
+}
+
+void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out) {
   Scratch& state = scratch.state();
   const bool solid_somewhere = !chunk.is_uniform() || visibility[chunk.runs.material(0)] != Visibility::empty;
   if (!solid_somewhere) return out.clear();
@@ -170,9 +195,9 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Vis
   if (state.codes.solid_count() == 0) return out.clear();
   const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    mesh_chunk(chunk, neighbours, visibility, state, state.narrow);
+    mesh_chunk(chunk, neighbours, borders, visibility, state, state.narrow);
   } else {
-    mesh_chunk(chunk, neighbours, visibility, state, state.wide);
+    mesh_chunk(chunk, neighbours, borders, visibility, state, state.wide);
   }
   state.opaque.finish(sides, out.opaque);
   if (state.codes.has_transparent()) {

@@ -8,6 +8,7 @@
 #include "common/core/coords.hpp"
 #include "common/edits/edit_stack.hpp"
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/rdm/chunk_borders.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -16,6 +17,9 @@ namespace runstone {
 /// The six chunks around one, by Direction, in any axis order, with equal sides where they touch. A null one
 /// is "missing": its voxels count as empty, so the faces at the edge of the view are drawn.
 using MeshNeighbours = std::array<const RunChunk*, kDirectionCount>;
+
+/// What the holders of those chunks keep of their sides, by Direction as well; null where nothing is kept.
+using MeshBorders = std::array<const ChunkBorders*, kDirectionCount>;
 
 /// Buffers reused between calls; steady state allocates nothing. Belongs to one thread. Opaque to callers.
 class RdmScratch {
@@ -42,6 +46,11 @@ class RdmScratch {
 /// each.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
               RdmScratch& scratch, ChunkMesh& out);
+
+/// The same mesh with the borders of neighbours that are kept, which must be those of `neighbours` as they
+/// are now: their runs are read only where transparent voxels may meet.
+void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
 /// Meshes again what an edit touched: `mesh` is that of the chunk and its neighbours before, `dirty` the
 /// layers in which a voxel of the chunk changed since (ApplyResult::dirty), and `beyond` the same of each

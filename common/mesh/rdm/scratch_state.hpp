@@ -51,6 +51,7 @@ namespace runstone {
 struct RdmScratch::State {
   rdm::MaterialCodes codes;
   std::vector<rdm::CodedRun> runs;
+  std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
   std::array<rdm::LayerPatch, 2> patch;                             // opaque and transparent
   std::array<std::array<Material, kSideMax>, kSideMax> row_voxels;  // of one row in some layers of an axis

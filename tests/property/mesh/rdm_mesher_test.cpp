@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "common/runs/dense.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -101,6 +102,59 @@ TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch"
     REQUIRE(mesh.opaque.first == fresh.opaque.first);
     REQUIRE(mesh.transparent.quads == fresh.transparent.quads);
     REQUIRE(mesh.transparent.first == fresh.transparent.first);
+  }
+}
+
+TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 7);
+  const VisibilityTable visibility(many_materials());
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  for (int round = 0; round < 40; ++round) {
+    // Few materials in between: what the forms leave behind would show.
+    const unsigned count = round % 4 == 3 ? 5 : kManyMaterialCount;
+    const Extent extent = round % 10 == 0 ? Extent{65, 9, 12} : Extent{12, 9, 11};
+    MeshScene scene;
+    const auto filled = [&rng, extent, count] {
+      std::vector<Material> voxels(extent.volume());
+      for (Material& voxel : voxels) voxel = static_cast<Material>(rng.below(count));
+      // Equal transparent ones meet.
+      for (std::size_t i = 1; i < voxels.size(); i += 3) voxels[i] = voxels[i - 1];
+      const AxisOrder order = kAxisOrders[rng.below(6)];
+      return from_dense(extent, order, voxels);
+    };
+    scene.chunk = filled();
+    for (auto& neighbour : scene.neighbours) {
+      if (rng.below(4) != 0) neighbour = filled();
+    }
+    // Our own layer on the other side.
+    scene.neighbours[rng.below(6)] = scene.chunk;
+    mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
+    CAPTURE(Catch::rngSeed(), round);
+    REQUIRE(mesh_difference(mesh, extent, many_materials(), expected_faces(scene, many_materials()))
+                .value_or("") == "");
+  }
+}
+
+TEST_CASE("kept borders of neighbours give the same quads as their runs", "[mesh][property]") {
+  SplitMix64 rng(Catch::rngSeed() + 8);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  std::array<ChunkBorders, kDirectionCount> kept;
+  for (int round = 0; round < 1500; ++round) {
+    const MeshScene scene = random_scene(rng, round % 100 == 0 ? 80 : 16);
+    MeshBorders borders{};
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (!scene.neighbours[d] || rng.below(5) == 0) continue;
+      kept[d].read(*scene.neighbours[d], mesh_visibility());
+      borders[d] = &kept[d];
+    }
+    mesh_rdm(scene.chunk, scene.pointers(), borders, mesh_visibility(), scratch, mesh);
+    const ChunkMesh plain = mesh_of(scene);
+    CAPTURE(Catch::rngSeed(), round);
+    REQUIRE(mesh.opaque.quads == plain.opaque.quads);
+    REQUIRE(mesh.opaque.first == plain.opaque.first);
+    REQUIRE(mesh.transparent.quads == plain.transparent.quads);
   }
 }
 

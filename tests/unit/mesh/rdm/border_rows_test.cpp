@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
+#include "common/mesh/rdm/chunk_borders.hpp"
 #include "common/runs/dense.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
@@ -24,8 +25,7 @@ void check_layers(const RunChunk& chunk) {
       if (u == a) continue;
       const unsigned v = 3 - a - u;
       for (const unsigned at : {0u, sides[a] / 2u, sides[a] - 1u}) {
-        rdm::LayerReader<Row, rdm::Code (*)(Material)>(
-            chunk, {static_cast<Axis>(a), static_cast<Axis>(u), at}, planes.data(), kPlanes, &code_of);
+        rdm::read_layer_rows(chunk, {static_cast<Axis>(a), static_cast<Axis>(u), at}, planes, &code_of);
         std::size_t wrong = 0;
         for (unsigned row = 0; row < rdm::kRowBits<Row>; ++row) {
           for (unsigned bit = 0; bit < rdm::kRowBits<Row>; ++bit) {
@@ -56,6 +56,41 @@ TEST_CASE("rows of every layer are its voxels in every orientation", "[mesh]") {
   }
   for (const Extent extent : {Extent{128, 8, 65}, Extent{9, 128, 127}}) {
     for (const AxisOrder order : kAxisOrders) check_layers<rdm::Row128>(random_chunk(rng, extent, order, 8));
+  }
+}
+
+TEST_CASE("kept borders are the opaque voxels of the six sides", "[mesh]") {
+  SplitMix64 rng(43);
+  ChunkBorders borders;
+  for (int round = 0; round < 120; ++round) {
+    const MeshScene scene = random_scene(rng, round < 100 ? 40 : 128);
+    const DenseChunk dense = DenseChunk::of(scene.chunk);
+    const auto sides = scene.chunk.extent.sides();
+    borders.read(scene.chunk, mesh_visibility());
+    for (unsigned d = 0; d < kDirectionCount; ++d) {
+      const auto side = static_cast<Direction>(d);
+      const unsigned a = d / 2;
+      const auto u = static_cast<unsigned>(borders.bit_axis(side));
+      const unsigned v = 3 - a - u;
+      REQUIRE(borders.row_count(side) == sides[v]);
+      std::size_t wrong = 0;
+      bool transparent = false;
+      for (unsigned row = 0; row < sides[v]; ++row) {
+        for (unsigned bit = 0; bit < sides[u]; ++bit) {
+          std::array<int, 3> p{};
+          p[a] = is_positive(side) ? sides[a] - 1 : 0;
+          p[u] = static_cast<int>(bit);
+          p[v] = static_cast<int>(row);
+          const Visibility visibility = mesh_visibility()[dense.at(p[0], p[1], p[2])];
+          transparent |= visibility == Visibility::transparent;
+          const std::uint32_t word = borders.rows(side)[row * borders.row_words(side) + bit / 32];
+          wrong += (word >> bit % 32 & 1) != (visibility == Visibility::opaque ? 1 : 0);
+        }
+      }
+      CAPTURE(round, d, scene.chunk.order);
+      CHECK(wrong == 0);
+      CHECK((borders.may_be_transparent(side) || !transparent));
+    }
   }
 }
 

@@ -12,44 +12,45 @@ TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh
   rdm::MaterialCodes codes;
   for (int round = 0; round < 2; ++round) {  // clear() forgets everything
     CHECK(codes.solid_count() == 0);
-    CHECK(codes.number(kDirt, v) == rdm::kOpaqueBit);
+    CHECK(codes.number(kDirt, v) == 1);
     CHECK(codes.number(kEmpty, v) == 0);
     CHECK(codes.number(kBarrier, v) == 0);
-    CHECK(codes.number_bits() == 0);
     CHECK_FALSE(codes.has_transparent());
+    CHECK(codes.single() == kDirt);
     CHECK(codes.number(kWater, v) == rdm::kTransparentBit);
     CHECK(codes.has_transparent());
-    CHECK(codes.number_bits() == 0);
-    CHECK(codes.number(kStone, v) == (rdm::kOpaqueBit | 1u << 1));
-    CHECK(codes.number(65535, v) == (rdm::kOpaqueBit | 2u << 1));
-    CHECK(codes.number(kDirt, v) == rdm::kOpaqueBit);
-    CHECK(codes.number_bits() == 2);
+    CHECK(codes.number(kStone, v) == 2);
+    CHECK(codes.number(65535, v) == 3);
+    CHECK(codes.number(kDirt, v) == 1);
     CHECK(codes.solid_count() == 4);
-    CHECK(codes.material(false, 0) == kDirt);
-    CHECK(codes.material(false, 2) == 65535);
-    CHECK(codes.material(true, 0) == kWater);
+    CHECK(codes.transparent_count() == 1);
+    CHECK(codes.transparent_code(kWater) == rdm::kTransparentBit);
+    CHECK(codes.transparent_code(kDirt) == 0);
+    CHECK(codes.transparent_code(kGlass) == 0);
+    for (const Material material : {kDirt, kStone, Material{65535}, kWater}) {
+      const rdm::Code code = codes.number(material, v);
+      CHECK(codes.material(code) == material);
+      const auto byte = rdm::code_as<rdm::ByteCode>(code);
+      CHECK(codes.material(byte) == material);
+      CHECK(rdm::whole_code(byte) == code);
+    }
     codes.clear();
   }
 }
 
-TEST_CASE("beyond the border a material hides, is one of the chunk's transparent ones, or nothing",
-          "[mesh]") {
-  const VisibilityTable& v = mesh_visibility();
+TEST_CASE("codes fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
+  const VisibilityTable v(many_materials());  // 1 to 149 opaque, 150 to 299 transparent
   rdm::MaterialCodes codes;
-  codes.number(kStone, v);
-  codes.number(kWater, v);
-  CHECK(codes.clear_bits() == 0);
-  CHECK(codes.border_code(kStone, v) == 1);
-  CHECK(codes.border_code(kDirt, v) == 1);
-  CHECK(codes.border_code(kWater, v) == 2);
-  CHECK(codes.border_code(kGlass, v) == 0);
-  CHECK(codes.border_code(kEmpty, v) == 0);
-  codes.number(kGlass, v);
-  CHECK(codes.clear_bits() == 1);
-  CHECK(codes.border_code(kWater, v) == 4);
-  CHECK(codes.border_code(kGlass, v) == (4 | 1 << 1));
-  CHECK(codes.border_code(kDirt, v) == 1);
-  CHECK(codes.solid_count() == 3);
+  for (Material material = 1; material <= 127; ++material) codes.number(material, v);
+  for (Material material = 150; material < 278; ++material) codes.number(material, v);
+  CHECK(codes.fit_bytes());
+  for (const Material material : {Material{127}, Material{277}}) {
+    CHECK(codes.material(rdm::code_as<rdm::ByteCode>(codes.number(material, v))) == material);
+  }
+  SECTION("one opaque material more") { codes.number(128, v); }
+  SECTION("one transparent material more") { codes.number(278, v); }
+  CHECK_FALSE(codes.fit_bytes());
+  CHECK(codes.material(codes.number(277, v)) == 277);
 }
 
 }  // namespace

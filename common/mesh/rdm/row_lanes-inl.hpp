@@ -1,0 +1,98 @@
+// Rows of bits, as many a step as the machine takes. Included once per instruction set, inside no namespace.
+#if defined(RUNSTONE_MESH_RDM_ROW_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_ROW_LANES_INL
+#undef RUNSTONE_MESH_RDM_ROW_LANES_INL
+#else
+#define RUNSTONE_MESH_RDM_ROW_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "common/mesh/rdm/bit_row.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace runstone::rdm {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One row a step: the plain path, and rows wider than a vector's lane.
+template <class R>
+struct OneRow {
+  using Row = R;
+  using V = R;
+  static constexpr unsigned kLanes = 1;
+  static V load(const Row* p) { return *p; }
+  static void store(V v, Row* p) { *p = v; }
+  static V all(Row row) { return row; }
+  static V both(V a, V b) { return a & b; }
+  static V either(V a, V b) { return a | b; }
+  static V differing(V a, V b) { return a ^ b; }
+  static V without(V a, V b) { return a & ~b; }
+  static V sum(V a, V b) { return a + b; }
+  template <int kBits>
+  static V up(V a) {
+    return a << kBits;
+  }
+  static V down(V a) { return a >> 1; }
+  /// Bit i: lane i is not zero.
+  static std::uint64_t any(V a) { return a != 0 ? 1 : 0; }
+  /// Bit i: the highest bit of lane i.
+  static std::uint64_t tops(V a) { return static_cast<std::uint64_t>(a >> (kRowBits<Row> - 1)); }
+  /// `row` in the lanes whose bit is set.
+  static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
+  /// Flips `bit` in those of eight rows whose bit in `which` is set.
+  static void flip(Row* eight, unsigned which, Row bit) {
+    for (unsigned k = 0; k < 8; ++k) eight[k] ^= (which >> k & 1) != 0 ? bit : 0;
+  }
+};
+
+#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+/// As many rows a step as a vector holds.
+struct VectorRows {
+  using Row = Row64;
+  using D = hn::CappedTag<Row64, 8>;
+  using V = hn::Vec<D>;
+  static constexpr unsigned kLanes = hn::MaxLanes(D());
+  static HWY_INLINE V load(const Row* p) { return hn::LoadU(D(), p); }
+  static HWY_INLINE void store(V v, Row* p) { hn::StoreU(v, D(), p); }
+  static HWY_INLINE V all(Row row) { return hn::Set(D(), row); }
+  static HWY_INLINE V both(V a, V b) { return hn::And(a, b); }
+  static HWY_INLINE V either(V a, V b) { return hn::Or(a, b); }
+  static HWY_INLINE V differing(V a, V b) { return hn::Xor(a, b); }
+  static HWY_INLINE V without(V a, V b) { return hn::AndNot(b, a); }
+  static HWY_INLINE V sum(V a, V b) { return hn::Add(a, b); }
+  template <int kBits>
+  static HWY_INLINE V up(V a) {
+    return hn::ShiftLeft<kBits>(a);
+  }
+  static HWY_INLINE V down(V a) { return hn::ShiftRight<1>(a); }
+  static HWY_INLINE std::uint64_t bits_of(hn::Mask<D> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(D(), mask, bytes);
+    return bytes[0];
+  }
+  static HWY_INLINE std::uint64_t any(V a) { return bits_of(hn::Ne(a, hn::Zero(D()))); }
+  static HWY_INLINE std::uint64_t tops(V a) {
+    const hn::RebindToSigned<D> d;
+    return bits_of(hn::RebindMask(D(), hn::Lt(hn::BitCast(d, a), hn::Zero(d))));
+  }
+  static HWY_INLINE V where(std::uint64_t lanes, Row row) {
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
+    return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
+  }
+  static HWY_INLINE void flip(Row* eight, unsigned which, Row bit) {
+    for (unsigned k = 0; k < 8; k += kLanes) {
+      store(differing(load(eight + k), where(which >> k, bit)), eight + k);
+    }
+  }
+};
+#else
+using VectorRows = OneRow<Row64>;
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace runstone::rdm
+HWY_AFTER_NAMESPACE();
+
+#endif
