@@ -35,12 +35,15 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     command->add_option("--edges", options.edges, "sides of the volumes, in voxels")
         ->delimiter(',')
         ->check(CLI::Range(8, 128));
+  };
+  const auto files = [&](CLI::App* command) {
     command->add_option("--csv", options.csv, "write all rows to this file");
     command->add_option("--json", options.json, "write all rows and the summary to this file");
   };
   CLI::App* mesh =
       app.add_subcommand("mesh", "meshers against each other: mesher x world x edge x axis order");
   common(mesh, measured_world_names());
+  files(mesh);
   mesh->add_option("--meshers", options.meshers, "meshers to measure; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(meshers()));
@@ -55,12 +58,27 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
 
   CLI::App* chunk_edge = app.add_subcommand("chunk-edge", "what the edge of world chunks costs and saves");
   common(chunk_edge, landscape_names());
+  files(chunk_edge);
+
+  CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
+  common(mesh_once, measured_world_names());
+  unsigned times = 1;
+  std::string mesher = "rdm";
+  mesh_once->add_option("--mesher", mesher)->capture_default_str()->check(CLI::IsMember(meshers()));
+  mesh_once->add_option("--times", times, "meshes of each volume")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error, out, err) == 0 ? 0 : 2};
   }
   if (chunk_edge->parsed()) options.command = BenchOptions::Command::chunk_edge;
+  if (mesh_once->parsed()) {
+    options.command = BenchOptions::Command::mesh_once;
+    options.meshers = {mesher};
+    options.repetitions = times;
+  }
   if (quick) {
     if (mesh->count("--min-runs") == 0) options.repetitions = 3;
     if (mesh->count("--edges") == 0) options.edges = {16};

@@ -8,7 +8,7 @@
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge };
+  enum class Command { mesh, chunk_edge, mesh_once };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> meshers;  // contestants; empty: all

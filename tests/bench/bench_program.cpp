@@ -8,6 +8,7 @@
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/chunk_edge.hpp"
 #include "tests/bench/mesh_bench.hpp"
+#include "tests/bench/mesh_once.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -55,12 +56,21 @@ int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err
   return csv && json ? 0 : 1;
 }
 
+int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto done = run_mesh_once(options, out);
+  if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
+  return done ? 0 : 1;
+}
+
 }  // namespace
 
 int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   const ParsedBenchOptions parsed = parse_bench_options(argc, argv, out, err);
   if (!parsed.options) return parsed.exit_code;
   if (parsed.options->command == BenchOptions::Command::mesh) return mesh(*parsed.options, out, err);
+  if (parsed.options->command == BenchOptions::Command::mesh_once) {
+    return mesh_once(*parsed.options, out, err);
+  }
   return chunk_edge(*parsed.options, out, err);
 }
 

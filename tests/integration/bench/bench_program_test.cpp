@@ -130,6 +130,26 @@ TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
   }
 }
 
+TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[bench]") {
+  const Output output = run(
+      {"mesh-once", "--worlds", "town,checkerboard", "--edges", "16", "--mesher", "culled", "--times", "3"});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  std::istringstream lines(output.out);
+  std::map<std::string, nlohmann::json> worlds;
+  for (std::string line; std::getline(lines, line);) {
+    const auto world = nlohmann::json::parse(line);
+    worlds[world.at("world")] = world;
+  }
+  REQUIRE(worlds.size() == 2);
+  CHECK(worlds["checkerboard"].at("quads") == 16 * 16 * 16 / 2 * 6);
+  CHECK(worlds["checkerboard"].at("meshes") == 3);
+  CHECK(worlds["town"].at("mesher") == "culled");
+  const Output none = run({"mesh-once", "--worlds", "hills", "--edges", "65", "--mesher", "mask_binary"});
+  CHECK(none.exit_code == 1);
+  CHECK(none.err.find("hills edge 65: nothing for mask_binary") != std::string::npos);
+}
+
 TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "orders.csv";
