@@ -1,17 +1,18 @@
 // Meshers against the face oracle on scenes spelled by bytes, and remeshing against meshing. Every input is a
 // scene and some edits:
 //   3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128), 1 byte axis order, 1 byte
-//   mask of neighbours,
+//   mask of neighbours (bit 6: every run of stone becomes a material of its own),
 //   then per chunk (the chunk itself first) a byte of axis order (neighbours only) and (length, material)
 //   byte pairs until it is full; when the bytes run out, the rest of a chunk is empty;
-//   then kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one
-//   voxel), material. When the bytes run
-//   out, the edits are drawn from a generator that the whole input seeds, so that every scene is edited.
+//   then kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one voxel),
+//   material. When the bytes run out, the edits are drawn from a generator that the whole input seeds, so
+//   that every scene is edited.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -68,13 +69,15 @@ Extent read_extent(Input& in) {
 
 AxisOrder read_order(Input& in) { return kAxisOrders[in.next() % kAxisOrderCount]; }
 
-RunChunk read_chunk(Input& in, Extent extent, AxisOrder order) {
+/// `stone`: the material that the next run of stone gets, where each gets one of its own; else none.
+RunChunk read_chunk(Input& in, Extent extent, AxisOrder order, std::optional<Material>& stone) {
   RunBuilder builder(extent, order);
   while (!in.empty() && builder.filled() < extent.volume()) {
     // Lengths above 127 count lines and more, so that a few bytes reach whole layers.
     const std::uint8_t byte = in.next();
     const std::uint32_t length = byte < 128 ? byte + 1u : (byte - 127u) * ordered(extent, order).f;
-    const auto material = static_cast<Material>(in.next() % (test::kMeshMaterialCount + 1));
+    auto material = static_cast<Material>(in.next() % (test::kMeshMaterialCount + 1));
+    if (material == test::kStone && stone) material = (*stone)++;
     builder.append(std::min(length, extent.volume() - builder.filled()), material);
   }
   builder.append_to(extent.volume(), kEmpty);
@@ -85,11 +88,13 @@ test::MeshScene read_scene(Input& in) {
   const Extent extent = read_extent(in);
   const AxisOrder order = read_order(in);
   const std::uint8_t mask = in.next();
-  test::MeshScene scene{read_chunk(in, extent, order), {}};
+  std::optional<Material> stone;
+  if ((mask >> 6 & 1) != 0) stone = static_cast<Material>(test::kMeshMaterialCount);
+  test::MeshScene scene{read_chunk(in, extent, order, stone), {}};
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     if ((mask >> d & 1) == 0) continue;
     const AxisOrder theirs = read_order(in);
-    scene.neighbours[d] = read_chunk(in, extent, theirs);
+    scene.neighbours[d] = read_chunk(in, extent, theirs, stone);
   }
   return scene;
 }
@@ -121,28 +126,35 @@ bool equal(const ChunkMesh& a, const ChunkMesh& b) {
          a.transparent.quads == b.transparent.quads && a.transparent.first == b.transparent.first;
 }
 
-}  // namespace
+/// Buffers live as long as the program: what one input leaves behind would show in the next.
+class Trial {
+ public:
+  Trial() { plain_.use_plain_path(true); }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // What one input leaves behind in buffers would show in the next.
-  static test::MesherJury jury;
-  static RdmScratch scratch;
-  static RdmScratch plain;
-  static ChunkMesh mesh;
-  static ChunkMesh other;
-  plain.use_plain_path(true);
-  Input in({data, size});
-  test::MeshScene scene = read_scene(in);
-  const std::string fault = jury.fault(scene);
-  demand(fault.empty(), fault.c_str());
-  mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch, mesh);
-  const auto difference =
-      test::mesh_difference(mesh, scene.chunk.extent, test::mesh_materials(), jury.exposed());
-  demand(!difference, difference.value_or("").c_str());
-  mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), plain, other);
-  demand(equal(mesh, other), "the plain path gives other quads");
+  /// The mesh of a scene: right by the oracle, as are those of all reference meshers, and the same by every
+  /// path.
+  void mesh(const test::MeshScene& scene) {
+    const std::string fault = jury_.fault(scene);
+    demand(fault.empty(), fault.c_str());
+    mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, mesh_);
+    const auto difference =
+        test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), jury_.exposed());
+    demand(!difference, difference.value_or("").c_str());
 
-  for (int i = 0; i < kEdits; ++i) {
+    mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), plain_, other_);
+    demand(equal(mesh_, other_), "the plain path gives other quads");
+    MeshBorders borders{};
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (!scene.neighbours[d]) continue;
+      kept_[d].read(*scene.neighbours[d], test::mesh_visibility());
+      borders[d] = &kept_[d];
+    }
+    mesh_rdm(scene.chunk, scene.pointers(), borders, test::mesh_visibility(), scratch_, other_);
+    demand(equal(mesh_, other_), "kept borders give other quads");
+  }
+
+  /// Edits a scene that was meshed; dirty layers give the mesh that all of it does.
+  void edit(Input& in, test::MeshScene& scene) {
     DirtyLayers dirty;
     std::array<DirtyLayers, kDirectionCount> beyond{};
     const unsigned place = read_place(in, scene);
@@ -151,11 +163,29 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } else {
       beyond[place] = read_edit(in, *scene.neighbours[place]);
     }
-    mesh_rdm_layers(scene.chunk, scene.pointers(), test::mesh_visibility(), dirty, beyond, scratch, mesh);
-    mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch, other);
-    demand(equal(mesh, other), "remeshed layers differ from a full mesh");
+    mesh_rdm_layers(scene.chunk, scene.pointers(), test::mesh_visibility(), dirty, beyond, scratch_, mesh_);
+    mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, other_);
+    demand(equal(mesh_, other_), "remeshed layers differ from a full mesh");
   }
-  const auto edited = test::scene_difference(scene, mesh);
-  demand(!edited, edited.value_or("").c_str());
+
+  const ChunkMesh& last() const { return mesh_; }
+
+ private:
+  test::MesherJury jury_;
+  RdmScratch scratch_, plain_;
+  ChunkMesh mesh_, other_;
+  std::array<ChunkBorders, kDirectionCount> kept_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static Trial trial;
+  Input in({data, size});
+  test::MeshScene scene = read_scene(in);
+  trial.mesh(scene);
+  for (int i = 0; i < kEdits; ++i) trial.edit(in, scene);
+  const auto difference = test::scene_difference(scene, trial.last());
+  demand(!difference, difference.value_or("").c_str());
   return 0;
 }
