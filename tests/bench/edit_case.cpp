@@ -7,16 +7,14 @@
 #include "common/core/hash.hpp"
 #include "common/edits/edit_stack.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/runs/run_builder.hpp"
 #include "tests/bench/contestant.hpp"
-#include "tests/bench/fused_edit.hpp"
 #include "tests/bench/statistics.hpp"
 
 namespace runstone::bench {
 namespace {
 
 struct Samples {
-  std::vector<double> apply, remesh, own, all, full, fused, walked, resumed, border_all;
+  std::vector<double> apply, remesh, own, all, full, border_all;
 };
 
 /// A chunk with its mesh, before and after edits of it or beside it.
@@ -59,23 +57,13 @@ class EditedChunk {
         digest_(digest_of(chunk_)),
         own_(volume.scene.pointers(), *world.visibility) {
     own_.mesh_all(chunk_);
-    for (Twin* twin : {&fused_, &walked_}) {
-      twin->chunk = chunk_;
-      twin->digest = digest_;
-      twin->mesh = own_.mesh();
-    }
   }
 
   const RunChunk& chunk() const { return chunk_; }
   const ChunkMesh& mesh() const { return own_.mesh(); }
 
-  /// Only who edits first is timed: the second would find the branches of the first foreseen.
-  void edit(VoxelPos at, Material material, Samples& timed) {
+  void edit(VoxelPos at, Material material, Samples& samples) {
     const EditDescriptor edit{SetVoxel{at}, {}, material};
-    const unsigned turn = turn_++ % 3;
-    if (turn == 1) edit_fused_twin(at, material, timed);
-    if (turn == 2) edit_walked_twin(at, material, timed);
-    Samples& samples = turn == 0 ? timed : not_timed_;
     const std::vector<Direction> touched = touched_by(at);
     const std::uint64_t start = now_ns();
     apply_stack(chunk_, digest_, {}, std::span(&edit, 1), apply_scratch_, result_);
@@ -95,15 +83,6 @@ class EditedChunk {
     samples.own.push_back(static_cast<double>(meshed - start));
     samples.all.push_back(static_cast<double>((touched.empty() ? meshed : all) - start));
     if (!touched.empty()) samples.border_all.push_back(samples.all.back());
-    if (turn != 1) edit_fused_twin(at, material, not_timed_);
-    if (turn != 2) edit_walked_twin(at, material, not_timed_);
-    for (const Twin* twin : {&fused_, &walked_}) {
-      RUNSTONE_ASSERT(twin->chunk == chunk_ && twin->digest == digest_);
-      RUNSTONE_ASSERT(twin->mesh.opaque.quads == own_.mesh().opaque.quads &&
-                      twin->mesh.opaque.first == own_.mesh().opaque.first &&
-                      twin->mesh.transparent.quads == own_.mesh().transparent.quads);
-    }
-    if (turn == 0) timed.resumed.push_back(timed.apply.back() + resume(at));
   }
 
  private:
@@ -121,61 +100,6 @@ class EditedChunk {
     Volume volume;
     MeshedChunk meshed;
   };
-
-  /// A copy of the chunk that another mesher edits in the same way.
-  struct Twin {
-    RunChunk chunk;
-    Digest digest;
-    ChunkMesh mesh;
-    TouchedRows rows;
-    RdmScratch scratch;
-    ApplyScratch apply;
-    ApplyResult result;
-  };
-
-  void edit_fused_twin(VoxelPos at, Material material, Samples& samples) {
-    const LocalPos local = local_of(at, static_cast<std::int32_t>(volume_.edge));
-    const std::uint64_t start = now_ns();
-    edit_fused(fused_.chunk, fused_.digest, local, material, neighbours_, *world_.visibility, fused_.rows,
-               fused_.scratch, fused_.mesh);
-    samples.fused.push_back(static_cast<double>(now_ns() - start));
-  }
-
-  void edit_walked_twin(VoxelPos at, Material material, Samples& samples) {
-    const EditDescriptor edit{SetVoxel{at}, {}, material};
-    const LocalPos local = local_of(at, static_cast<std::int32_t>(volume_.edge));
-    const std::uint64_t start = now_ns();
-    apply_stack(walked_.chunk, walked_.digest, {}, std::span(&edit, 1), walked_.apply, walked_.result);
-    if (walked_.result.changed) {
-      remesh_walked(walked_.chunk, local, neighbours_, *world_.visibility, walked_.rows, walked_.scratch,
-                    walked_.mesh);
-    }
-    samples.walked.push_back(static_cast<double>(now_ns() - start));
-  }
-
-  /// How long a sweep takes from the layer before the edit to the end. Without the neighbours, and with at
-  /// least 8 layers, as chunks have.
-  double resume(VoxelPos at) {
-    const OrderedExtent e = ordered(chunk_.extent, chunk_.order);
-    const LocalPos local = local_of(at, static_cast<std::int32_t>(volume_.edge));
-    const std::uint32_t s = to_ordered(local, chunk_.order).s;
-    const std::uint32_t first = std::min(s == 0 ? 0 : s - 1, e.s - kSideMin);
-    std::array<std::uint8_t, 3> sides{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sides[axis] = static_cast<std::uint8_t>(chunk_.extent.sides()[axis]);
-    }
-    sides[static_cast<std::size_t>(axes_of(chunk_.order)[2])] = static_cast<std::uint8_t>(e.s - first);
-    const Extent extent{sides[0], sides[1], sides[2]};
-    RunBuilder builder(extent, chunk_.order);
-    const std::uint32_t begin = first * e.m * e.f;
-    for (std::size_t i = find_run(chunk_, begin); i < chunk_.runs.size(); ++i) {
-      builder.append_to(chunk_.runs.end(i) - begin, chunk_.runs.material(i));
-    }
-    const RunChunk tail = builder.finish();
-    const std::uint64_t start = now_ns();
-    mesh_rdm(tail, {}, *world_.visibility, fused_.scratch, tail_mesh_);
-    return static_cast<double>(now_ns() - start);
-  }
 
   Beside& beside(Direction d) { return *beside_[static_cast<std::size_t>(d)]; }
   const RunChunk& chunk_beside(Direction d) { return beside(d).volume.scene.chunk; }
@@ -206,11 +130,6 @@ class EditedChunk {
   ApplyScratch apply_scratch_;
   ApplyResult result_;
   MeshedChunk own_;
-  MeshNeighbours neighbours_ = volume_.scene.pointers();
-  Twin fused_, walked_;
-  ChunkMesh tail_mesh_;
-  Samples not_timed_;
-  unsigned turn_ = 0;
   std::array<std::unique_ptr<Beside>, kDirectionCount> beside_;
 };
 
@@ -256,17 +175,10 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
     }
   }
   if (samples.all.empty()) return {};
-  return {samples.all.size(),
-          samples.border_all.size(),
-          median(samples.apply),
-          median(samples.remesh),
-          median(samples.own),
-          median(samples.all),
-          median(samples.full),
-          median(samples.fused),
-          median(samples.walked),
-          median(samples.resumed),
-          samples.border_all.empty() ? 0 : median(samples.border_all)};
+  return {samples.all.size(),    samples.border_all.size(),
+          median(samples.apply), median(samples.remesh),
+          median(samples.own),   median(samples.all),
+          median(samples.full),  samples.border_all.empty() ? 0 : median(samples.border_all)};
 }
 
 }  // namespace runstone::bench

@@ -19,9 +19,6 @@ struct EditTiming {
   double own_ns = 0;                   // both
   double all_ns = 0;                   // both, and the neighbours
   double full_mesh_ns = 0;             // of the chunk
-  double fused_ns = 0;                 // of the chunk, by edit_fused()
-  double walked_ns = 0;                // the same after apply_stack()
-  double resumed_ns = 0;               // splice, and a mesh of all slow layers from the one before the edit's
   double border_all_ns = 0;            // as all_ns, over the edits at borders; 0 if there are none
 };
 

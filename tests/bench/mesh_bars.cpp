@@ -167,10 +167,9 @@ Bar edit(const EditTiming& edits) {
   return judged(
       fmt::format("{} ({} edits, {} at a border)", what, edits.edits, edits.at_borders), "5 µs; a fifth",
       fmt::format("{:.2f} µs ({:.2f} its own chunk: {:.2f} splice, {:.2f} remesh; {:.2f} at a border); "
-                  "{:.2f} of {:.2f} µs; fused {:.2f}, walked {:.2f}, resumed {:.2f} µs",
+                  "{:.2f} of {:.2f} µs",
                   edits.all_ns / 1000, edits.own_ns / 1000, edits.apply_ns / 1000, edits.remesh_ns / 1000,
-                  edits.border_all_ns / 1000, share, edits.full_mesh_ns / 1000, edits.fused_ns / 1000,
-                  edits.walked_ns / 1000, edits.resumed_ns / 1000),
+                  edits.border_all_ns / 1000, share, edits.full_mesh_ns / 1000),
       edits.all_ns <= 5000 && share <= 0.2);
 }
 
