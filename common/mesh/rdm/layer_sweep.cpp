@@ -265,7 +265,6 @@ class Sweep {
       V g_slow_neg = Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_there + m - 1));
       V g_slow_pos = Lanes::without(Lanes::load(solid_there + m - 1), Lanes::load(hiding + m - 1));
       V along = own;    // bits at which strips along a row are cut other than in the layer before
-      V across = own;   // ... strips from row to row ...
       V between = own;  // where the material differs from the layer before
       V along_neg = own, along_pos = own;
       if constexpr (kNumbered) {
@@ -284,7 +283,6 @@ class Sweep {
         g_slow_neg = Lanes::both(g_slow_neg, slow_before);
         g_slow_pos = Lanes::both(g_slow_pos, slow_before);
         along = Lanes::either(between, Lanes::differing(fast, fast_there));
-        across = Lanes::either(between, Lanes::differing(mid, mid_there));
         along_neg = Lanes::either(mid, Lanes::differing(fast, Lanes::load(cut_fast + m - 1)));
         along_pos =
             Lanes::either(mid_there, Lanes::differing(fast_there, Lanes::load(cut_fast_there + m - 1)));
@@ -299,8 +297,8 @@ class Sweep {
       add_rows(rows[1], differ(f_slow_pos, g_slow_pos, along_pos), m);
       add_rows(rows[2], differ(f_mid_neg, Lanes::load(mid_neg_there + m), along), m);
       add_rows(rows[3], differ(f_mid_pos, Lanes::load(mid_pos_there + m), along), m);
-      add_rows(rows[4], differ(f_fast_neg, Lanes::load(fast_neg_there + m), across), m);
-      add_rows(rows[5], differ(f_fast_pos, Lanes::load(fast_pos_there + m), across), m);
+      add_rows(rows[4], differ(f_fast_neg, Lanes::load(fast_neg_there + m), between), m);
+      add_rows(rows[5], differ(f_fast_pos, Lanes::load(fast_pos_there + m), between), m);
     }
     // Rows behind the last one have no faces, so the first of them closes what is open, if it was met.
     const Row valid = bits_below<Row>(count);
@@ -403,11 +401,11 @@ class Sweep {
   }
 
   /// Whether so many rows change that all of them at once cost less than these one by one.
-  bool most([[maybe_unused]] RowSet rows) const {
+  bool most([[maybe_unused]] RowSet rows, unsigned part = 1) const {
     if constexpr (kLanes == 1) {
       return false;
     } else {
-      return static_cast<std::uint32_t>(std::popcount(rows)) * 2 > e_.m;
+      return static_cast<std::uint32_t>(std::popcount(rows)) * kLanes * part > e_.m;
     }
   }
 
@@ -428,15 +426,6 @@ class Sweep {
       behind = Lanes::without(behind, Lanes::down(c));
     }
     return between(f, before, behind);
-  }
-  static HWY_INLINE Vectors vectors_across(const Row* face, [[maybe_unused]] const Row* cut) {
-    V before = Lanes::load(face - 1);
-    V behind = Lanes::load(face + 1);
-    if constexpr (kNumbered) {
-      before = Lanes::without(before, Lanes::load(cut));
-      behind = Lanes::without(behind, Lanes::load(cut + 1));
-    }
-    return between(Lanes::load(face), before, behind);
   }
   static HWY_INLINE V vectors_changed(const Vectors& now, const Vectors& before,
                                       [[maybe_unused]] const Row* cut) {
@@ -471,25 +460,6 @@ class Sweep {
       Lanes::store(vectors_ends_with(now, x), opening + m);
       Lanes::store(now.start, start + m);
     });
-  }
-  /// The same for strips across rows: changed bits, starts and ends now and before. Returns the rows with
-  /// any.
-  RowSet compare_across(const Lines& in) {
-    std::array<Row*, 5> to;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] = st_.strips[i].data();
-    RowSet rows = 0;
-    for_rows([=, &rows](std::uint32_t m) {
-      const Vectors now = vectors_across(in.face + m, in.cut + m);
-      const Vectors before = vectors_across(in.face_before + m, in.cut_before + m);
-      const V x = vectors_changed(now, before, in.differs + m);
-      Lanes::store(x, to[0] + m);
-      Lanes::store(now.start, to[1] + m);
-      Lanes::store(now.end, to[2] + m);
-      Lanes::store(before.start, to[3] + m);
-      Lanes::store(before.end, to[4] + m);
-      add_rows(rows, Lanes::any(x), m);
-    });
-    return rows & bits_below<Row>(e_.m);
   }
   /// Closes and opens what compare_along() found, in the rows that differ.
   HWY_INLINE void strips_found(const Outlet& out, std::uint32_t m, Quad* open, std::uint32_t layer,
@@ -557,75 +527,54 @@ class Sweep {
     }
   }
 
-  /// Row m of strips that run from row to row, cut before row m where `cut` says.
-  static HWY_INLINE Strips strips_across(const Row* face, [[maybe_unused]] const Row* cut, std::uint32_t m) {
-    Row before = (face + m)[-1];
-    Row behind = face[m + 1];
-    if constexpr (kNumbered) {
-      before &= ~cut[m];
-      behind &= ~cut[m + 1];
-    }
-    return {face[m], face[m] & ~before, face[m] & ~behind};
-  }
-
-  /// Faces across the fastest axis in layer s: every bit is a layer of its own, and strips run from line to
-  /// line. Follows those with changed bits from the first such line to their end.
+  /// Faces across the fastest axis in layer s: every bit is a layer of its own. Strips run along the slowest
+  /// axis, one a bit: a face that appears begins one, a face that disappears ends one. Those that end side by
+  /// side in neighbouring rows are one quad if they began together and are of one material.
   template <Side kSide>
   void upright_strips(RowSet rows, std::uint32_t s) {
     if (rows == 0) return;
     const Row* const face = st_.face[at(kSide)][here_].data();
     const Row* const face_before = st_.face[at(kSide)][there_].data();
-    const Row* const cut_mid = st_.cut_mid[here_].data();
     const Row* const cut_mid_before = st_.cut_mid[there_].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const Outlet out = outlet(kSide, here_);
-    Quad* const open = st_.open[at(kSide)].data();
-    // Where a strip starts or ends depends on the rows beside it, too.
-    const bool compared = most(rows);
-    if (compared) {
-      rows = compare_across({face, cut_mid, face_before, cut_mid_before, cut_slow});
-    } else {
-      rows |= (rows << 1 | rows >> 1) & bits_below<Row>(e_.m);
+    const Outlet out = outlet(kSide, there_);
+    std::uint8_t* const born = st_.born[at(kSide) - at(Side::fast_neg)].data();
+    Row closed = 0;  // bits that closed in the row before
+    std::uint32_t next = 0;
+    for (RowSet left = rows; left != 0; left &= left - 1) {
+      const std::uint32_t m = lowest_bit(left);
+      const Row closing = face_before[m] & (~face[m] | cut_at(cut_slow + m));
+      const Row beside = m == next ? closing & closed & ~cut_at(cut_mid_before + m) : Row{0};
+      const std::uint8_t* const began = born + std::size_t{m} * kRowBits<Row>;
+      for (Row bits = closing; bits != 0; bits &= bits - 1) {
+        const unsigned bit = lowest_bit(bits);
+        const std::uint32_t first = began[bit];
+        if ((beside >> bit & 1) != 0 && (began + bit)[-static_cast<std::ptrdiff_t>(kRowBits<Row>)] == first) {
+          grow_last(out, bit, m);
+        } else {
+          const Quad quad = open_quad(out, {bit, first, s - first, m}, m, bit);
+          close_quad(out, quad, bit, m + 1);
+        }
+      }
+      closed = closing;
+      next = m + 1;
     }
-    const auto found = [this](std::size_t what, std::uint32_t m) { return st_.strips[what].data()[m]; };
-    while (rows != 0) {
-      std::uint32_t m = lowest_bit(rows);
-      Row closing = 0;
-      Row opening = 0;
-      do {
-        const Strips now =
-            compared ? Strips{face[m], found(1, m), found(2, m)} : strips_across(face, cut_mid, m);
-        const Strips before = compared ? Strips{face_before[m], found(3, m), found(4, m)}
-                                       : strips_across(face_before, cut_mid_before, m);
-        const Row x = compared ? found(0, m) : changed<Row>(now, before, cut_at(cut_slow + m));
-        closing = ((closing & ~before.start) | x) & before.face;
-        opening = ((opening & ~now.start) | x) & now.face;
-        const Row ends = closing & before.end;
-        const Row begins = opening & now.end;
-        Quad* const slots = open + std::size_t{m} * kRowBits<Row>;
-        for (Row bits = ends; bits != 0; bits &= bits - 1) {
-          const unsigned bit = lowest_bit(bits);
-          close_quad(out, slots[bit], bit, s);
-        }
-        for (Row bits = begins; bits != 0; bits &= bits - 1) {
-          const unsigned bit = lowest_bit(bits);
-          std::uint32_t begin = m;
-          while (goes_on(face, cut_mid, begin, bit)) --begin;
-          slots[bit] = open_quad(out, {bit, begin, m - begin + 1, s}, m, bit);
-        }
-        closing &= ~ends;
-        opening &= ~begins;
-        ++m;
-      } while ((closing | opening) != 0);
-      rows &= m < kRowBits<Row> ? ~Row{0} << m : Row{0};
+    for (RowSet left = rows; left != 0; left &= left - 1) {
+      const std::uint32_t m = lowest_bit(left);
+      std::uint8_t* const begins = born + std::size_t{m} * kRowBits<Row>;
+      for (Row bits = face[m] & (~face_before[m] | cut_at(cut_slow + m)); bits != 0; bits &= bits - 1) {
+        begins[lowest_bit(bits)] = static_cast<std::uint8_t>(s);
+      }
     }
   }
-  /// Whether the strip at bit `bit` of row m came from the row before.
-  static HWY_INLINE bool goes_on(const Row* face, [[maybe_unused]] const Row* cut, std::uint32_t m,
-                                 unsigned bit) {
-    Row before = (face + m)[-1];
-    if constexpr (kNumbered) before &= ~cut[m];
-    return (before >> bit & 1) != 0;
+  /// Adds row m to the quad that was last put into a layer, of the material at (m, bit).
+  static HWY_INLINE void grow_last(const Outlet& out, unsigned bit, [[maybe_unused]] std::uint32_t m) {
+    QuadBuckets::Bucket* buckets = out.opaque;
+    if constexpr (kNumbered) {
+      if (out.mixed && whole_code(out.layer[m * out.line_size + bit]) >= kTransparentBit) buckets = out.transparent;
+    }
+    Quad& last = buckets[bit].quads[buckets[bit].count - 1];
+    last = out.shape.with_row_more(last);
   }
 
   /// Closes what reaches the last layer: as if one without faces followed it.

@@ -80,9 +80,11 @@ struct SweepState {
   std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
   Rows cut_slow;
   std::array<std::array<Rows, 2>, 6> face;  // voxels whose face shows, by side
-  std::array<Rows, 5> strips;  // of a side in which most rows change, made for all its rows at once
-  /// Quads that are open, by side; then by end of the strip (slow), row and end (middle), end and bit (fast).
-  std::array<std::array<Quad, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 6> open;
+  std::array<Rows, 3> strips;  // of a side in which most rows change, made for all its rows at once
+  /// Quads that are open, by side; then by end of the strip (slow), or by row and end (middle).
+  std::array<std::array<Quad, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 4> open;
+  /// Layer in which a face across the fastest axis appeared, by side, row and bit.
+  std::array<std::array<std::uint8_t, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 2> born;
 };
 
 struct SweepInput {

@@ -39,6 +39,9 @@ class QuadShape {
     return {open.bits + (std::uint64_t{row_end} << rows_shift_)};
   }
 
+  /// A closed quad with one row more.
+  constexpr Quad with_row_more(Quad q) const { return {q.bits + (std::uint64_t{1} << rows_shift_)}; }
+
   /// First row and number of rows of a closed quad.
   constexpr std::uint32_t row(Quad q) const { return static_cast<std::uint32_t>(q.bits >> row_shift_ & 127); }
   constexpr std::uint32_t rows(Quad q) const {

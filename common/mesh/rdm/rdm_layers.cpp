@@ -5,6 +5,7 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
+#include "common/runs/layer_walk.hpp"
 #include "common/runs/run_cursor.hpp"
 
 namespace runstone {
@@ -147,7 +148,7 @@ class Remesher {
     }
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       if (d % 2 == 0) scratch_.row_layers.reset();  // another axis
-      const rdm::SideAxes a = axes(d);
+      const rdm::StripAxes a = axes(d);
       const std::uint32_t depth = side_of(chunk_, a.layer);
       for (std::uint32_t l = 0; l < depth; ++l) {
         if (touched_[d][l]) mesh_layer(static_cast<Direction>(d), l, a);
@@ -157,16 +158,16 @@ class Remesher {
   }
 
  private:
-  rdm::SideAxes axes(std::size_t direction) const {
-    const auto all = rdm::side_axes(chunk_.order);
-    return *std::find_if(all.begin(), all.end(), [direction](const rdm::SideAxes& s) {
+  rdm::StripAxes axes(std::size_t direction) const {
+    const auto all = rdm::strip_axes(chunk_.order);
+    return *std::find_if(all.begin(), all.end(), [direction](const rdm::StripAxes& s) {
       return static_cast<std::size_t>(s.layer) == direction / 2;
     });
   }
 
-  void mesh_layer(Direction direction, std::uint32_t layer, const rdm::SideAxes& a) {
+  void mesh_layer(Direction direction, std::uint32_t layer, const rdm::StripAxes& a) {
     const auto d = static_cast<std::size_t>(direction);
-    const QuadShape shape(direction, a.bit, a.row);
+    const QuadShape shape(direction, a.strip, a.row);
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       const auto quads = passes_[pass]->layer(direction, layer);
       scratch_.layer[pass].assign(quads.begin(), quads.end());
@@ -180,11 +181,15 @@ class Remesher {
       std::vector<Quad>& quads = scratch_.layer[pass];
       const auto before = passes_[pass]->layer(direction, layer);
       if (quads.empty() && before.empty()) continue;
-      // The order in which a sweep closes them.
-      std::sort(quads.begin(), quads.end(), [&shape](Quad x, Quad y) {
-        const std::uint32_t x_end = shape.row_end(x);
-        const std::uint32_t y_end = shape.row_end(y);
-        return x_end != y_end ? x_end < y_end : shape.last(x) < shape.last(y);
+      // The order in which a sweep closes them: it goes up the rows, or along the strips.
+      const bool along = rank_of(a.layer, chunk_.order) == 0;
+      std::sort(quads.begin(), quads.end(), [&shape, along](Quad x, Quad y) {
+        const std::uint32_t x_rows = along ? shape.row(x) : shape.row_end(x);
+        const std::uint32_t y_rows = along ? shape.row(y) : shape.row_end(y);
+        const std::uint32_t x_last = shape.last(x);
+        const std::uint32_t y_last = shape.last(y);
+        if (along) return x_last != y_last ? x_last < y_last : x_rows < y_rows;
+        return x_rows != y_rows ? x_rows < y_rows : x_last < y_last;
       });
       if (std::equal(quads.begin(), quads.end(), before.begin(), before.end())) continue;
       LayerPatch& patch = scratch_.patch[pass];
@@ -193,9 +198,9 @@ class Remesher {
     }
   }
 
-  void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::SideAxes& a,
+  void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a,
                 const QuadShape& shape) {
-    const std::uint32_t bits = side_of(chunk_, a.bit);
+    const std::uint32_t bits = side_of(chunk_, a.strip);
     const Material* const own = own_row(layer, row, a).data();
     const Material* beyond = nullptr;
     std::array<Material, kSideMax> outside;
@@ -232,7 +237,7 @@ class Remesher {
 
   /// A row of the chunk; those of one row number are kept until another is asked for.
   const std::array<Material, kSideMax>& own_row(std::uint32_t layer, std::uint32_t row,
-                                                const rdm::SideAxes& a) {
+                                                const rdm::StripAxes& a) {
     if (row != scratch_.row_number) {
       scratch_.row_number = row;
       scratch_.row_layers.reset();
@@ -240,7 +245,7 @@ class Remesher {
     auto& voxels = scratch_.row_voxels[layer];
     if (!scratch_.row_layers[layer]) {
       scratch_.row_layers.set(layer);
-      decode(&chunk_, {a.layer, layer, a.row, row}, std::span(voxels).first(side_of(chunk_, a.bit)));
+      decode(&chunk_, {a.layer, layer, a.row, row}, std::span(voxels).first(side_of(chunk_, a.strip)));
     }
     return voxels;
   }

@@ -127,6 +127,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
                 const VisibilityTable& visibility, Scratch& scratch, std::unique_ptr<RowScratch<Row>>& rows) {
   if (!rows) rows = std::make_unique<RowScratch<Row>>();
   const auto axes = side_axes(chunk.order);
+  const auto strips = rdm::strip_axes(chunk.order);
   rdm::SweepInput input;
   input.runs = scratch.runs;
   input.extent = ordered(chunk.extent, chunk.order);
@@ -137,8 +138,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
     const SideAxes& a = axes[side / 2];
     const Direction direction = direction_of(a.layer, side % 2 != 0);
     input.direction[side] = direction;
-    // Strips run along the bits of a row, and from row to row where each bit is a layer of its own.
-    input.shape[side] = rdm::QuadShape(direction, a.bit, a.row);
+    input.shape[side] = rdm::QuadShape(direction, strips[side / 2].strip, strips[side / 2].row);
     const auto d = static_cast<std::size_t>(direction);
     read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch, static_cast<Side>(side),
                 rows->borders);
@@ -159,18 +159,19 @@ bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const
   }
   out.clear();
   const Material material = chunk.runs.material(0);
-  const auto axes = side_axes(chunk.order);
+  const auto axes = rdm::strip_axes(chunk.order);
   const auto sides = chunk.extent.sides();
   QuadLayers& pass = visibility[material] == Visibility::transparent ? out.transparent : out.opaque;
   for (std::size_t d = 0; d < kDirectionCount; ++d) {
     const Material beyond = neighbours[d] == nullptr ? kEmpty : neighbours[d]->runs.material(0);
     if (!visibility.face_drawn(material, beyond)) continue;
     const auto direction = static_cast<Direction>(d);
-    const SideAxes& a = *std::find_if(
-        axes.begin(), axes.end(), [direction](const SideAxes& s) { return s.layer == axis_of(direction); });
+    const rdm::StripAxes& a = *std::find_if(axes.begin(), axes.end(), [direction](const rdm::StripAxes& s) {
+      return s.layer == axis_of(direction);
+    });
     const std::uint32_t layer = is_positive(direction) ? sides[d / 2] - 1u : 0u;
-    const rdm::QuadShape shape(direction, a.bit, a.row);
-    const Quad strip = shape.open({layer, 0, sides[static_cast<std::size_t>(a.bit)], 0}, material);
+    const rdm::QuadShape shape(direction, a.strip, a.row);
+    const Quad strip = shape.open({layer, 0, sides[static_cast<std::size_t>(a.strip)], 0}, material);
     pass.quads.push_back(shape.close(strip, sides[static_cast<std::size_t>(a.row)]));
     std::fill(pass.first.begin() + static_cast<std::ptrdiff_t>(d * kSideMax + layer + 1), pass.first.end(),
               static_cast<std::uint32_t>(pass.quads.size()));

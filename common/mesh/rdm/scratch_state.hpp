@@ -39,9 +39,18 @@ constexpr Direction direction_of(Axis axis, bool positive) {
 struct SideAxes {
   Axis layer, bit, row;
 };
+/// How their quads come about: which axis strips run along, and from row to row of which they are joined.
+struct StripAxes {
+  Axis layer, strip, row;
+};
 constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
   const auto axes = axes_of(order);
   return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[1], axes[2]}}};
+}
+
+constexpr std::array<StripAxes, 3> strip_axes(AxisOrder order) {
+  const auto axes = axes_of(order);
+  return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[2], axes[1]}}};
 }
 
 }  // namespace runstone::rdm
