@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A code at a time, or eight bytes in a word: the plain path.
+/// A code at a time: the plain path.
 struct PlainCodes {
   /// Codes that fill() may write behind `stop`.
   template <class C>
@@ -31,29 +31,35 @@ struct PlainCodes {
   static void fill(C* from, const C* stop, C code) {
     for (; from < stop; ++from) *from = code;
   }
-  /// Bit i: whether a[i] is not b[i], for as many i as a row has bits.
-  template <class Row, class C>
-  static Row differing(const C* a, const C* b) {
-    return gather<Row>([a, b](unsigned i) { return a[i] != b[i]; });
-  }
-  /// Bit i: whether a[i] is not 0.
-  template <class Row, class C>
-  static Row solid(const C* a) {
-    return gather<Row>([a](unsigned i) { return a[i] != 0; });
-  }
-  /// Bit i: whether a[i] is a transparent code.
-  template <class Row, class C>
-  static Row transparent(const C* a) {
-    return gather<Row>([a](unsigned i) { return a[i] >> (sizeof(C) * 8 - 1) != 0; });
-  }
 
- private:
-  template <class Row, class F>
-  static Row gather(F&& bit) {
-    Row row = 0;
-    for (unsigned i = 0; i < kRowBits<Row>; ++i) row |= Row{bit(i)} << i;
-    return row;
-  }
+  /// As many codes as a row has bits.
+  template <class Row, class C>
+  class Line {
+   public:
+    static Line at(const C* codes) { return Line(codes); }
+    /// Bit i: whether code i is not 0.
+    Row solid() const {
+      return gather([this](unsigned i) { return codes_[i] != 0; });
+    }
+    /// Bit i: whether code i is a transparent one.
+    Row transparent() const {
+      return gather([this](unsigned i) { return codes_[i] >> (sizeof(C) * 8 - 1) != 0; });
+    }
+    /// Bit i: whether the two have another code there.
+    friend Row differing(const Line& a, const Line& b) {
+      return gather([&](unsigned i) { return a.codes_[i] != b.codes_[i]; });
+    }
+
+   private:
+    explicit Line(const C* codes) : codes_(codes) {}
+    template <class F>
+    static Row gather(F&& bit) {
+      Row row = 0;
+      for (unsigned i = 0; i < kRowBits<Row>; ++i) row |= Row{bit(i)} << i;
+      return row;
+    }
+    const C* codes_;
+  };
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
@@ -73,38 +79,43 @@ struct VectorCodes {
       from += kBehind<C>;
     } while (from < stop);
   }
-  template <class Row, class C>
-  static HWY_INLINE Row differing(const C* a, const C* b) {
-    const D<C> d;
-    return gather<Row, C>([=](unsigned i) { return hn::Ne(hn::LoadU(d, a + i), hn::LoadU(d, b + i)); });
-  }
-  template <class Row, class C>
-  static HWY_INLINE Row solid(const C* a) {
-    const D<C> d;
-    return gather<Row, C>([=](unsigned i) { return hn::Ne(hn::LoadU(d, a + i), hn::Zero(d)); });
-  }
-  template <class Row, class C>
-  static HWY_INLINE Row transparent(const C* a) {
-    const D<C> d;
-    const hn::RebindToSigned<D<C>> s;
-    return gather<Row, C>([=](unsigned i) {
-      return hn::RebindMask(d, hn::Lt(hn::BitCast(s, hn::LoadU(d, a + i)), hn::Zero(s)));
-    });
-  }
 
- private:
-  template <class Row, class C, class F>
-  static HWY_INLINE Row gather(F&& mask_at) {
-    Row row = 0;
-    for (unsigned i = 0; i < kRowBits<Row>; i += kBehind<C>) {
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(D<C>(), mask_at(i), bytes);
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, bytes, sizeof bits);
-      row |= Row{bits} << i;
+  template <class Row, class C>
+  class Line {
+   public:
+    static HWY_INLINE Line at(const C* codes) {
+      Line line;
+      for (unsigned i = 0; i < kParts; ++i) line.part_[i] = hn::LoadU(D<C>(), codes + i * kBehind<C>);
+      return line;
     }
-    return row;
-  }
+    HWY_INLINE Row solid() const {
+      return gather([this](unsigned i) { return hn::Ne(part_[i], hn::Zero(D<C>())); });
+    }
+    HWY_INLINE Row transparent() const {
+      const hn::RebindToSigned<D<C>> s;
+      return gather(
+          [&](unsigned i) { return hn::RebindMask(D<C>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s))); });
+    }
+    friend HWY_INLINE Row differing(const Line& a, const Line& b) {
+      return gather([&](unsigned i) { return hn::Ne(a.part_[i], b.part_[i]); });
+    }
+
+   private:
+    static constexpr unsigned kParts = kRowBits<Row> / kBehind<C>;
+    template <class F>
+    static HWY_INLINE Row gather(F&& mask_of) {
+      Row row = 0;
+      for (unsigned i = 0; i < kParts; ++i) {
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(D<C>(), mask_of(i), bytes);
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, bytes, sizeof bits);
+        row |= Row{bits} << (i * kBehind<C>);
+      }
+      return row;
+    }
+    hn::Vec<D<C>> part_[kParts];
+  };
 };
 #else
 using VectorCodes = PlainCodes;

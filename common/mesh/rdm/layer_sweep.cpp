@@ -27,6 +27,7 @@ class Sweep {
   using Row = typename Lanes::Row;
   using V = typename Lanes::V;
   using Rows = LayerRows<Row>;
+  using Line = typename CodeLanes::template Line<Row, C>;
   static constexpr unsigned kLanes = Lanes::kLanes;
   static_assert(CodeLanes::template kBehind<C> <= LayerCodes<Row, C>::kRoom);
 
@@ -122,18 +123,21 @@ class Sweep {
     Row* const mid = st_.cut_mid[here_].data();
     Row* const slow = st_.cut_slow.data();
     const std::uint32_t count = e_.m;
+    Line above = Line::at(line - e_.f);
     for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_there += e_.f) {
-      const Row own = CodeLanes::template solid<Row>(line) & valid_;
-      solid[m] = own;
-      hiding[m] = own;
+      const Line own = Line::at(line);
+      const Row faced = own.solid() & valid_;
+      solid[m] = faced;
+      hiding[m] = faced;
       if constexpr (kNumbered) {
         if (mixed_) {
-          transparent[m] = CodeLanes::template transparent<Row>(line) & valid_;
-          hiding[m] = own & ~transparent[m];
+          transparent[m] = own.transparent() & valid_;
+          hiding[m] = faced & ~transparent[m];
         }
-        fast[m] = CodeLanes::template differing<Row>(line, line - 1) | 1;
-        mid[m] = CodeLanes::template differing<Row>(line, line - e_.f);
-        slow[m] = CodeLanes::template differing<Row>(line, line_there);
+        fast[m] = differing(own, Line::at(line - 1)) | 1;
+        mid[m] = differing(own, above);
+        slow[m] = differing(own, Line::at(line_there));
+        above = own;
       }
     }
     std::fill_n(solid + count, Rows::kBehind, Row{0});
@@ -175,7 +179,7 @@ class Sweep {
   }
   /// The same for a line of ours.
   Row same_beyond_line(Side side, std::uint32_t row, const C* line) const {
-    const Row ours = CodeLanes::template transparent<Row>(line) & valid_;
+    const Row ours = Line::at(line).transparent() & valid_;
     return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });
   }
 
@@ -571,7 +575,8 @@ class Sweep {
   static HWY_INLINE void grow_last(const Outlet& out, unsigned bit, [[maybe_unused]] std::uint32_t m) {
     QuadBuckets::Bucket* buckets = out.opaque;
     if constexpr (kNumbered) {
-      if (out.mixed && whole_code(out.layer[m * out.line_size + bit]) >= kTransparentBit) buckets = out.transparent;
+      if (out.mixed && whole_code(out.layer[m * out.line_size + bit]) >= kTransparentBit)
+        buckets = out.transparent;
     }
     Quad& last = buckets[bit].quads[buckets[bit].count - 1];
     last = out.shape.with_row_more(last);

@@ -57,6 +57,8 @@ void copy_border(const ChunkBorders& borders, Direction side, Axis bit_axis, Row
   const std::size_t count = borders.row_count(side);
   if (words == 1) {
     std::copy_n(from, count, out.begin());
+  } else if (words == 2) {
+    for (std::size_t r = 0; r < count; ++r) out[r] = from[2 * r] | Row{from[2 * r + 1]} << 32;
   } else {
     for (std::size_t r = 0; r < count; ++r) {
       Row row = 0;
