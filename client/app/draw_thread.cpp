@@ -134,7 +134,7 @@ void DrawThread::serve(const std::stop_token& stop, Screen& screen) {
     std::vector<DrawDone> uploads;
     for (const auto& [key, upload] : work->changes) {
       if (upload) {
-        screen.upload(key, upload->edge, upload->mesh);
+        screen.upload(key, upload->edge, *upload->mesh);
         uploads.emplace_back(UploadDone{key, upload->serial, steady_now_us()});
       } else {
         screen.remove(key);

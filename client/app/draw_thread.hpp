@@ -29,7 +29,7 @@ namespace runstone {
 struct ChunkUpload {
   std::uint64_t serial = 0;
   std::int32_t edge = 0;  // voxels
-  ChunkMesh mesh;
+  std::shared_ptr<const ChunkMesh> mesh;
 };
 
 struct FrameOrder {

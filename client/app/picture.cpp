@@ -22,6 +22,7 @@ void Picture::set_materials(const MaterialTable& materials) {
   if (pool_ && materials_ == materials) return;
   materials_ = materials;
   if (draw_thread_) draw_thread_->set_materials(materials_);
+  planner_.forget_meshes();
   pool_.reset();
   pool_ = std::make_unique<MeshPool>(VisibilityTable(materials_), workers_, steady_now_ns, wake_);
 }
@@ -66,8 +67,8 @@ void Picture::mesh() {
 
 void Picture::take_results() {
   for (MeshResult& result : pool_->take_results()) {
-    mesh_ns_.add(result.mesh_ns);
-    if (!planner_.accept(result.key, result.number)) continue;
+    (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
+    if (!planner_.finish(result.key, result.number, result.mesh)) continue;
     recorder_.meshed(result.key, result.serial, result.meshed_us);
     if (!draw_thread_) continue;
     draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
@@ -113,7 +114,9 @@ bool Picture::has_caught_up() {
 }
 
 void Picture::report(ChunkStats& chunks, FrameStats& frames) const {
-  chunks.mesh_ns = mesh_ns_;
+  chunks.whole_ns = whole_ns_;
+  chunks.layers_ns = layers_ns_;
+  chunks.kept_mesh_bytes = planner_.kept_bytes();
   chunks.mesh_jobs = planner_.jobs();
   chunks.chunks_meshed = planner_.chunks_meshed();
   frames = frames_;

@@ -85,7 +85,7 @@ class Picture {
   LatencyRecorder recorder_;
   MeshPlanner planner_;
   MaterialTable materials_;
-  Histogram mesh_ns_;
+  Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
   // Since the last frame was ordered:
   bool changed_ = true;           // something that is drawn

@@ -16,8 +16,10 @@ struct ChunkStats {
   std::uint64_t raw_bytes = 0;   // the same chunks in the raw encoding
   Histogram runs;                // per snapshot
   Histogram unpack_ns;           // per snapshot: verify, decode, validate
-  Histogram mesh_ns;             // per mesh: inside the mesher
+  Histogram whole_ns;            // per mesh of a whole chunk
+  Histogram layers_ns;           // per mesh of what changed since the one before
   std::uint64_t mesh_jobs = 0, chunks_meshed = 0;
+  std::uint64_t kept_mesh_bytes = 0;  // of the newest meshes of all chunks in view, at the end
 };
 
 /// Frames as they were drawn, on the draw thread.

@@ -208,14 +208,14 @@ void Replica::receive(const ChunkUnavailable& unavailable) {
     // What was held from an earlier connection gets no more edits: better nothing than something stale.
     if (std::exchange(chunk.current, false)) --current_count_;
     if (std::exchange(chunk.confirmed, nullptr)) --confirmed_count_;
-    const bool was_shown = std::exchange(chunk.shown, nullptr) != nullptr;
+    const ShownPtr was_shown = std::exchange(chunk.shown, nullptr);
     chunk.serial = 0;
     chunk.awaiting = false;
     chunk.inbox.clear();
     news_.removed(key);  // also where nothing was shown: neighbours wait for it no longer
     for (int i = 0; was_shown && i < kDirectionCount; ++i) {
       const auto d = static_cast<Direction>(i);
-      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), {});
+      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), all_layers(was_shown->extent), {});
     }
     news_.unavailable({key, unavailable.reason});
   }
@@ -410,7 +410,7 @@ void Replica::show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next,
 
   ChunkNews& own = news_.chunk(key);
   own.serial = chunk.serial;
-  own.dirty |= dirty;
+  own.layers.dirty |= dirty;
   own.whole = own.whole || whole;
   own.removed = false;
   NewsBook::attribute(own, cause);
@@ -419,19 +419,20 @@ void Replica::show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next,
   for (int i = 0; i < kDirectionCount; ++i) {
     const auto d = static_cast<Direction>(i);
     if (border_dirty(dirty, d, extent.sides()[static_cast<std::size_t>(axis_of(d))])) {
-      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), cause);
+      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), dirty, cause);
     }
   }
 }
 
-/// Tells the mesher that what lies beside a chunk on this side is different now.
-void Replica::border_changed(const ChunkKey& key, Direction side, std::span<EditNews* const> cause) {
+/// Tells the mesher that what lies beside a chunk on this side is different now, in these of its layers.
+void Replica::border_changed(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
+                             std::span<EditNews* const> cause) {
   TrackedChunk* chunk = find(key);
   if (chunk == nullptr || !chunk->shown) return;
   chunk->serial = ++last_serial_;
   ChunkNews& border = news_.chunk(key);
   border.serial = chunk->serial;
-  border.borders = static_cast<std::uint8_t>(border.borders | 1U << static_cast<unsigned>(side));
+  border.layers.beyond[static_cast<std::size_t>(side)] |= dirty;
   NewsBook::attribute(border, cause);
 }
 

@@ -122,7 +122,8 @@ class Replica {
   void settle_own();
   void request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
   void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next, std::span<EditNews* const> cause);
-  void border_changed(const ChunkKey& key, Direction side, std::span<EditNews* const> cause);
+  void border_changed(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
+                      std::span<EditNews* const> cause);
   void show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause);
   bool is_own(const OperationId& op) const;
   VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }

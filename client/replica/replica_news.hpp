@@ -1,6 +1,8 @@
 // ReplicaNews: what changed in a replica since it was last asked, for the mesher, the latency recorder and
 // the UI.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,14 +23,26 @@ struct Arrival {
 
 inline constexpr TimeUs kTimeUnknown = -1;
 
+/// The layers of a chunk's picture that changed, as mesh_rdm_layers() wants them.
+struct PictureLayers {
+  DirtyLayers dirty;  // in which a shown voxel changed
+  /// By Direction, the same of each neighbour that changed in the layer that touches this chunk: all its
+  /// layers. Empty where that layer stayed as it was.
+  std::array<DirtyLayers, kDirectionCount> beyond;
+  PictureLayers& operator|=(const PictureLayers& other) {
+    dirty |= other.dirty;
+    for (std::size_t d = 0; d < beyond.size(); ++d) beyond[d] |= other.beyond[d];
+    return *this;
+  }
+  friend bool operator==(const PictureLayers&, const PictureLayers&) = default;
+};
+
 /// One chunk whose picture changed. Changes of a chunk are joined until they are taken.
 struct ChunkNews {
   ChunkKey key;
-  std::uint64_t serial = 0;  // of the shown runs, see Replica::shown_serial()
-  DirtyLayers dirty;         // layers in which a shown voxel changed
-  std::uint8_t borders =
-      0;               // bit per Direction: the neighbour there changed in the layer that touches this chunk
-  bool whole = false;  // nothing was shown here before
+  std::uint64_t serial = 0;        // of the picture, see Replica::shown_serial()
+  PictureLayers layers;            // all that changed, but for neighbours that came or left the view
+  bool whole = false;              // nothing was shown here before, or nothing in between
   bool removed = false;            // out of view or unavailable: nothing is shown here
   std::vector<OperationId> edits;  // edits that this change contains, in the order they were applied
 };

@@ -1,5 +1,7 @@
 #include "client/schedule/mesh_planner.hpp"
 
+#include <utility>
+
 namespace runstone {
 namespace {
 
@@ -14,6 +16,14 @@ std::int64_t distance_squared(ChunkCoord a, ChunkCoord b) {
 
 }  // namespace
 
+template <class Act>
+void MeshPlanner::for_each_beside(const ChunkKey& key, Act act) {
+  for (int i = 0; i < kDirectionCount; ++i) {
+    const auto it = states_.find(beside(key, static_cast<Direction>(i)));
+    if (it != states_.end()) act(it->first, it->second);
+  }
+}
+
 void MeshPlanner::take(std::span<const ChunkNews> news) {
   for (const ChunkNews& chunk : news) {
     if (chunk.removed) {
@@ -22,22 +32,26 @@ void MeshPlanner::take(std::span<const ChunkNews> news) {
         if (it->second.dirty) --dirty_;
         states_.erase(it);
       }
-      place_neighbours(chunk.key);
+      for_each_beside(chunk.key, [this](const ChunkKey& key, State& state) { place(key, state); });
       continue;
     }
-    mark(chunk.key, states_[chunk.key], !chunk.edits.empty());
-    if (!chunk.whole) continue;
-    for (int i = 0; i < kDirectionCount; ++i) {
-      const auto d = static_cast<Direction>(i);
-      const auto it = states_.find(beside(chunk.key, d));
-      if (it == states_.end()) continue;
-      const auto side = 1U << static_cast<unsigned>(opposite(d));
-      if ((it->second.open_sides & side) != 0) {
-        mark(it->first, it->second, false);
-      } else {
-        place(it->first, it->second);
-      }
+    State& state = states_[chunk.key];
+    state.serial = chunk.serial;
+    state.changed |= chunk.layers;
+    state.edited = state.edited || !chunk.edits.empty();
+    if (!chunk.whole) {
+      mark(chunk.key, state);
+      continue;
     }
+    mark_whole(chunk.key, state);
+    // Neighbours that had a job had it without this chunk, or with what it was when it was last in view.
+    for_each_beside(chunk.key, [this](const ChunkKey& key, State& other) {
+      if (other.counted) {
+        mark_whole(key, other);
+      } else {
+        place(key, other);
+      }
+    });
   }
 }
 
@@ -62,11 +76,17 @@ bool MeshPlanner::ready(const ChunkKey& key) const {
   return true;
 }
 
-void MeshPlanner::mark(const ChunkKey& key, State& state, bool edited) {
+void MeshPlanner::mark(const ChunkKey& key, State& state) {
   if (!state.dirty) ++dirty_;
   state.dirty = true;
-  state.edited = state.edited || edited;
   place(key, state);
+}
+
+/// What was meshed of the chunk does not help to mesh what is there now.
+void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
+  state.mesh.reset();
+  state.job = 0;
+  mark(key, state);
 }
 
 /// Puts the chunk where it belongs in the order of jobs, or out of it.
@@ -75,16 +95,9 @@ void MeshPlanner::place(const ChunkKey& key, State& state) {
     ready_.erase(*state.rank);
     state.rank.reset();
   }
-  if (!state.dirty || !ready(key)) return;
+  if (!state.dirty || state.job != 0 || !ready(key)) return;
   state.rank = Rank{state.edited ? 0 : 1, distance_squared(key.at, eye_), key};
   ready_.insert(*state.rank);
-}
-
-void MeshPlanner::place_neighbours(const ChunkKey& key) {
-  for (int i = 0; i < kDirectionCount; ++i) {
-    const auto it = states_.find(beside(key, static_cast<Direction>(i)));
-    if (it != states_.end()) place(it->first, it->second);
-  }
 }
 
 std::optional<MeshJob> MeshPlanner::next() {
@@ -99,13 +112,23 @@ std::optional<MeshJob> MeshPlanner::next() {
     job.number = ++jobs_;
     job.serial = replica_.shown_serial(key);
     job.chunk = replica_.shown(key);
-    state.open_sides = 0;
+    std::uint8_t open_sides = 0;
     for (std::size_t i = 0; i < job.neighbours.size(); ++i) {
       job.neighbours[i] = replica_.shown(beside(key, static_cast<Direction>(i)));
-      if (!job.neighbours[i]) state.open_sides = static_cast<std::uint8_t>(state.open_sides | 1U << i);
+      if (!job.neighbours[i]) open_sides = static_cast<std::uint8_t>(open_sides | 1U << i);
     }
-    if (state.job == 0) ++chunks_;
+    // The kept mesh and what changed lead to this picture, if all of its changes were told.
+    if (state.mesh && state.serial == job.serial && state.order == job.chunk->order &&
+        state.open_sides == open_sides) {
+      job.before = std::move(state.mesh);
+      job.changed = state.changed;
+    }
+    state.mesh.reset();
+    state.changed = {};
+    state.order = job.chunk->order;
+    state.open_sides = open_sides;
     state.job = job.number;
+    if (!std::exchange(state.counted, true)) ++chunks_;
     state.dirty = false;
     state.edited = false;
     --dirty_;
@@ -114,11 +137,28 @@ std::optional<MeshJob> MeshPlanner::next() {
   return std::nullopt;
 }
 
-bool MeshPlanner::accept(const ChunkKey& key, std::uint64_t number) {
+bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh) {
   const auto it = states_.find(key);
-  if (it == states_.end() || number <= it->second.drawn) return false;
-  it->second.drawn = number;
+  if (it == states_.end() || number != it->second.job) return false;
+  it->second.mesh = std::move(mesh);
+  it->second.job = 0;
+  place(key, it->second);
   return true;
+}
+
+void MeshPlanner::forget_meshes() {
+  for (auto& [key, state] : states_) mark_whole(key, state);
+}
+
+std::size_t MeshPlanner::kept_bytes() const {
+  // Chunks without quads share one mesh.
+  std::size_t bytes = 0;
+  for (const auto& [key, state] : states_) {
+    if (state.mesh && !state.mesh->empty()) {
+      bytes += sizeof(ChunkMesh) + state.mesh->quad_count() * sizeof(Quad);
+    }
+  }
+  return bytes;
 }
 
 }  // namespace runstone

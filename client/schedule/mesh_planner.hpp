@@ -1,15 +1,25 @@
 // MeshPlanner: which chunk to mesh next, and from what. Pure; the threads are MeshPool's.
-//   - changes of one chunk are joined until it is meshed (the newest runs win; older results are dropped);
+//   - changes of one chunk are joined until it is meshed; it has one job at a time, and what changes meanwhile
+//     is for the next;
 //   - a chunk waits for neighbours that are in view and not here yet; beyond the view, or where the server
 //     has none to send, a missing neighbour means that the faces at the edge are drawn, and the chunk is
-//     meshed again should the view grow past it;
+//     meshed again should the neighbour come;
 //   - a change at the border meshes the neighbour again too;
 //   - edited chunks first, then the nearest to the eye.
+// The newest mesh of each chunk is kept, and with it the layers that changed since its job was made; the next
+// job takes both along, so that only those layers are meshed again. The news of the replica are the one
+// source of these layers: whatever replaces shown runs (a prediction, one taken back, a commit, a snapshot)
+// passes there, with all layers between the old runs and the new. A chunk is meshed as a whole where that
+// does not describe the way from the kept mesh to the picture of now: there is no mesh yet, the chunk or a
+// neighbour came, went or came back since, the axis order is another, or there are news not yet taken.
 // One thread. Cost: O(log chunks) a change or job, O(chunks to mesh) when the eye crosses into another chunk.
+// Memory: kept_bytes(), and some 500 bytes a chunk in view.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -18,15 +28,24 @@
 #include "client/replica/replica.hpp"
 #include "client/replica/replica_news.hpp"
 #include "common/core/coords.hpp"
+#include "common/mesh/chunk_mesh.hpp"
+#include "common/runs/axis_order.hpp"
 
 namespace runstone {
 
+/// Null: none.
+using MeshPtr = std::shared_ptr<const ChunkMesh>;
+
 struct MeshJob {
   ChunkKey key;
-  std::uint64_t number = 0;  // rises with every job: of two results for a chunk the higher one wins
+  std::uint64_t number = 0;  // rises with every job
   std::uint64_t serial = 0;  // Replica::shown_serial() of what is meshed
   ShownPtr chunk;
   std::array<ShownPtr, kDirectionCount> neighbours;  // null: beyond the view
+  /// The mesh to start from, and the layers that changed since, as mesh_rdm_layers() wants them. Null: mesh
+  /// the whole chunk.
+  MeshPtr before;
+  PictureLayers changed;
 };
 
 class MeshPlanner {
@@ -38,11 +57,14 @@ class MeshPlanner {
   void view_changed();
   void set_eye(ChunkCoord eye);
 
-  /// The next job; none while everything left waits for a neighbour.
+  /// The next job; none while everything left waits for a neighbour or for a result. Every job must be
+  /// finished, or made void.
   std::optional<MeshJob> next();
-  /// Whether the result of this job should be drawn: its chunk is in view and nothing newer was drawn.
-  /// A true answer is remembered as drawn.
-  bool accept(const ChunkKey& key, std::uint64_t number);
+  /// Takes the mesh of a job that is done, and keeps it. Returns whether it should be drawn: not if its chunk
+  /// left the view since, even if it came back, or if the job was made void.
+  bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh);
+  /// No mesh holds any more, nor will that of any job out: materials look different now. Meshes all again.
+  void forget_meshes();
 
   /// Chunks to mesh, and those of them that need not wait.
   std::size_t dirty_count() const { return dirty_; }
@@ -50,21 +72,30 @@ class MeshPlanner {
   std::uint64_t jobs() const { return jobs_; }
   /// Chunks that got at least one job. jobs() / this is the number of meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }
+  /// Bytes of the meshes kept at the moment. O(chunks).
+  std::size_t kept_bytes() const;
 
  private:
   using Rank = std::tuple<int, std::int64_t, ChunkKey>;
   struct State {
     bool dirty = false;
     bool edited = false;
-    std::uint8_t open_sides = 0;  // bit per Direction: the last job had no neighbour there
-    std::uint64_t job = 0;        // newest job; 0: none yet
-    std::uint64_t drawn = 0;      // newest job accepted
-    std::optional<Rank> rank;     // place in ready_
+    bool counted = false;      // in chunks_
+    std::uint64_t job = 0;     // under way; 0: none
+    std::uint64_t serial = 0;  // of the newest news
+    PictureLayers changed;     // since the newest job was made
+    // What that job was made from, and its mesh: null while it is under way, and where nothing is known of it.
+    AxisOrder order{};
+    std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour
+    MeshPtr mesh;
+    std::optional<Rank> rank;  // place in ready_
   };
   bool ready(const ChunkKey& key) const;
-  void mark(const ChunkKey& key, State& state, bool edited);
+  void mark(const ChunkKey& key, State& state);
+  void mark_whole(const ChunkKey& key, State& state);
   void place(const ChunkKey& key, State& state);
-  void place_neighbours(const ChunkKey& key);
+  template <class Act>
+  void for_each_beside(const ChunkKey& key, Act act);
 
   const Replica& replica_;
   ChunkCoord eye_;

@@ -51,7 +51,7 @@ std::size_t MeshPool::in_flight() const {
 }
 
 void MeshPool::work(const std::stop_token& stop) {
-  RdmScratch scratch;
+  Scratch scratch;
   for (;;) {
     MeshJob job;
     {
@@ -69,17 +69,24 @@ void MeshPool::work(const std::stop_token& stop) {
   }
 }
 
-MeshResult MeshPool::mesh(const MeshJob& job, RdmScratch& scratch) const {
+MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
   MeshResult result;
   result.key = job.key;
   result.number = job.number;
   result.serial = job.serial;
   result.edge = job.chunk->extent.x;
-  result.run_count = static_cast<std::uint32_t>(job.chunk->runs.size());
+  result.layers_only = job.before != nullptr;
   MeshNeighbours neighbours{};
   for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
   const std::int64_t start = clock_();
-  mesh_rdm(*job.chunk, neighbours, visibility_, scratch, result.mesh);
+  if (job.before) {
+    scratch.mesh = *job.before;
+    mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.dirty, job.changed.beyond, scratch.rdm,
+                    scratch.mesh);
+  } else {
+    mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);
+  }
+  result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
   const std::int64_t end = clock_();
   result.mesh_ns = end - start;
   result.meshed_us = end / 1000;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -22,10 +23,10 @@ struct MeshResult {
   ChunkKey key;
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
-  ChunkMesh mesh;
-  std::uint32_t run_count = 0;
-  std::int64_t mesh_ns = 0;  // inside the mesher
-  TimeUs meshed_us = 0;      // when it was done
+  MeshPtr mesh;                          // of its own, or the one that all chunks without quads share
+  bool layers_only = false;              // started from the mesh before
+  std::int64_t mesh_ns = 0;              // from the job to the mesh
+  TimeUs meshed_us = 0;                  // when it was done
 };
 
 class MeshPool {
@@ -47,19 +48,24 @@ class MeshPool {
   std::size_t capacity() const { return capacity_; }
 
  private:
+  struct Scratch {
+    RdmScratch rdm;
+    ChunkMesh mesh;  // grows; what is kept of it is a copy of the right size
+  };
   void work(const std::stop_token& stop);
-  MeshResult mesh(const MeshJob& job, RdmScratch& scratch) const;
+  MeshResult mesh(const MeshJob& job, Scratch& scratch) const;
 
   const VisibilityTable visibility_;
   const ClockNs clock_;
   const Wake wake_;
   const std::size_t capacity_;
+  const MeshPtr empty_ = std::make_shared<const ChunkMesh>();
   mutable std::mutex mutex_;
   std::condition_variable_any work_there_;
   std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next two
   std::vector<MeshResult> results_;
   std::size_t in_flight_ = 0;
-  RdmScratch own_scratch_;  // without workers
+  Scratch own_scratch_;  // without workers
   std::vector<std::jthread> threads_;
 };
 

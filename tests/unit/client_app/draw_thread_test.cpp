@@ -21,7 +21,9 @@ ChunkUpload mesh_of(std::uint64_t serial, std::size_t quads) {
   ChunkUpload upload;
   upload.serial = serial;
   upload.edge = 16;
-  upload.mesh.opaque.quads.resize(quads);
+  ChunkMesh mesh;
+  mesh.opaque.quads.resize(quads);
+  upload.mesh = std::make_shared<const ChunkMesh>(std::move(mesh));
   return upload;
 }
 

@@ -172,3 +172,40 @@ TEST_CASE_METHOD(Fixture, "catching up waits for what was handed over, whatever 
   CHECK(picture.recorder().open_edits() == 1);
   CHECK(picture.has_caught_up());
 }
+
+TEST_CASE_METHOD(Fixture, "the report tells whole meshes from meshes of layers, and what is kept",
+                 "[client_app]") {
+  const auto counts = [this] {
+    ChunkStats chunks;
+    FrameStats frames;
+    picture.report(chunks, frames);
+    CHECK(chunks.mesh_jobs == chunks.whole_ns.count() + chunks.layers_ns.count());
+    return std::array{chunks.whole_ns.count(), chunks.layers_ns.count(), chunks.kept_mesh_bytes};
+  };
+  CHECK(counts() == std::array<std::uint64_t, 3>{1, 0, 0});
+  edit({5, 5, 5});
+  CHECK(counts() == std::array<std::uint64_t, 3>{1, 1, sizeof(ChunkMesh) + 6 * sizeof(Quad)});
+}
+
+TEST_CASE_METHOD(Fixture, "where materials look different all is meshed again", "[client_app]") {
+  edit({5, 5, 5});
+  edit({6, 5, 5});
+  const auto quads_uploaded = [this] {
+    order();
+    take_frames(picture.frames_presented() + 1);
+    const auto lines = book.lines();
+    const auto upload = std::find_if(lines.rbegin(), lines.rend(),
+                                     [](const std::string& line) { return line.starts_with("upload"); });
+    return *upload;
+  };
+  CHECK(quads_uploaded() == "upload 0 quads 6");
+  MaterialTable invisible;
+  REQUIRE(invisible.add({"gone", {}, Visibility::empty, {}}).has_value());
+  picture.set_materials(invisible);
+  turn();
+  picture.moved();
+  picture.draw(steady_now_us() + Picture::kFrameOffScreenUs, Camera{}, {8, 4},
+               [] { return std::vector<Marker>{}; });
+  take_frames(picture.frames_presented() + 1);
+  CHECK(book.lines()[book.lines().size() - 2] == "upload 0 quads 0");
+}

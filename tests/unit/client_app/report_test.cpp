@@ -20,6 +20,9 @@ ClientReport sample() {
   remote.edits = 10;
   report.chunks.mesh_jobs = 30;
   report.chunks.chunks_meshed = 20;
+  for (int i = 0; i < 20; ++i) report.chunks.whole_ns.add(20'000);
+  for (int i = 0; i < 10; ++i) report.chunks.layers_ns.add(5'000);
+  report.chunks.kept_mesh_bytes = 3 << 19;
   return report;
 }
 
@@ -38,6 +41,10 @@ TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
   CHECK(out["latency_us"]["remote"]["edits"] == 10);
   CHECK_FALSE(out["latency_us"]["remote"]["since_submit"].contains("presented"));
   CHECK(out["mesh"]["per_chunk"] == 1.5);
+  CHECK(out["mesh"]["whole_ns"]["count"] == 20);
+  CHECK(out["mesh"]["layers_ns"]["count"] == 10);
+  CHECK(out["mesh"]["layers_ns"]["mean"] == 5000);
+  CHECK(out["mesh"]["kept_bytes"] == 1'572'864);
   CHECK(out["clock"].is_null());
   CHECK(out["world_id"].is_null());
   CHECK(out["replica"]["drifted"] == 0);
@@ -61,6 +68,8 @@ TEST_CASE("the table names what matters on lines of their own", "[client_app]") 
   const ClientSession session(SessionConfig{});
   const std::string table = to_table(sample(), session);
   CHECK_THAT(table, Catch::Contains("meshes per chunk: 1.50 (30 of 20 chunks)\n"));
+  CHECK_THAT(table,
+             Catch::Contains("meshes of changed layers only: 10, each 5.0 us; 1.5 MiB of meshes kept\n"));
   CHECK_THAT(table, Catch::Contains("dense expansions: " + std::to_string(dense_expansions()) + "\n"));
   CHECK_THAT(table, Catch::Contains("drift: 0 of 0 audited\n"));
   CHECK_THAT(table, Catch::Matches("(.|\n)*remote +meshed +10 +0\\.10 +0\\.10 +inf +inf\n(.|\n)*"));

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "client/replica/layer_diff.hpp"
 #include "tests/support/authority_model.hpp"
 
 using namespace runstone;
@@ -63,10 +64,10 @@ TEST_CASE_METHOD(Fixture, "a commit that follows the snapshot is applied and rep
   const ReplicaNews news = replica.take_news();
   REQUIRE(news.chunks.size() == 1);
   CHECK(news.chunks[0].key == kHere);
-  CHECK(news.chunks[0].dirty.layer[0].count() == 1);
-  CHECK(news.chunks[0].dirty.layer[0].test(3));
-  CHECK(news.chunks[0].dirty.layer[1].test(4));
-  CHECK(news.chunks[0].dirty.layer[2].test(5));
+  CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
+  CHECK(news.chunks[0].layers.dirty.layer[0].test(3));
+  CHECK(news.chunks[0].layers.dirty.layer[1].test(4));
+  CHECK(news.chunks[0].layers.dirty.layer[2].test(5));
   CHECK(news.chunks[0].edits == std::vector{other(1)});
   REQUIRE(news.edits.size() == 1);
   CHECK(news.edits[0].op == other(1));
@@ -96,9 +97,11 @@ TEST_CASE_METHOD(Fixture, "an edit at the border tells the neighbour to mesh its
   const ReplicaNews news = replica.take_news();
   REQUIRE(news.chunks.size() == 2);
   CHECK(news.chunks[1].key == kRight);
-  CHECK_FALSE(news.chunks[1].dirty.any());
-  CHECK(news.chunks[1].borders == 1U << static_cast<unsigned>(Direction::neg_x));
-  CHECK(news.chunks[0].borders == 0);
+  CHECK_FALSE(news.chunks[1].layers.dirty.any());
+  PictureLayers beside;
+  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = news.chunks[0].layers.dirty;
+  CHECK(news.chunks[1].layers == beside);
+  CHECK(news.chunks[0].layers.beyond == PictureLayers{}.beyond);
   CHECK(news.edits[0].chunks == std::vector{kHere, kRight});
 }
 
@@ -282,7 +285,7 @@ TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the oth
   CHECK(news.rejects[0].seq == first);
   CHECK(news.rejects[0].reason == RejectReason::rate_limited);
   REQUIRE(news.chunks.size() == 1);
-  CHECK(news.chunks[0].dirty.layer[0].count() == 1);
+  CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
   CHECK(replica.own_edits().all().size() == 1);
 }
 
@@ -567,7 +570,9 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
   const ReplicaNews news = replica.take_news();
   REQUIRE(news.chunks.size() == 2);
   CHECK(news.chunks[0].removed);
-  CHECK(news.chunks[1].borders == 1U << static_cast<unsigned>(Direction::neg_x));
+  PictureLayers beside;
+  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = all_layers(Extent::cube(kEdge));
+  CHECK(news.chunks[1].layers == beside);
   static_cast<void>(replica.open(opening()));  // the next server may have it repaired
   CHECK(replica.unavailable_count() == 0);
   replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});

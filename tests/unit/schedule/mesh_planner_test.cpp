@@ -1,56 +1,17 @@
 #include "client/schedule/mesh_planner.hpp"
 
-#include <atomic>
 #include <catch2/catch.hpp>
-#include <memory>
+#include <map>
 #include <set>
-#include <thread>
 
-#include "client/schedule/mesh_pool.hpp"
-#include "tests/support/authority_model.hpp"
+#include "tests/unit/schedule/planner_bench.hpp"
 
 using namespace runstone;
-using runstone::test::AuthorityModel;
+using test::layers_of;
+using test::PlannerBench;
 
-namespace {
-
-constexpr std::int32_t kEdge = 16;
-
-struct Fixture {
-  Fixture() {
-    replica.set_view({{0, 0, 0}, 1, 0});  // a cross of five chunks
-    static_cast<void>(replica.open({kEdge, 5, 77, 1, 0, 0, 0}));
-  }
-  void load(ChunkCoord at) {
-    replica.receive(world.snapshot(at), {});
-    tell();
-  }
-  void load_all() {
-    for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) load(at);
-  }
-  void commit(VoxelPos at, Material material) {
-    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, material}), {}).has_value());
-    tell();
-  }
-  void tell() { planner.take(replica.take_news().chunks); }
-  std::vector<ChunkCoord> drain() {
-    std::vector<ChunkCoord> out;
-    while (auto job = planner.next()) {
-      out.push_back(job->key.at);
-      last = std::move(*job);
-    }
-    return out;
-  }
-  AuthorityModel world{kEdge, 1};
-  Replica replica;
-  MeshPlanner planner{replica};
-  MeshJob last;
-  ClientSequence edits = 0;
-};
-
-}  // namespace
-
-TEST_CASE_METHOD(Fixture, "a chunk waits for its neighbours in view and not for those beyond", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "a chunk waits for its neighbours in view and not for those beyond",
+                 "[schedule]") {
   load({0, 0, 0});
   CHECK(drain().empty());
   load({1, 0, 0});
@@ -66,7 +27,7 @@ TEST_CASE_METHOD(Fixture, "a chunk waits for its neighbours in view and not for 
   CHECK(planner.dirty_count() == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
   load({0, 0, 0});
   load({-1, 0, 0});
   load({0, 0, 1});
@@ -81,14 +42,14 @@ TEST_CASE_METHOD(Fixture, "nobody waits for a neighbour that the server cannot s
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
-TEST_CASE_METHOD(Fixture, "loading a view meshes every chunk once", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "loading a view meshes every chunk once", "[schedule]") {
   load_all();
   CHECK(drain().size() == 5);
   CHECK(planner.jobs() == 5);
   CHECK(planner.chunks_meshed() == 5);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit meshes its chunk again, and the neighbour only at the border",
+TEST_CASE_METHOD(PlannerBench, "an edit meshes its chunk again, and the neighbour only at the border",
                  "[schedule]") {
   load_all();
   drain();
@@ -98,7 +59,7 @@ TEST_CASE_METHOD(Fixture, "an edit meshes its chunk again, and the neighbour onl
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
-TEST_CASE_METHOD(Fixture, "changes are joined and the job holds the newest runs", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "changes are joined and the job holds the newest runs", "[schedule]") {
   load_all();
   drain();
   commit({5, 5, 5}, 2);
@@ -108,7 +69,7 @@ TEST_CASE_METHOD(Fixture, "changes are joined and the job holds the newest runs"
   CHECK(last.serial == replica.shown_serial({0, {0, 0, 0}}));
 }
 
-TEST_CASE_METHOD(Fixture, "edited chunks come first, then the nearest", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[schedule]") {
   planner.set_eye({1, 0, 0});
   load_all();
   auto order = drain();
@@ -125,24 +86,41 @@ TEST_CASE_METHOD(Fixture, "edited chunks come first, then the nearest", "[schedu
   CHECK(order == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 0}});
 }
 
-TEST_CASE_METHOD(Fixture, "a result older than the one drawn, or of a chunk out of view, is not drawn",
+TEST_CASE_METHOD(PlannerBench, "a chunk has one job at a time, and what changes meanwhile is for the next",
                  "[schedule]") {
   load_all();
-  std::map<ChunkCoord, std::uint64_t> first;
-  while (auto job = planner.next()) first[job->key.at] = job->number;
+  drain();
   commit({5, 5, 5}, 2);
-  const auto second = planner.next();
-  REQUIRE(second);
-  const ChunkKey here{0, {0, 0, 0}};
-  CHECK(planner.accept(here, second->number));
-  CHECK_FALSE(planner.accept(here, first[here.at]));
-  CHECK_FALSE(planner.accept(here, second->number));
-  replica.set_view({{5, 0, 0}, 1, 0});
-  tell();
-  CHECK_FALSE(planner.accept({0, {1, 0, 0}}, first[{1, 0, 0}]));
+  const auto first = planner.next();
+  REQUIRE(first);
+  commit({6, 6, 6}, 3);
+  commit({7, 6, 6}, 3);
+  CHECK(planner.dirty_count() == 1);
+  CHECK(planner.ready_count() == 0);
+  CHECK_FALSE(planner.next());
+  CHECK(finish(*first));
+  CHECK_FALSE(finish(*first));
+  const MeshJob second = only();
+  CHECK(second.before != nullptr);
+  CHECK(second.changed.dirty == layers_of({{6, 6, 6}, {7, 6, 6}}));
+  CHECK(planner.dirty_count() == 0);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(PlannerBench, "the result of a chunk that left the view is not drawn, even if it came back",
+                 "[schedule]") {
+  load_all();
+  std::map<ChunkCoord, MeshJob> jobs;
+  while (auto job = planner.next()) jobs[job->key.at] = *job;
+  replica.set_view({{3, 0, 0}, 2, 0});
+  tell();
+  CHECK_FALSE(finish(jobs[{0, 0, 0}]));
+  CHECK(finish(jobs[{1, 0, 0}]));
+  replica.set_view({{0, 0, 0}, 1, 0});
+  load({0, 0, 0});
+  CHECK_FALSE(finish(jobs[{0, 0, 0}]));
+}
+
+TEST_CASE_METHOD(PlannerBench,
                  "when the view moves, chunks at its old edge are meshed again with their new neighbours",
                  "[schedule]") {
   load_all();
@@ -160,7 +138,7 @@ TEST_CASE_METHOD(Fixture,
         std::set<ChunkCoord>{{1, 0, 0}, {1, 0, 1}, {1, 0, -1}, {2, 0, 0}});
 }
 
-TEST_CASE_METHOD(Fixture, "a chunk that waited for a neighbour which left the view goes ahead",
+TEST_CASE_METHOD(PlannerBench, "a chunk that waited for a neighbour which left the view goes ahead",
                  "[schedule]") {
   load({0, 0, 0});
   load({1, 0, 0});
@@ -170,47 +148,4 @@ TEST_CASE_METHOD(Fixture, "a chunk that waited for a neighbour which left the vi
   tell();
   planner.view_changed();
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
-}
-
-TEST_CASE_METHOD(Fixture, "workers mesh every job and say when", "[schedule]") {
-  const unsigned workers = GENERATE(0U, 2U);
-  CAPTURE(workers);
-  load_all();
-  commit({5, 5, 5}, 2);
-
-  std::atomic<int> woken{0};
-  std::atomic<std::int64_t> now{0};
-  MaterialTable materials;
-  for (int i = 0; i < 4; ++i) {
-    MaterialInfo info;
-    info.name = "m" + std::to_string(i);
-    REQUIRE(materials.add(info).has_value());
-  }
-  auto pool = std::make_unique<MeshPool>(
-      VisibilityTable(materials), workers, [&] { return now += 1000; }, [&] { ++woken; });
-  std::vector<MeshResult> results;
-  std::size_t pushed = 0;
-  for (bool more = true; more || results.size() < pushed;) {
-    more = false;
-    while (pool->in_flight() < pool->capacity()) {
-      auto job = planner.next();
-      if (!job) break;
-      REQUIRE(pool->push(std::move(*job)));
-      ++pushed;
-      more = true;
-    }
-    for (MeshResult& result : pool->take_results()) results.push_back(std::move(result));
-    std::this_thread::yield();
-  }
-  REQUIRE(results.size() == 5);
-  for (const MeshResult& result : results) {
-    CHECK(result.edge == kEdge);
-    CHECK(result.mesh_ns >= 1000);
-    CHECK(result.meshed_us > 0);
-    CHECK(result.serial == replica.shown_serial(result.key));
-    CHECK(result.mesh.quad_count() == (result.key.at == ChunkCoord{0, 0, 0} ? 6 : 0));
-  }
-  CHECK(pool->in_flight() == 0);
-  pool.reset();  // the last worker may still be on its way to wake us
-  CHECK(woken == (workers == 0 ? 0 : 5));
 }

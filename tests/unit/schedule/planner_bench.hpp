@@ -1,0 +1,75 @@
+// PlannerBench: a planner over a replica of a small world, and jobs that are made by hand.
+#pragma once
+#include <catch2/catch.hpp>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "client/schedule/mesh_planner.hpp"
+#include "tests/support/authority_model.hpp"
+
+namespace runstone::test {
+
+inline constexpr std::int32_t kBenchEdge = 16;
+
+/// Five chunks, all in view, and who meshes them.
+struct PlannerBench {
+  PlannerBench() {
+    replica.set_view({{0, 0, 0}, 1, 0});  // a cross of five chunks
+    static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
+  }
+  void load(ChunkCoord at) {
+    replica.receive(world.snapshot(at), {});
+    tell();
+  }
+  void load_all() {
+    for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) load(at);
+  }
+  void commit(VoxelPos at, Material material) {
+    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, material}), {}).has_value());
+    tell();
+  }
+  void tell() { planner.take(replica.take_news().chunks); }
+  /// Makes all jobs there are, each with a mesh of its own.
+  std::vector<ChunkCoord> drain() {
+    std::vector<ChunkCoord> out;
+    while (auto job = planner.next()) {
+      out.push_back(job->key.at);
+      CHECK(finish(*job));
+      last = made[job->key.at] = std::move(*job);
+    }
+    return out;
+  }
+  /// The one job there is, made.
+  MeshJob only() {
+    REQUIRE(drain().size() == 1);
+    return last;
+  }
+  bool finish(const MeshJob& job) {
+    auto mesh = std::make_shared<const ChunkMesh>();
+    const bool drawn = planner.finish(job.key, job.number, mesh);
+    if (drawn) meshes[job.key.at] = std::move(mesh);
+    return drawn;
+  }
+  AuthorityModel world{kBenchEdge, 1};
+  Replica replica;
+  MeshPlanner planner{replica};
+  MeshJob last;
+  std::map<ChunkCoord, MeshJob> made;    // newest of each chunk
+  std::map<ChunkCoord, MeshPtr> meshes;  // newest of each chunk
+  ClientSequence edits = 0;
+};
+
+inline DirtyLayers layers_of(std::initializer_list<LocalPos> voxels) {
+  DirtyLayers out;
+  for (const LocalPos at : voxels) {
+    out.layer[0].set(at.x);
+    out.layer[1].set(at.y);
+    out.layer[2].set(at.z);
+  }
+  return out;
+}
+
+}  // namespace runstone::test
