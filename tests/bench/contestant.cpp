@@ -23,9 +23,9 @@ namespace {
 
 using namespace reference;
 
-constexpr std::array<std::string_view, 9> kNames = {"rdm",         "rdm_plain",   "decode_binary",
-                                                    "grid_binary", "mask_binary", "culled",
-                                                    "simple",      "grid_rdm",    "rle_rdm"};
+constexpr std::array<std::string_view, 10> kNames = {
+    "rdm",         "rdm_alone", "rdm_plain", "decode_binary", "grid_binary",
+    "mask_binary", "culled",    "simple",    "grid_rdm",      "rle_rdm"};
 
 /// Adds the time since `start` to a phase; returns the time now.
 std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
@@ -34,19 +34,32 @@ std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
   return now;
 }
 
-Contestant rdm(const Volume& volume, const VisibilityTable& visibility, bool plain) {
+Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
   struct State {
     RdmScratch scratch;
     ChunkMesh mesh;
     MeshNeighbours neighbours;
+    std::array<ChunkBorders, kDirectionCount> kept;
+    MeshBorders borders{};
   };
   auto state = std::make_shared<State>();
-  state->scratch.use_plain_path(plain);
+  state->scratch.use_plain_path(name == "rdm_plain");
   state->neighbours = volume.scene.pointers();
-  const auto mesh = [state, &volume, &visibility](PhaseTimes&) {
-    mesh_rdm(volume.scene.chunk, state->neighbours, visibility, state->scratch, state->mesh);
+  Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
+  if (name != "rdm_alone") {
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (state->neighbours[d] == nullptr) continue;
+      state->kept[d].read(*state->neighbours[d], visibility);
+      state->borders[d] = &state->kept[d];
+    }
+    ChunkBorders own;
+    own.read(volume.scene.chunk, visibility);
+    out.storage_bytes += own.byte_size();
+  }
+  out.mesh = [state, &volume, &visibility](PhaseTimes&) {
+    mesh_rdm(volume.scene.chunk, state->neighbours, state->borders, visibility, state->scratch, state->mesh);
   };
-  return {"", mesh, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
+  return out;
 }
 
 Contestant binary(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
@@ -150,7 +163,7 @@ Contestant rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
 }
 
 Contestant of_name(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
-  if (name == "rdm" || name == "rdm_plain") return rdm(volume, visibility, name == "rdm_plain");
+  if (name.starts_with("rdm")) return rdm(name, volume, visibility);
   if (name.ends_with("_binary")) return binary(name, volume, visibility);
   if (name == "culled") return culled(volume, visibility);
   if (name == "simple") {

@@ -1,7 +1,8 @@
 // Contestant: a mesher set before one volume, with its input made ready and its buffers warm, so that calling
 // it times what the name says and nothing else.
-//   rdm               the product, from runs
-//   rdm_plain         the same without vector instructions
+//   rdm               the product, from runs; its holder keeps the borders of the neighbours (ChunkBorders)
+//   rdm_alone         the same with nothing kept: borders are read from the neighbours' runs
+//   rdm_plain         rdm without vector instructions
 //   decode_binary     binary greedy from runs: decode, mask (from the runs), mesh
 //   grid_binary       binary greedy with the dense grid ready: mask, mesh
 //   mask_binary       binary greedy with grid and occupancy mask ready: mesh

@@ -13,10 +13,10 @@ namespace {
 
 /// Rows of the product in best order, of one world and edge.
 std::vector<const MeshRow*> product_rows(const std::vector<MeshRow>& rows, const std::string& world,
-                                         unsigned edge) {
+                                         unsigned edge, const std::string& mesher = "rdm") {
   std::vector<const MeshRow*> out;
   for (const MeshRow& row : rows) {
-    if (row.mesher == "rdm" && row.rank == "best" && row.world == world && row.edge == edge &&
+    if (row.mesher == mesher && row.rank == "best" && row.world == world && row.edge == edge &&
         row.against_decode) {
       out.push_back(&row);
     }
@@ -40,7 +40,12 @@ Bar landscape(const std::vector<MeshRow>& rows, const std::string& world, double
   const auto of = product_rows(rows, world, 62);
   if (of.empty() || !of[0]->against_grid) return unknown(what, wanted);
   const double a = *of[0]->against_decode, b = *of[0]->against_grid;
-  return judged(what, wanted, fmt::format("{:.2f}x; {:.2f}x", a, b), a >= decode && b >= grid);
+  std::string measured = fmt::format("{:.2f}x; {:.2f}x", a, b);
+  if (const auto alone = product_rows(rows, world, 62, "rdm_alone"); !alone.empty()) {
+    measured += fmt::format(" (nothing kept: {:.2f}x; {:.2f}x)", *alone[0]->against_decode,
+                            alone[0]->against_grid.value_or(0));
+  }
+  return judged(what, wanted, measured, a >= decode && b >= grid);
 }
 
 /// Ratios mean something only if the baseline is good.
@@ -76,8 +81,14 @@ Bar luanti(const std::vector<MeshRow>& rows) {
   if (of.empty()) return unknown(what, "3x; 2x");
   const Ratios ratios = ratios_of(of);
   const double mean = geometric_mean(ratios.each);
-  return judged(fmt::format("{} ({} volumes)", what, of.size()), "3x; 2x",
-                fmt::format("{:.2f}x; {:.2f}x", mean, ratios.of_sums), mean >= 3 && ratios.of_sums >= 2);
+  std::string measured = fmt::format("{:.2f}x; {:.2f}x", mean, ratios.of_sums);
+  if (const auto alone = product_rows(rows, "luanti", 62, "rdm_alone"); !alone.empty()) {
+    const Ratios without = ratios_of(alone);
+    measured +=
+        fmt::format(" (nothing kept: {:.2f}x; {:.2f}x)", geometric_mean(without.each), without.of_sums);
+  }
+  return judged(fmt::format("{} ({} volumes)", what, of.size()), "3x; 2x", measured,
+                mean >= 3 && ratios.of_sums >= 2);
 }
 
 Bar scenarios(const std::vector<MeshRow>& rows) {
@@ -93,20 +104,20 @@ Bar scenarios(const std::vector<MeshRow>& rows) {
                 mean >= 3 && twice >= 25);
 }
 
-/// The lowest ratio of all cells, whatever the world and the axis order.
+/// The lowest ratio of all cells, whatever the world and the axis order, and whether or not borders are kept.
 Bar never_below(const std::vector<MeshRow>& rows) {
   const std::string what = "anything, against decode + binary greedy: the lowest";
   const MeshRow* lowest = nullptr;
   std::size_t cells = 0;
   for (const MeshRow& row : rows) {
-    if (row.mesher != "rdm" || !row.against_decode) continue;
+    if ((row.mesher != "rdm" && row.mesher != "rdm_alone") || !row.against_decode) continue;
     ++cells;
     if (lowest == nullptr || *row.against_decode < *lowest->against_decode) lowest = &row;
   }
   if (lowest == nullptr) return unknown(what, "0.95x");
   return judged(fmt::format("{} of {} cells", what, cells), "0.95x",
-                fmt::format("{:.2f}x ({} {}, edge {}, {} order)", *lowest->against_decode, lowest->world,
-                            lowest->part, lowest->edge, lowest->rank),
+                fmt::format("{:.2f}x ({} {}, edge {}, {} order, {})", *lowest->against_decode, lowest->world,
+                            lowest->part, lowest->edge, lowest->rank, lowest->mesher),
                 *lowest->against_decode >= 0.95);
 }
 
@@ -175,7 +186,7 @@ Bar edit(const EditTiming& edits) {
 
 Bar storage(const std::vector<MeshRow>& rows) {
   const std::string what = "runs' storage over the 37 scenarios against 2 bytes a voxel: mean saving";
-  const auto of = product_rows(rows, "scenarios", 32);
+  const auto of = product_rows(rows, "scenarios", 32, "rdm_alone");
   if (of.empty()) return unknown(what, "80 %");
   double saving = 0;
   for (const MeshRow* row : of) {
