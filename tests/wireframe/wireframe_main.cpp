@@ -1,0 +1,64 @@
+// runstone-wireframe OUT.png: one hill in the meshes of three meshers, side by side, and their quads.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/reference/culled_mesher.hpp"
+#include "common/mesh/reference/rle_rdm.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/bench/seeded_worlds.hpp"
+#include "tests/wireframe/wireframe.hpp"
+
+namespace {
+
+using namespace runstone;
+
+constexpr unsigned kEdge = 32;
+constexpr int kFiner = 4;  // pixels drawn for each pixel of the picture, each way; a power of two
+constexpr int kSide = 560, kHeight = 520, kGap = 16;
+
+struct Named {
+  const char* name;
+  std::vector<Quad> quads;
+};
+
+/// The chunk alone: nothing around it.
+std::vector<Named> meshes_of(const RunChunk& chunk, const VisibilityTable& visibility) {
+  std::vector<Named> out = {{"culled", {}}, {"RLE RDM of the thesis", {}}, {"RDM from runs", {}}};
+  reference::DenseGrid grid;
+  std::vector<Material> layer;
+  reference::decode(chunk, {}, layer, grid);
+  reference::mesh_culled(grid, visibility, out[0].quads);
+  reference::mesh_rle_rdm(reorder(chunk, AxisOrder::zyx), visibility, out[1].quads);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  mesh_rdm(chunk, {}, visibility, scratch, mesh);
+  out[2].quads = mesh.opaque.quads;
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s OUT.png\n", argv[0]);
+    return 2;
+  }
+  const bench::VoxelWorld world = bench::seeded_worlds().front();
+  const RunChunk chunk = bench::chunk_of_world(world, {0, -16, 0}, kEdge);
+  const std::vector<Named> meshes = meshes_of(chunk, *world.visibility);
+  const int count = static_cast<int>(meshes.size());
+  Image image =
+      wireframe::blank((count * kSide + (count + 1) * kGap) * kFiner, (kHeight + 2 * kGap) * kFiner);
+  int left = kGap * kFiner;
+  for (const Named& mesh : meshes) {
+    wireframe::draw(mesh.quads, {left, kGap * kFiner, kSide * kFiner, kHeight * kFiner}, kFiner, image);
+    left += (kSide + kGap) * kFiner;
+    std::printf("%s: %zu quads\n", mesh.name, mesh.quads.size());
+  }
+  for (int finer = kFiner; finer > 1; finer /= 2) image = halved(image);
+  if (write_png(argv[1], image)) return 0;
+  std::fprintf(stderr, "runstone-wireframe: cannot write %s\n", argv[1]);
+  return 1;
+}
