@@ -46,6 +46,18 @@ class RunCursor {
     run_ = low;
   }
 
+  /// Moves to the run that covers `voxel`, wherever the cursor is. Requires voxel below the volume. Bisects
+  /// without a branch to foresee: O(log runs), and cheaper than seek() where the way is long.
+  void jump(std::uint32_t voxel) {
+    std::size_t low = 0;
+    for (std::size_t count = runs_.size(); count > 1;) {
+      const std::size_t half = count / 2;
+      low += half * static_cast<std::size_t>(runs_.end(low + half - 1) <= voxel);
+      count -= half;
+    }
+    run_ = low;
+  }
+
  private:
   Runs runs_;
   std::size_t run_ = 0;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <bitset>
 #include <span>
 
@@ -6,53 +7,28 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
 #include "common/runs/layer_walk.hpp"
-#include "common/runs/run_cursor.hpp"
 
 namespace runstone {
 namespace {
 
 using rdm::LayerPatch;
 using rdm::QuadShape;
+using rdm::RowPlace;
+using rdm::RowRuns;
 using LayerSet = std::bitset<kSideMax>;
 
 std::uint32_t side_of(const RunChunk& chunk, Axis axis) {
   return chunk.extent.sides()[static_cast<std::size_t>(axis)];
 }
 
-/// A row of voxels along the third axis: those with `layer` = at and `row_axis` = row.
-struct RowPlace {
-  Axis layer;
-  std::uint32_t at;
-  Axis row_axis;
-  std::uint32_t row;
-};
-
-/// Decodes a row. O(log runs + runs between its first voxel and its last).
-template <class Runs>
-void decode_row(const Runs& runs, const RunChunk& chunk, const RowPlace& place, std::span<Material> out) {
-  const std::array<Axis, 3> axes = axes_of(chunk.order);
-  std::uint32_t voxel = 0;
-  std::uint32_t step = 0;
-  std::uint32_t stride = 1;
-  for (const Axis axis : axes) {
-    if (axis == place.layer) {
-      voxel += place.at * stride;
-    } else if (axis == place.row_axis) {
-      voxel += place.row * stride;
-    } else {
-      step = stride;
-    }
-    stride *= side_of(chunk, axis);
-  }
-  RunCursor cursor(runs);
-  for (auto it = out.begin(); it != out.end();) {
-    if (cursor.end() <= voxel) cursor.seek(voxel);
-    const Material material = cursor.material();
-    const std::uint32_t end = cursor.end();
-    do {
-      *it++ = material;
-      voxel += step;
-    } while (it != out.end() && voxel < end);
+/// Calls visit(place) for all of a set, upwards.
+template <class F>
+void for_each(const LayerSet& set, F&& visit) {
+  static const LayerSet kLow(~0ULL);
+  static_assert(kSideMax == 128);
+  for (const unsigned first : {0u, 64u}) {
+    std::uint64_t bits = ((set >> first) & kLow).to_ullong();
+    for (; bits != 0; bits &= bits - 1) visit(first + static_cast<unsigned>(std::countr_zero(bits)));
   }
 }
 
@@ -64,49 +40,72 @@ LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsi
   return out & ~LayerSet() >> (kSideMax - side);
 }
 
-/// Puts new strips into row `row` of a layer's quads, in no particular order: quads that cover the row are
-/// cut above and below it, and what repeats exactly is joined again. `beside` is scratch. O(quads + strips *
-/// quads beside the row).
-void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
-                 std::vector<Quad>& quads, std::vector<Quad>& beside) {
-  beside.clear();
-  std::size_t kept = 0;
-  for (const Quad quad : quads) {
-    const std::uint32_t first = shape.row(quad);
-    const std::uint32_t end = first + shape.rows(quad);
-    if (end < row || row + 1 < first) {
-      quads[kept++] = quad;
-      continue;
-    }
-    if (first < row) beside.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
-    if (row + 1 < end) {
-      const std::uint32_t below = std::max(first, row + 1);
-      beside.push_back(shape.with_rows(quad, below, end - below));
-    }
-  }
-  quads.resize(kept);
-  for (const Quad strip : strips) {
-    const std::uint64_t same = shape.strip(strip);
-    std::uint32_t first = row;
-    std::uint32_t end = row + 1;
-    for (std::size_t i = 0; i < beside.size();) {
-      const Quad quad = beside[i];
-      if (shape.strip(quad) != same) {
-        ++i;
+/// The quads of one layer while rows of it are replaced: first those that were there before, in the order of
+/// the mesh, then others.
+struct LayerQuads {
+  std::vector<Quad>& quads;
+  std::size_t in_order;
+
+  /// Puts new strips into row `row`: quads that cover the row are cut above and below it, and what repeats
+  /// exactly is joined again. `beside` is scratch. O(quads + strips * quads beside the row).
+  void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
+                   std::vector<Quad>& beside) {
+    beside.clear();
+    std::size_t kept = 0;
+    std::size_t kept_in_order = 0;
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+      const Quad quad = quads[i];
+      const std::uint32_t first = shape.row(quad);
+      const std::uint32_t end = first + shape.rows(quad);
+      if (end < row || row + 1 < first) {
+        quads[kept++] = quad;
+        kept_in_order += i < in_order ? 1 : 0;
         continue;
       }
-      if (shape.row(quad) < row) {
-        first = shape.row(quad);
-      } else {
-        end = shape.row_end(quad);
+      if (first < row) beside.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
+      if (row + 1 < end) {
+        const std::uint32_t below = std::max(first, row + 1);
+        beside.push_back(shape.with_rows(quad, below, end - below));
       }
-      beside[i] = beside.back();
-      beside.pop_back();
     }
-    quads.push_back(shape.with_rows(strip, first, end - first));
+    quads.resize(kept);
+    in_order = kept_in_order;
+    for (const Quad strip : strips) {
+      const std::uint64_t same = shape.strip(strip);
+      std::uint32_t first = row;
+      std::uint32_t end = row + 1;
+      for (std::size_t i = 0; i < beside.size();) {
+        const Quad quad = beside[i];
+        if (shape.strip(quad) != same) {
+          ++i;
+          continue;
+        }
+        if (shape.row(quad) < row) {
+          first = shape.row(quad);
+        } else {
+          end = shape.row_end(quad);
+        }
+        beside[i] = beside.back();
+        beside.pop_back();
+      }
+      quads.push_back(shape.with_rows(strip, first, end - first));
+    }
+    quads.insert(quads.end(), beside.begin(), beside.end());
   }
-  quads.insert(quads.end(), beside.begin(), beside.end());
-}
+
+  /// Puts all into the order of `place(quad)`. The others are few: each is inserted.
+  template <class Place>
+  void sort(Place&& place) {
+    for (std::size_t i = in_order; i < quads.size(); ++i) {
+      const Quad quad = quads[i];
+      const std::uint32_t at = place(quad);
+      std::size_t to = i;
+      for (; to != 0 && at < place(quads[to - 1]); --to) quads[to] = quads[to - 1];
+      quads[to] = quad;
+    }
+    in_order = quads.size();
+  }
+};
 
 class Remesher {
  public:
@@ -147,12 +146,9 @@ class Remesher {
       patch.quads.clear();
     }
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      if (d % 2 == 0) scratch_.row_layers.reset();  // another axis
+      if (d % 2 == 0) scratch_.row_known.reset();  // another axis
       const rdm::StripAxes a = axes(d);
-      const std::uint32_t depth = side_of(chunk_, a.layer);
-      for (std::uint32_t l = 0; l < depth; ++l) {
-        if (touched_[d][l]) mesh_layer(static_cast<Direction>(d), l, a);
-      }
+      for_each(touched_[d], [&](unsigned layer) { mesh_layer(static_cast<Direction>(d), layer, a); });
     }
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) splice(scratch_.patch[pass], *passes_[pass]);
   }
@@ -168,94 +164,93 @@ class Remesher {
   void mesh_layer(Direction direction, std::uint32_t layer, const rdm::StripAxes& a) {
     const auto d = static_cast<std::size_t>(direction);
     const QuadShape shape(direction, a.strip, a.row);
+    std::array<std::size_t, 2> in_order{};
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       const auto quads = passes_[pass]->layer(direction, layer);
       scratch_.layer[pass].assign(quads.begin(), quads.end());
+      in_order[pass] = quads.size();
     }
+    std::array<LayerQuads, 2> quads = {{{scratch_.layer[0], in_order[0]}, {scratch_.layer[1], in_order[1]}}};
     const LayerSet& rows = rows_[d].layer[static_cast<std::size_t>(a.row)];
-    for (std::uint32_t row = 0; row < side_of(chunk_, a.row); ++row) {
-      if (rows[row]) mesh_row(direction, layer, row, a, shape);
-    }
-    const std::size_t index = d * kSideMax + layer;
+    for_each(rows, [&](unsigned row) { mesh_row(direction, layer, row, a, shape, quads); });
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
-      std::vector<Quad>& quads = scratch_.layer[pass];
       const auto before = passes_[pass]->layer(direction, layer);
-      if (quads.empty() && before.empty()) continue;
+      const std::vector<Quad>& now = scratch_.layer[pass];
+      if (now.empty() && before.empty()) continue;
       // The order in which a sweep closes them: it goes up the rows, or along the strips.
-      const bool along = rank_of(a.layer, chunk_.order) == 0;
-      std::sort(quads.begin(), quads.end(), [&shape, along](Quad x, Quad y) {
-        const std::uint32_t x_rows = along ? shape.row(x) : shape.row_end(x);
-        const std::uint32_t y_rows = along ? shape.row(y) : shape.row_end(y);
-        const std::uint32_t x_last = shape.last(x);
-        const std::uint32_t y_last = shape.last(y);
-        if (along) return x_last != y_last ? x_last < y_last : x_rows < y_rows;
-        return x_rows != y_rows ? x_rows < y_rows : x_last < y_last;
-      });
-      if (std::equal(quads.begin(), quads.end(), before.begin(), before.end())) continue;
+      if (rank_of(a.layer, chunk_.order) == 0) {
+        quads[pass].sort([&shape](Quad q) { return shape.last(q) << 8 | shape.row(q); });
+      } else {
+        quads[pass].sort([&shape](Quad q) { return shape.row_end(q) << 8 | shape.last(q); });
+      }
+      if (std::equal(now.begin(), now.end(), before.begin(), before.end())) continue;
       LayerPatch& patch = scratch_.patch[pass];
-      patch.quads.insert(patch.quads.end(), quads.begin(), quads.end());
-      patch.layers.push_back({index, static_cast<std::uint32_t>(patch.quads.size())});
+      patch.quads.insert(patch.quads.end(), now.begin(), now.end());
+      patch.layers.push_back({d * kSideMax + layer, static_cast<std::uint32_t>(patch.quads.size())});
     }
   }
 
   void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a,
-                const QuadShape& shape) {
-    const std::uint32_t bits = side_of(chunk_, a.strip);
-    const Material* const own = own_row(layer, row, a).data();
-    const Material* beyond = nullptr;
-    std::array<Material, kSideMax> outside;
+                const QuadShape& shape, std::array<LayerQuads, 2>& quads) {
+    const RowRuns& own = own_row(layer, row, a);
+    const RowRuns* beyond = &scratch_.row_beyond;
     if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
-      beyond = own_row(is_positive(direction) ? layer + 1 : layer - 1, row, a).data();
+      beyond = &own_row(is_positive(direction) ? layer + 1 : layer - 1, row, a);
+    } else if (const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)]) {
+      const std::uint32_t other = is_positive(direction) ? 0 : side_of(*neighbour, a.layer) - 1;
+      read(*neighbour, {a.layer, other, a.row, row}, 1, &scratch_.row_beyond);
     } else {
-      const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)];
-      const std::uint32_t other =
-          is_positive(direction) || neighbour == nullptr ? 0 : side_of(*neighbour, a.layer) - 1;
-      decode(neighbour, {a.layer, other, a.row, row}, std::span(outside).first(bits));
-      beyond = outside.data();
+      scratch_.row_beyond.clear();
+      scratch_.row_beyond.append(side_of(chunk_, a.strip), kEmpty);
     }
     auto& strips = scratch_.strips;
     std::array<std::size_t, 2> count{};
-    for (std::uint32_t bit = 0; bit < bits;) {
-      const Material material = own[bit];
-      if (material == beyond[bit] || !visibility_.face_drawn(material, beyond[bit])) {
-        ++bit;
-        continue;
-      }
-      const std::uint32_t begin = bit;
-      while (++bit < bits && own[bit] == material && visibility_.face_drawn(material, beyond[bit])) {
-      }
+    std::uint32_t begin = 0;
+    for (std::uint32_t i = 0, j = 0; i < own.count; ++i) {
+      const Material material = own.stretch[i].material;
+      const std::uint32_t end = own.stretch[i].end;
       const std::size_t pass = visibility_[material] == Visibility::transparent ? 1 : 0;
-      strips[pass][count[pass]++] =
-          shape.close(shape.open({layer, begin, bit - begin, row}, material), row + 1);
+      // The part of the stretch whose faces show is cut where what lies beyond hides them.
+      for (std::uint32_t at = begin; at < end;) {
+        while (beyond->stretch[j].end <= at) ++j;
+        const std::uint32_t first = at;
+        while (at < end && visibility_.face_drawn(material, beyond->stretch[j].material)) {
+          at = std::min<std::uint32_t>(beyond->stretch[j].end, end);
+          if (at < end) ++j;
+        }
+        if (at == first) {
+          at = std::min<std::uint32_t>(beyond->stretch[j].end, end);
+          continue;
+        }
+        strips[pass][count[pass]++] =
+            shape.close(shape.open({layer, first, at - first, row}, material), row + 1);
+      }
+      begin = end;
     }
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       if (count[pass] == 0 && scratch_.layer[pass].empty()) continue;
-      replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.layer[pass],
-                  scratch_.beside);
+      quads[pass].replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.beside);
     }
   }
 
-  /// A row of the chunk; those of one row number are kept until another is asked for.
-  const std::array<Material, kSideMax>& own_row(std::uint32_t layer, std::uint32_t row,
-                                                const rdm::StripAxes& a) {
+  /// A row of the chunk; those of one row number are kept until another is asked for. With it, the layers
+  /// beside are read: they will be asked for next.
+  const RowRuns& own_row(std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a) {
     if (row != scratch_.row_number) {
       scratch_.row_number = row;
-      scratch_.row_layers.reset();
+      scratch_.row_known.reset();
     }
-    auto& voxels = scratch_.row_voxels[layer];
-    if (!scratch_.row_layers[layer]) {
-      scratch_.row_layers.set(layer);
-      decode(&chunk_, {a.layer, layer, a.row, row}, std::span(voxels).first(side_of(chunk_, a.strip)));
+    if (!scratch_.row_known[layer]) {
+      const std::uint32_t first = layer == 0 ? 0 : layer - 1;
+      const std::uint32_t end = std::min<std::uint32_t>(layer + 2, side_of(chunk_, a.layer));
+      read(chunk_, {a.layer, first, a.row, row}, end - first, &scratch_.row_runs[first]);
+      for (std::uint32_t l = first; l < end; ++l) scratch_.row_known.set(l);
     }
-    return voxels;
+    return scratch_.row_runs[layer];
   }
 
-  static void decode(const RunChunk* chunk, const RowPlace& place, std::span<Material> out) {
-    if (chunk == nullptr) {
-      std::fill(out.begin(), out.end(), kEmpty);
-    } else {
-      chunk->runs.visit([&](const auto& runs) { decode_row(runs, *chunk, place, out); });
-    }
+  static void read(const RunChunk& chunk, const RowPlace& place, unsigned count, RowRuns* out) {
+    chunk.runs.visit([&](const auto& runs) { rdm::read_rows(runs, chunk, place, count, out); });
   }
 
   static void move(std::size_t begin, std::size_t end, std::uint32_t shift, QuadLayers& out) {
@@ -268,26 +263,28 @@ class Remesher {
   static void splice(LayerPatch& patch, QuadLayers& out) {
     if (patch.layers.empty()) return;
     std::vector<Quad>& merged = patch.merged;
-    merged.clear();
-    std::size_t kept = 0;     // old quads before this are in `merged`, or replaced
+    merged.resize(out.quads.size() + patch.quads.size());
+    Quad* to = merged.data();
+    const auto append = [&to](const std::vector<Quad>& from, std::uint32_t begin, std::uint32_t end) {
+      to = std::copy(from.data() + begin, from.data() + end, to);
+    };
+    std::uint32_t kept = 0;   // old quads before this are in `merged`, or replaced
     std::size_t next = 0;     // first[] before this counts in `merged`
     std::uint32_t begin = 0;  // of the layer's quads in the patch
     std::uint32_t shift = 0;  // what to add to first[], modulo 2^32
-    const auto at = [](const std::vector<Quad>& quads, std::size_t i) {
-      return quads.begin() + static_cast<std::ptrdiff_t>(i);
-    };
     for (const LayerPatch::Layer& layer : patch.layers) {
       const std::uint32_t old_begin = out.first[layer.index];
       const std::uint32_t old_end = out.first[layer.index + 1];
-      merged.insert(merged.end(), at(out.quads, kept), at(out.quads, old_begin));
-      merged.insert(merged.end(), at(patch.quads, begin), at(patch.quads, layer.quads_end));
+      append(out.quads, kept, old_begin);
+      append(patch.quads, begin, layer.quads_end);
       kept = old_end;
       move(next, layer.index + 1, shift, out);
       next = layer.index + 1;
       shift += (layer.quads_end - begin) - (old_end - old_begin);
       begin = layer.quads_end;
     }
-    merged.insert(merged.end(), at(out.quads, kept), out.quads.cend());
+    append(out.quads, kept, static_cast<std::uint32_t>(out.quads.size()));
+    merged.resize(static_cast<std::size_t>(to - merged.data()));
     move(next, out.first.size(), shift, out);
     std::swap(merged, out.quads);
   }

@@ -10,6 +10,7 @@
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/mesh/rdm/row_runs.hpp"
 
 namespace runstone::rdm {
 
@@ -62,9 +63,10 @@ struct RdmScratch::State {
   std::vector<rdm::CodedRun> runs;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
-  std::array<rdm::LayerPatch, 2> patch;                             // opaque and transparent
-  std::array<std::array<Material, kSideMax>, kSideMax> row_voxels;  // of one row in some layers of an axis
-  std::bitset<kSideMax> row_layers;                                 // which they are
+  std::array<rdm::LayerPatch, 2> patch;         // opaque and transparent
+  std::array<rdm::RowRuns, kSideMax> row_runs;  // of one row in some layers of an axis
+  std::bitset<kSideMax> row_known;              // which they are
+  rdm::RowRuns row_beyond;                      // of the same row in a neighbour
   std::uint32_t row_number = 0;
   std::array<std::array<Quad, kSideMax>, 2> strips;  // of the row at hand, by pass
   std::vector<Quad> beside;                          // quads above and below that row
