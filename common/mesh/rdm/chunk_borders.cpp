@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility) {
+void ChunkBorders::lay_out(const RunChunk& chunk) {
   const auto sides = chunk.extent.sides();
   const auto side_of = [&sides](Axis axis) { return sides[static_cast<std::size_t>(axis)]; };
   std::size_t size = 0;
@@ -22,6 +22,11 @@ void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility
     }
   }
   words_.resize(size);
+}
+
+void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility) {
+  lay_out(chunk);
+  const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
     read_sides<rdm::Row64>(chunk, visibility);
   } else {
@@ -44,12 +49,32 @@ void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visi
       };
       rdm::read_layer_rows(chunk, {axes.layer, axes.bit, layer}, rows, code_of);
       transparent_[at] = transparent;
-      std::uint32_t* to = words_.data() + first_[at];
-      for (std::size_t r = 0; r < row_count_[at]; ++r) {
-        for (unsigned w = 0; w < row_words_[at]; ++w)
-          *to++ = static_cast<std::uint32_t>(rows[0][r] >> (32 * w));
-      }
+      keep_side(rdm::direction_of(axes.layer, positive), rows[0]);
     }
+  }
+}
+
+template <class Rows>
+void ChunkBorders::keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides,
+                        bool transparent) {
+  lay_out(chunk);
+  const auto axes = rdm::side_axes(chunk.order);
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    keep_side(rdm::direction_of(axes[side / 2].layer, side % 2 != 0), sides[side]);
+  }
+  transparent_.fill(transparent);
+}
+template void ChunkBorders::keep(const RunChunk&,
+                                 const std::array<std::array<rdm::Row64, 64>, kDirectionCount>&, bool);
+template void ChunkBorders::keep(const RunChunk&,
+                                 const std::array<std::array<rdm::Row128, 128>, kDirectionCount>&, bool);
+
+template <class Rows>
+void ChunkBorders::keep_side(Direction side, const Rows& rows) {
+  const auto at = static_cast<std::size_t>(side);
+  std::uint32_t* to = words_.data() + first_[at];
+  for (std::size_t r = 0; r < row_count_[at]; ++r) {
+    for (unsigned w = 0; w < row_words_[at]; ++w) *to++ = static_cast<std::uint32_t>(rows[r] >> (32 * w));
   }
 }
 

@@ -18,6 +18,11 @@ class ChunkBorders {
   /// table. O(runs); allocates for the first chunk of a size.
   void read(const RunChunk& chunk, const VisibilityTable& visibility);
 
+  /// The same from rows that are known: of each side, along the bits and from row to row as side_axes() has
+  /// them. `transparent`: whether the chunk has transparent voxels.
+  template <class Rows>
+  void keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides, bool transparent);
+
   /// Whether a side may hold transparent voxels. It says yes too often, never too seldom.
   bool may_be_transparent(Direction side) const { return transparent_[static_cast<std::size_t>(side)]; }
   /// The axis along the bits of a side's rows.
@@ -32,8 +37,11 @@ class ChunkBorders {
   std::size_t byte_size() const { return words_.capacity() * sizeof(std::uint32_t); }
 
  private:
+  void lay_out(const RunChunk& chunk);
   template <class Row>
   void read_sides(const RunChunk& chunk, const VisibilityTable& visibility);
+  template <class Rows>
+  void keep_side(Direction side, const Rows& rows);
 
   std::vector<std::uint32_t> words_;
   std::array<std::uint16_t, kDirectionCount> first_{};

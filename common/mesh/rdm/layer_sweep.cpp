@@ -47,8 +47,12 @@ class Sweep {
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       const std::uint32_t begin = s * e_.layer();
       if (runs()[run_].end == begin) ++run_;
-      if (s != 0 && repeats(s)) continue;
+      if (s != 0 && repeats(s)) {
+        if (in_.own_sides) repeat_own_sides(s);
+        continue;
+      }
       build(s);
+      if (in_.own_sides) find_own_sides(s);
       if (s == 0) hide_slow(Side::slow_neg, there_, here_);
       find_faces(s);
       std::swap(here_, there_);
@@ -146,6 +150,34 @@ class Sweep {
       if (s == 0) std::fill_n(slow, count, ~Row{0});
     }
     hide_middle(s);
+  }
+
+  /// What layer s adds to the chunk's own sides.
+  void find_own_sides(std::uint32_t s) {
+    const Row* const opaque = st_.hiding[here_].data();
+    auto& own = st_.own_sides;
+    if (s == 0) std::copy_n(opaque, e_.m, own[at(Side::slow_neg)].data());
+    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, own[at(Side::slow_pos)].data());
+    own[at(Side::mid_neg)][s] = opaque[0];
+    own[at(Side::mid_pos)][s] = opaque[e_.m - 1];
+    Row fast_neg = 0;
+    Row fast_pos = 0;
+    const V first = Lanes::all(Row{1});
+    const V last = Lanes::all(last_);
+    for_rows([&](std::uint32_t m) {
+      const V v = Lanes::load(opaque + m);
+      add_rows(fast_neg, Lanes::any(Lanes::both(v, first)), m);
+      add_rows(fast_pos, Lanes::any(Lanes::both(v, last)), m);
+    });
+    own[at(Side::fast_neg)][s] = fast_neg & bits_below<Row>(e_.m);
+    own[at(Side::fast_pos)][s] = fast_pos & bits_below<Row>(e_.m);
+  }
+  /// The same for a layer that repeats the one before it.
+  void repeat_own_sides(std::uint32_t s) {
+    auto& own = st_.own_sides;
+    for (unsigned side = at(Side::mid_neg); side <= at(Side::fast_pos); ++side)
+      own[side][s] = own[side][s - 1];
+    if (s + 1 == e_.s) std::copy_n(st_.hiding[there_].data(), e_.m, own[at(Side::slow_pos)].data());
   }
 
   /// Writes the codes of layer s, and some behind them.

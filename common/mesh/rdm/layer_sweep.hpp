@@ -80,6 +80,8 @@ struct SweepState {
   std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
   Rows cut_slow;
   std::array<std::array<Rows, 2>, 6> face;  // voxels whose face shows, by side
+  /// Opaque voxels of the chunk's own six sides, as Borders has them; filled if SweepInput asks for them.
+  std::array<std::array<Row, kRowBits<Row>>, 6> own_sides;
   std::array<Rows, 3> strips;  // of a side in which most rows change, made for all its rows at once
   /// Quads that are open, by side; then by end of the strip (slow), or by row and end (middle).
   std::array<std::array<Quad, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 4> open;
@@ -95,6 +97,7 @@ struct SweepInput {
   std::array<QuadShape, 6> shape;        // by Side
   QuadBuckets* opaque = nullptr;
   QuadBuckets* transparent = nullptr;
+  bool own_sides = false;  // whether SweepState::own_sides is wanted
 };
 
 /// Puts the quads of the chunk into the buckets. Requires sides up to kRowBits<Row>, runs that tile the

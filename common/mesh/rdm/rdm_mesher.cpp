@@ -126,7 +126,8 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
 
 template <class Row>
 void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
-                const VisibilityTable& visibility, Scratch& scratch, std::unique_ptr<RowScratch<Row>>& rows) {
+                ChunkBorders* own, const VisibilityTable& visibility, Scratch& scratch,
+                std::unique_ptr<RowScratch<Row>>& rows) {
   if (!rows) rows = std::make_unique<RowScratch<Row>>();
   const auto axes = side_axes(chunk.order);
   const auto strips = rdm::strip_axes(chunk.order);
@@ -136,6 +137,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   input.codes = &scratch.codes;
   input.opaque = &scratch.opaque;
   input.transparent = &scratch.transparent;
+  input.own_sides = own != nullptr;
   for (std::size_t side = 0; side < 6; ++side) {
     const SideAxes& a = axes[side / 2];
     const Direction direction = direction_of(a.layer, side % 2 != 0);
@@ -146,9 +148,15 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
                 rows->borders);
   }
   if constexpr (rdm::kRowBits<Row> == 64) {
-    if (scratch.plain) return rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
+    if (scratch.plain) {
+      rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
+    } else {
+      rdm::sweep_layers(input, rows->borders, rows->sweep);
+    }
+  } else {
+    rdm::sweep_layers(input, rows->borders, rows->sweep);
   }
-  rdm::sweep_layers(input, rows->borders, rows->sweep);
+  if (own != nullptr) own->keep(chunk, rows->sweep.own_sides, scratch.codes.has_transparent());
 }
 
 /// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
@@ -189,18 +197,25 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Vis
 }
 
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
-              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out) {
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out, ChunkBorders* own) {
   Scratch& state = scratch.state();
-  const bool solid_somewhere = !chunk.is_uniform() || visibility[chunk.runs.material(0)] != Visibility::empty;
-  if (!solid_somewhere) return out.clear();
-  if (chunk.is_uniform() && mesh_uniform(chunk, neighbours, visibility, out)) return;
+  if (chunk.is_uniform()) {
+    if (own != nullptr) own->read(chunk, visibility);
+    if (visibility[chunk.runs.material(0)] == Visibility::empty) return out.clear();
+    if (mesh_uniform(chunk, neighbours, visibility, out)) return;
+  }
   code_runs(chunk, visibility, state);
+  const bool single_transparent = state.codes.solid_count() == 1 && state.codes.has_transparent();
+  if (own != nullptr && (state.codes.solid_count() == 0 || single_transparent)) {
+    own->read(chunk, visibility);  // the sweep does not tell it from an opaque one, or does not run
+    own = nullptr;
+  }
   if (state.codes.solid_count() == 0) return out.clear();
   const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    mesh_chunk(chunk, neighbours, borders, visibility, state, state.narrow);
+    mesh_chunk(chunk, neighbours, borders, own, visibility, state, state.narrow);
   } else {
-    mesh_chunk(chunk, neighbours, borders, visibility, state, state.wide);
+    mesh_chunk(chunk, neighbours, borders, own, visibility, state, state.wide);
   }
   state.opaque.finish(sides, out.opaque);
   if (state.codes.has_transparent()) {

@@ -136,7 +136,8 @@ TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces", 
   }
 }
 
-TEST_CASE("kept borders of neighbours give the same quads as their runs", "[mesh][property]") {
+TEST_CASE("kept borders of neighbours give the same quads as their runs, and are made on the way",
+          "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 8);
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -149,12 +150,22 @@ TEST_CASE("kept borders of neighbours give the same quads as their runs", "[mesh
       kept[d].read(*scene.neighbours[d], mesh_visibility());
       borders[d] = &kept[d];
     }
-    mesh_rdm(scene.chunk, scene.pointers(), borders, mesh_visibility(), scratch, mesh);
+    ChunkBorders own, read;
+    mesh_rdm(scene.chunk, scene.pointers(), borders, mesh_visibility(), scratch, mesh, &own);
+    read.read(scene.chunk, mesh_visibility());
     const ChunkMesh plain = mesh_of(scene);
     CAPTURE(Catch::rngSeed(), round);
     REQUIRE(mesh.opaque.quads == plain.opaque.quads);
     REQUIRE(mesh.opaque.first == plain.opaque.first);
     REQUIRE(mesh.transparent.quads == plain.transparent.quads);
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      const auto side = static_cast<Direction>(d);
+      const std::size_t words = own.row_count(side) * own.row_words(side);
+      REQUIRE(words == read.row_count(side) * read.row_words(side));
+      REQUIRE(own.bit_axis(side) == read.bit_axis(side));
+      REQUIRE(std::equal(own.rows(side), own.rows(side) + words, read.rows(side)));
+      REQUIRE((own.may_be_transparent(side) || !read.may_be_transparent(side)));
+    }
   }
 }
 
