@@ -41,23 +41,26 @@ Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTabl
     MeshNeighbours neighbours;
     std::array<ChunkBorders, kDirectionCount> kept;
     MeshBorders borders{};
+    ChunkBorders own;
   };
   auto state = std::make_shared<State>();
   state->scratch.use_plain_path(name == "rdm_plain");
   state->neighbours = volume.scene.pointers();
   Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
+  ChunkBorders* own = nullptr;
   if (name != "rdm_alone") {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       if (state->neighbours[d] == nullptr) continue;
       state->kept[d].read(*state->neighbours[d], visibility);
       state->borders[d] = &state->kept[d];
     }
-    ChunkBorders own;
-    own.read(volume.scene.chunk, visibility);
-    out.storage_bytes += own.byte_size();
+    own = &state->own;
+    own->read(volume.scene.chunk, visibility);
+    out.storage_bytes += own->byte_size();
   }
-  out.mesh = [state, &volume, &visibility](PhaseTimes&) {
-    mesh_rdm(volume.scene.chunk, state->neighbours, state->borders, visibility, state->scratch, state->mesh);
+  out.mesh = [state, own, &volume, &visibility](PhaseTimes&) {
+    mesh_rdm(volume.scene.chunk, state->neighbours, state->borders, visibility, state->scratch, state->mesh,
+             own);
   };
   return out;
 }
