@@ -29,6 +29,11 @@ constexpr unsigned lowest_bit(Row128 row) {
   return low != 0 ? lowest_bit(low) : 64 + lowest_bit(static_cast<Row64>(row >> 64));
 }
 
+constexpr unsigned bit_count(Row64 row) { return static_cast<unsigned>(std::popcount(row)); }
+constexpr unsigned bit_count(Row128 row) {
+  return bit_count(static_cast<Row64>(row)) + bit_count(static_cast<Row64>(row >> 64));
+}
+
 /// Place of the highest set bit. Requires row != 0.
 constexpr unsigned highest_bit(Row64 row) { return 63u - static_cast<unsigned>(std::countl_zero(row)); }
 constexpr unsigned highest_bit(Row128 row) {

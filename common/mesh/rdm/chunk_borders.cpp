@@ -25,6 +25,10 @@ void ChunkBorders::lay_out(const RunChunk& chunk) {
 }
 
 void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility) {
+  if (chunk.is_uniform()) {
+    words_.clear();
+    return;
+  }
   lay_out(chunk);
   const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
@@ -36,38 +40,42 @@ void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility
 
 template <class Row>
 void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visibility) {
-  std::array<std::array<Row, rdm::kRowBits<Row>>, 1> rows;
+  std::array<std::array<Row, rdm::kRowBits<Row>>, 2> planes;
   const auto sides = chunk.extent.sides();
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
-      const auto at = static_cast<std::size_t>(rdm::direction_of(axes.layer, positive));
+      const Direction side = rdm::direction_of(axes.layer, positive);
       const std::uint32_t layer = positive ? sides[static_cast<std::size_t>(axes.layer)] - 1u : 0u;
-      bool transparent = false;
-      const auto code_of = [&visibility, &transparent](Material material) -> rdm::Code {
-        transparent |= visibility[material] == Visibility::transparent;
-        return visibility[material] == Visibility::opaque ? 1 : 0;
-      };
-      rdm::read_layer_rows(chunk, {axes.layer, axes.bit, layer}, rows, code_of);
-      transparent_[at] = transparent;
-      keep_side(rdm::direction_of(axes.layer, positive), rows[0]);
+      rdm::read_layer_rows(chunk, {axes.layer, axes.bit, layer}, planes,
+                           [of = visibility.data()](Material material) -> rdm::Code {
+                             static_assert(static_cast<int>(Visibility::opaque) == 1 &&
+                                           static_cast<int>(Visibility::transparent) == 2);
+                             return static_cast<rdm::Code>(of[material]);
+                           });
+      transparent_[static_cast<std::size_t>(side)] =
+          std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
+      keep_side(side, planes[0]);
     }
   }
 }
 
 template <class Rows>
 void ChunkBorders::keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides,
-                        bool transparent) {
+                        const std::array<bool, kDirectionCount>& transparent) {
   lay_out(chunk);
   const auto axes = rdm::side_axes(chunk.order);
-  for (std::size_t side = 0; side < sides.size(); ++side) {
-    keep_side(rdm::direction_of(axes[side / 2].layer, side % 2 != 0), sides[side]);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Direction side = rdm::direction_of(axes[i / 2].layer, i % 2 != 0);
+    keep_side(side, sides[i]);
+    transparent_[static_cast<std::size_t>(side)] = transparent[i];
   }
-  transparent_.fill(transparent);
 }
 template void ChunkBorders::keep(const RunChunk&,
-                                 const std::array<std::array<rdm::Row64, 64>, kDirectionCount>&, bool);
+                                 const std::array<std::array<rdm::Row64, 64>, kDirectionCount>&,
+                                 const std::array<bool, kDirectionCount>&);
 template void ChunkBorders::keep(const RunChunk&,
-                                 const std::array<std::array<rdm::Row128, 128>, kDirectionCount>&, bool);
+                                 const std::array<std::array<rdm::Row128, 128>, kDirectionCount>&,
+                                 const std::array<bool, kDirectionCount>&);
 
 template <class Rows>
 void ChunkBorders::keep_side(Direction side, const Rows& rows) {

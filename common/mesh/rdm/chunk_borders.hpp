@@ -14,17 +14,20 @@ namespace runstone {
 
 class ChunkBorders {
  public:
-  /// Replaces all six sides by those of `chunk`. What it says holds for this version of the chunk and this
-  /// table. O(runs); allocates for the first chunk of a size.
+  /// Replaces all six sides by those of `chunk`; of one of a single material, which is its own best summary,
+  /// nothing is kept. What it says holds for this version of the chunk and this table. O(runs); allocates for
+  /// the first chunk of a size.
   void read(const RunChunk& chunk, const VisibilityTable& visibility);
 
   /// The same from rows that are known: of each side, along the bits and from row to row as side_axes() has
-  /// them. `transparent`: whether the chunk has transparent voxels.
+  /// them, and whether it has transparent voxels.
   template <class Rows>
-  void keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides, bool transparent);
+  void keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides,
+            const std::array<bool, kDirectionCount>& transparent);
 
-  /// Whether a side may hold transparent voxels. It says yes too often, never too seldom.
-  bool may_be_transparent(Direction side) const { return transparent_[static_cast<std::size_t>(side)]; }
+  bool empty() const { return words_.empty(); }
+  /// Whether a side has transparent voxels.
+  bool has_transparent(Direction side) const { return transparent_[static_cast<std::size_t>(side)]; }
   /// The axis along the bits of a side's rows.
   Axis bit_axis(Direction side) const { return bit_axis_[static_cast<std::size_t>(side)]; }
   /// Opaque voxels of a side, in rows of row_words() words, lowest bits first.

@@ -32,6 +32,12 @@ struct PlainCodes {
     for (; from < stop; ++from) *from = code;
   }
 
+  /// Writes `value` where a bit of the row is set.
+  template <class Row>
+  static void put(Row row, std::uint8_t value, std::uint8_t* to) {
+    for (; row != 0; row &= row - 1) to[lowest_bit(row)] = value;
+  }
+
   /// As many codes as a row has bits.
   template <class Row, class C>
   class Line {
@@ -78,6 +84,18 @@ struct VectorCodes {
       hn::StoreU(v, d, from);
       from += kBehind<C>;
     } while (from < stop);
+  }
+
+  template <class Row>
+  static HWY_INLINE void put(Row row, std::uint8_t value, std::uint8_t* to) {
+    const D<std::uint8_t> d;
+    const auto v = hn::Set(d, value);
+    for (unsigned i = 0; i < kRowBits<Row>; i += kBehind<std::uint8_t>) {
+      const auto bits = static_cast<std::uint64_t>(row >> i);
+      std::uint8_t bytes[8];
+      std::memcpy(bytes, &bits, sizeof bytes);
+      hn::BlendedStore(v, hn::LoadMaskBits(d, bytes), d, to + i);
+    }
   }
 
   template <class Row, class C>

@@ -156,28 +156,42 @@ class Sweep {
   void find_own_sides(std::uint32_t s) {
     const Row* const opaque = st_.hiding[here_].data();
     auto& own = st_.own_sides;
-    if (s == 0) std::copy_n(opaque, e_.m, own[at(Side::slow_neg)].data());
-    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, own[at(Side::slow_pos)].data());
     own[at(Side::mid_neg)][s] = opaque[0];
     own[at(Side::mid_pos)][s] = opaque[e_.m - 1];
-    Row fast_neg = 0;
-    Row fast_pos = 0;
-    const V first = Lanes::all(Row{1});
-    const V last = Lanes::all(last_);
+    own[at(Side::fast_neg)][s] = column_of(opaque, Row{1});
+    own[at(Side::fast_pos)][s] = column_of(opaque, last_);
+    if (s == 0) std::copy_n(opaque, e_.m, own[at(Side::slow_neg)].data());
+    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, own[at(Side::slow_pos)].data());
+    if (s == 0) st_.own_transparent.fill(false);
+    if (!mixed_) return;
+    const Row* const clear = st_.transparent.data();
+    auto& found = st_.own_transparent;
+    found[at(Side::mid_neg)] |= clear[0] != 0;
+    found[at(Side::mid_pos)] |= clear[e_.m - 1] != 0;
+    found[at(Side::fast_neg)] |= column_of(clear, Row{1}) != 0;
+    found[at(Side::fast_pos)] |= column_of(clear, last_) != 0;
+    const bool any = std::any_of(clear, clear + e_.m, [](Row row) { return row != 0; });
+    if (s == 0) found[at(Side::slow_neg)] = any;
+    if (s + 1 == e_.s) found[at(Side::slow_pos)] = any;
+  }
+  /// Bit m: whether row m has the bit of `bit`.
+  Row column_of(const Row* rows, Row bit) const {
+    const V wanted = Lanes::all(bit);
+    Row column = 0;
     for_rows([&](std::uint32_t m) {
-      const V v = Lanes::load(opaque + m);
-      add_rows(fast_neg, Lanes::any(Lanes::both(v, first)), m);
-      add_rows(fast_pos, Lanes::any(Lanes::both(v, last)), m);
+      add_rows(column, Lanes::any(Lanes::both(Lanes::load(rows + m), wanted)), m);
     });
-    own[at(Side::fast_neg)][s] = fast_neg & bits_below<Row>(e_.m);
-    own[at(Side::fast_pos)][s] = fast_pos & bits_below<Row>(e_.m);
+    return column & bits_below<Row>(e_.m);
   }
   /// The same for a layer that repeats the one before it.
   void repeat_own_sides(std::uint32_t s) {
     auto& own = st_.own_sides;
     for (unsigned side = at(Side::mid_neg); side <= at(Side::fast_pos); ++side)
       own[side][s] = own[side][s - 1];
-    if (s + 1 == e_.s) std::copy_n(st_.hiding[there_].data(), e_.m, own[at(Side::slow_pos)].data());
+    if (s + 1 != e_.s) return;
+    std::copy_n(st_.hiding[there_].data(), e_.m, own[at(Side::slow_pos)].data());
+    // One material: its first line has it, if any has.
+    st_.own_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
   }
 
   /// Writes the codes of layer s, and some behind them.
@@ -245,14 +259,9 @@ class Sweep {
     Row hide = borders_.hiding[at(side)][s];
     if constexpr (kNumbered) {
       if (borders_.meets[at(side)]) {
-        const V bit = Lanes::all(side == Side::fast_neg ? Row{1} : last_);
-        Row ours = 0;
-        for_rows([&](std::uint32_t m) {
-          add_rows(ours, Lanes::any(Lanes::both(Lanes::load(st_.transparent.data() + m), bit)), m);
-        });
+        const Row ours = column_of(st_.transparent.data(), side == Side::fast_neg ? Row{1} : last_);
         const C* const column = codes(here_) + (side == Side::fast_neg ? 0 : e_.f - 1);
-        hide |= same_beyond(side, s, e_.m, ours & bits_below<Row>(e_.m),
-                            [column, f = e_.f](unsigned m) { return column[m * f]; });
+        hide |= same_beyond(side, s, e_.m, ours, [column, f = e_.f](unsigned m) { return column[m * f]; });
       }
     }
     return hide;
@@ -534,6 +543,20 @@ class Sweep {
     close_strips(out, over.end, open, layer, count);
   }
 
+  /// Places of bits in a layer: row * kRowBits + bit. Written down first and gone through afterwards, so that
+  /// the loop over them has no end in each row that a processor would have to foresee.
+  using Place = std::uint16_t;
+  static HWY_INLINE Place* write_places(Row bits, std::uint32_t row, Place* to) {
+    const std::uint32_t base = row * kRowBits<Row>;
+    Place* const end = to + bit_count(bits);
+    do {
+      for (unsigned i = 0; i < 2; ++i, ++to, bits &= bits - 1) {
+        *to = static_cast<Place>(base + lowest_bit(bits));
+      }
+    } while (bits != 0);
+    return end;
+  }
+
   /// Faces across the middle axis in layer s. A row is the line of a layer, its next one that of the next.
   template <Side kSide>
   void level_strips(RowSet rows, std::uint32_t s) {
@@ -545,21 +568,36 @@ class Sweep {
     const Row* const cut_slow = st_.cut_slow.data();
     const Outlet out = outlet(kSide, here_);
     Quad* const open = st_.open[at(kSide)].data();
-    if (most(rows)) {
-      compare_along({face, cut_fast, face_before, cut_fast_before, cut_slow});
-      for (; rows != 0; rows &= rows - 1) {
-        const std::uint32_t m = lowest_bit(rows);
-        strips_found(out, m, open + std::size_t{m} * kRowBits<Row>, m, s);
-      }
-    }
+    Row* const closing = st_.strips[0].data();
+    Row* const opening = st_.strips[1].data();
+    Row* const start = st_.strips[2].data();
+    Place* const closed = st_.closed.data();
+    Place* const opened = st_.opened.data();
+    Place* closed_end = closed;
+    Place* opened_end = opened;
+    const bool found = most(rows);
+    if (found) compare_along({face, cut_fast, face_before, cut_fast_before, cut_slow});
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
-      const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
-      const Strips before = strips_along<Row>(face_before[m], cut_at(cut_fast_before + m));
-      const Row x = changed<Row>(now, before, cut_at(cut_slow + m));
-      Quad* const slots = open + std::size_t{m} * kRowBits<Row>;
-      close_strips(out, ends_with(before, x), slots, m, s);
-      open_strips(out, ends_with(now, x), now.start, slots, m, s, m);
+      if (!found) {
+        const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
+        const Strips before = strips_along<Row>(face_before[m], cut_at(cut_fast_before + m));
+        const Row x = changed<Row>(now, before, cut_at(cut_slow + m));
+        closing[m] = ends_with(before, x);
+        opening[m] = ends_with(now, x);
+        start[m] = now.start;
+      }
+      closed_end = write_places(closing[m], m, closed_end);
+      opened_end = write_places(opening[m], m, opened_end);
+    }
+    for (const Place* at = closed; at != closed_end; ++at) {
+      close_quad(out, open[*at], *at / kRowBits<Row>, s);
+    }
+    for (const Place* at = opened; at != opened_end; ++at) {
+      const std::uint32_t m = *at / kRowBits<Row>;
+      const unsigned end = *at % kRowBits<Row>;
+      const unsigned begin = highest_bit(start[m] & (~Row{0} >> (kRowBits<Row> - 1 - end)));
+      open[*at] = open_quad(out, {m, begin, end - begin + 1, s}, m, begin);
     }
   }
 
@@ -575,43 +613,49 @@ class Sweep {
     const Row* const cut_slow = st_.cut_slow.data();
     const Outlet out = outlet(kSide, there_);
     std::uint8_t* const born = st_.born[at(kSide) - at(Side::fast_neg)].data();
-    Row closed = 0;  // bits that closed in the row before
+    Row* const beside = st_.strips[0].data();  // bits that close in the row before as well, cut or not
+    Place* const closed = st_.closed.data();
+    Place* closed_end = closed;
+    Row above = 0;
     std::uint32_t next = 0;
     for (RowSet left = rows; left != 0; left &= left - 1) {
       const std::uint32_t m = lowest_bit(left);
       const Row closing = face_before[m] & (~face[m] | cut_at(cut_slow + m));
-      const Row beside = m == next ? closing & closed & ~cut_at(cut_mid_before + m) : Row{0};
-      const std::uint8_t* const began = born + std::size_t{m} * kRowBits<Row>;
-      for (Row bits = closing; bits != 0; bits &= bits - 1) {
-        const unsigned bit = lowest_bit(bits);
-        const std::uint32_t first = began[bit];
-        if ((beside >> bit & 1) != 0 && (began + bit)[-static_cast<std::ptrdiff_t>(kRowBits<Row>)] == first) {
-          grow_last(out, bit, m);
-        } else {
-          const Quad quad = open_quad(out, {bit, first, s - first, m}, m, bit);
-          close_quad(out, quad, bit, m + 1);
-        }
-      }
-      closed = closing;
+      beside[m] = m == next ? above & ~cut_at(cut_mid_before + m) : Row{0};
+      closed_end = write_places(closing, m, closed_end);
+      above = closing;
       next = m + 1;
+    }
+    for (const Place* at = closed; at != closed_end; ++at) {
+      const std::uint32_t m = *at / kRowBits<Row>;
+      const unsigned bit = *at % kRowBits<Row>;
+      const std::uint32_t first = born[*at];
+      // Row 0 has nothing beside it; it may read any byte.
+      const bool joins = (beside[m] >> bit & 1) != 0 && born[*at - (m == 0 ? 0 : kRowBits<Row>)] == first;
+      join_quad(out, open_quad(out, {bit, first, s - first, m}, m, bit), bit, m + 1, joins);
     }
     for (RowSet left = rows; left != 0; left &= left - 1) {
       const std::uint32_t m = lowest_bit(left);
-      std::uint8_t* const begins = born + std::size_t{m} * kRowBits<Row>;
-      for (Row bits = face[m] & (~face_before[m] | cut_at(cut_slow + m)); bits != 0; bits &= bits - 1) {
-        begins[lowest_bit(bits)] = static_cast<std::uint8_t>(s);
-      }
+      const Row opening = face[m] & (~face_before[m] | cut_at(cut_slow + m));
+      CodeLanes::template put<Row>(opening, static_cast<std::uint8_t>(s),
+                                   born + std::size_t{m} * kRowBits<Row>);
     }
   }
-  /// Adds row m to the quad that was last put into a layer, of the material at (m, bit).
-  static HWY_INLINE void grow_last(const Outlet& out, unsigned bit, [[maybe_unused]] std::uint32_t m) {
+  /// Closes a quad of one row; or, if it joins it, adds its row to the quad that was last put into that layer.
+  static HWY_INLINE void join_quad(const Outlet& out, Quad open, std::uint32_t layer, std::uint32_t row_end,
+                                   bool joins) {
+    Quad quad = out.shape.close(open, row_end);
     QuadBuckets::Bucket* buckets = out.opaque;
-    if constexpr (kNumbered) {
-      if (out.mixed && whole_code(out.layer[m * out.line_size + bit]) >= kTransparentBit)
-        buckets = out.transparent;
+    if (kNumbered && (quad.bits & kTransparentQuad) != 0) {
+      quad.bits ^= kTransparentQuad;
+      buckets = out.transparent;
     }
-    Quad& last = buckets[bit].quads[buckets[bit].count - 1];
-    last = out.shape.with_row_more(last);
+    QuadBuckets::Bucket& bucket = buckets[layer];
+    if (bucket.count == bucket.room) QuadBuckets::grow(bucket);
+    // Without a branch: which of the two it is cannot be foreseen.
+    bucket.count -= joins ? 1 : 0;
+    Quad* const to = bucket.quads.get() + bucket.count++;
+    *to = joins ? out.shape.with_row_more(*to) : quad;
   }
 
   /// Closes what reaches the last layer: as if one without faces followed it.

@@ -82,9 +82,12 @@ struct SweepState {
   std::array<std::array<Rows, 2>, 6> face;  // voxels whose face shows, by side
   /// Opaque voxels of the chunk's own six sides, as Borders has them; filled if SweepInput asks for them.
   std::array<std::array<Row, kRowBits<Row>>, 6> own_sides;
-  std::array<Rows, 3> strips;  // of a side in which most rows change, made for all its rows at once
+  std::array<bool, 6> own_transparent;  // whether there are transparent ones among them
+  std::array<Rows, 3> strips;           // of a side in which most rows change, made for all its rows at once
   /// Quads that are open, by side; then by end of the strip (slow), or by row and end (middle).
   std::array<std::array<Quad, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 4> open;
+  /// Places of bits that close and open in one side of a layer, with room for a step behind.
+  std::array<std::uint16_t, std::size_t{kRowBits<Row>} * kRowBits<Row> + 4> closed, opened;
   /// Layer in which a face across the fastest axis appeared, by side, row and bit.
   std::array<std::array<std::uint8_t, std::size_t{kRowBits<Row>} * kRowBits<Row>>, 2> born;
 };

@@ -66,8 +66,7 @@ class QuadBuckets {
     out.quads.resize(total);
   }
 
- private:
-  static constexpr std::size_t kStep = 4;  // quads copied at once
+  /// Makes room for more than there is.
   static void grow(Bucket& bucket) {
     const std::uint32_t room = bucket.room == 0 ? 32 : bucket.room * 2;
     auto quads = std::make_unique<Quad[]>(room);
@@ -75,6 +74,9 @@ class QuadBuckets {
     bucket.quads = std::move(quads);
     bucket.room = room;
   }
+
+ private:
+  static constexpr std::size_t kStep = 4;  // quads copied at once
 
   std::array<Bucket, kDirectionCount * kSideMax> buckets_;
 };

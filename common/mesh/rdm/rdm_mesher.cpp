@@ -93,8 +93,9 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   const rdm::LayerPlace place{axes.layer, axes.bit, layer};
   std::array<typename rdm::Borders<Row>::Rows, 1> plane;
   const Direction touching = opposite(direction);
-  if (!codes.has_transparent() || (kept != nullptr && !kept->may_be_transparent(touching))) {
-    if (kept != nullptr) return copy_border(*kept, touching, axes.bit, hiding);
+  const bool told = kept != nullptr && !neighbour->is_uniform();
+  if (!codes.has_transparent() || (told && !kept->has_transparent(touching))) {
+    if (told) return copy_border(*kept, touching, axes.bit, hiding);
     rdm::read_layer_rows(*neighbour, place, plane, [table = visibility.data()](Material material) -> Code {
       return table[material] == Visibility::opaque ? 1 : 0;
     });
@@ -156,7 +157,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   } else {
     rdm::sweep_layers(input, rows->borders, rows->sweep);
   }
-  if (own != nullptr) own->keep(chunk, rows->sweep.own_sides, scratch.codes.has_transparent());
+  if (own != nullptr) own->keep(chunk, rows->sweep.own_sides, rows->sweep.own_transparent);
 }
 
 /// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
@@ -201,6 +202,7 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
   Scratch& state = scratch.state();
   if (chunk.is_uniform()) {
     if (own != nullptr) own->read(chunk, visibility);
+    own = nullptr;
     if (visibility[chunk.runs.material(0)] == Visibility::empty) return out.clear();
     if (mesh_uniform(chunk, neighbours, visibility, out)) return;
   }
