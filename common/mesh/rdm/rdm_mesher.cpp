@@ -71,6 +71,50 @@ void copy_border(const ChunkBorders& borders, Direction side, Axis bit_axis, Row
   rdm::transpose(out);
 }
 
+/// The border of a chunk with opaque and transparent materials, where the neighbour may have some, too.
+template <class Row>
+void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
+                       const VisibilityTable& visibility, Scratch& scratch, std::size_t at,
+                       rdm::Borders<Row>& borders) {
+  const rdm::MaterialCodes& codes = scratch.codes;
+  const auto class_of = [&codes, &visibility](Material material) -> Code {
+    return codes.transparent_code(material) != 0 ? 2 : visibility[material] == Visibility::opaque ? 1 : 0;
+  };
+  const auto sides = neighbour.extent.sides();
+  const auto row_axis = 3 - static_cast<std::size_t>(place.axis) - static_cast<std::size_t>(place.bit_axis);
+  const std::uint32_t rows = sides[row_axis];
+  const std::uint32_t bits = sides[static_cast<std::size_t>(place.bit_axis)];
+  auto& voxels = scratch.border_voxels;
+  const auto read_voxels = [&] {
+    voxels.resize(std::size_t{bits} * rows);
+    read_layer(neighbour, place.axis, place.at, place.bit_axis, voxels);
+  };
+  std::array<typename rdm::Borders<Row>::Rows, 2> planes;
+  // Among many short runs, looking at each voxel of the layer costs less than at each run of the chunk.
+  const bool dense = neighbour.runs.size() > std::size_t{4} * bits * rows;
+  if (dense) {
+    read_voxels();
+    const Material* voxel = voxels.data();
+    for (auto& plane : planes) plane.fill(0);
+    for (std::uint32_t r = 0; r < rows; ++r) {
+      for (std::uint32_t bit = 0; bit < bits; ++bit, ++voxel) {
+        const Code of = class_of(*voxel);
+        planes[0][r] |= Row{of & 1} << bit;
+        planes[1][r] |= Row{of >> 1} << bit;
+      }
+    }
+  } else {
+    rdm::read_layer_rows(neighbour, place, planes, class_of);
+  }
+  borders.hiding[at] = planes[0];
+  borders.transparent[at] = planes[1];
+  borders.meets[at] = std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
+  if (!borders.meets[at] || codes.transparent_count() == 1) return;
+  if (!dense) read_voxels();
+  std::transform(voxels.begin(), voxels.end(), std::back_inserter(borders.codes[at]),
+                 [&codes](Material material) { return codes.transparent_code(material); });
+}
+
 template <class Row>
 void read_border(const RunChunk& chunk, Direction direction, const RunChunk* neighbour,
                  const ChunkBorders* kept, const SideAxes& axes, const VisibilityTable& visibility,
@@ -110,19 +154,7 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
     hiding = plane[0];
     return;
   }
-  std::array<typename rdm::Borders<Row>::Rows, 2> planes;
-  rdm::read_layer_rows(*neighbour, place, planes, [&codes, &visibility](Material material) -> Code {
-    return codes.transparent_code(material) != 0 ? 2 : visibility[material] == Visibility::opaque ? 1 : 0;
-  });
-  hiding = planes[0];
-  borders.transparent[at] = planes[1];
-  borders.meets[at] = std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
-  if (!borders.meets[at] || codes.transparent_count() == 1) return;
-  scratch.border_voxels.resize(std::size_t{side_of(chunk, axes.bit)} * side_of(chunk, axes.row));
-  read_layer(*neighbour, axes.layer, layer, axes.bit, scratch.border_voxels);
-  std::transform(scratch.border_voxels.begin(), scratch.border_voxels.end(),
-                 std::back_inserter(borders.codes[at]),
-                 [&codes](Material material) { return codes.transparent_code(material); });
+  read_mixed_border(*neighbour, place, visibility, scratch, at, borders);
 }
 
 template <class Row>
