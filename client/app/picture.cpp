@@ -68,7 +68,7 @@ void Picture::mesh() {
 void Picture::take_results() {
   for (MeshResult& result : pool_->take_results()) {
     (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
-    if (!planner_.finish(result.key, result.number, result.mesh, std::move(result.borders))) continue;
+    if (!planner_.finish(result.key, result.number, result.mesh)) continue;
     recorder_.meshed(result.key, result.serial, result.meshed_us);
     if (!draw_thread_) continue;
     draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
@@ -116,7 +116,7 @@ bool Picture::has_caught_up() {
 void Picture::report(ChunkStats& chunks, FrameStats& frames) const {
   chunks.whole_ns = whole_ns_;
   chunks.layers_ns = layers_ns_;
-  chunks.kept_bytes = planner_.kept_bytes();
+  chunks.kept_mesh_bytes = planner_.kept_bytes();
   chunks.mesh_jobs = planner_.jobs();
   chunks.chunks_meshed = planner_.chunks_meshed();
   frames = frames_;

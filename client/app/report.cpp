@@ -135,7 +135,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   out["mesh"] = Json{{"jobs", chunks.mesh_jobs},
                      {"chunks", chunks.chunks_meshed},
                      {"per_chunk", per_chunk(chunks)},
-                     {"kept_bytes", chunks.kept_bytes},
+                     {"kept_bytes", chunks.kept_mesh_bytes},
                      {"whole_ns", histogram_json(chunks.whole_ns)},
                      {"layers_ns", histogram_json(chunks.layers_ns)}};
   out["frames"] =
@@ -181,10 +181,9 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
       chunks.whole_ns.mean().value_or(0) / 1000);
   fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks), chunks.mesh_jobs,
                  chunks.chunks_meshed);
-  fmt::format_to(into,
-                 "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes and borders kept\n",
+  fmt::format_to(into, "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
                  chunks.layers_ns.count(), chunks.layers_ns.mean().value_or(0) / 1000,
-                 static_cast<double>(chunks.kept_bytes) / (1 << 20));
+                 static_cast<double>(chunks.kept_mesh_bytes) / (1 << 20));
   if (report.frames.presented != 0) {
     fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
                    cell(report.frames.draw_us.percentile(0.5)));

@@ -19,7 +19,7 @@ struct ChunkStats {
   Histogram whole_ns;            // per mesh of a whole chunk
   Histogram layers_ns;           // per mesh of what changed since the one before
   std::uint64_t mesh_jobs = 0, chunks_meshed = 0;
-  std::uint64_t kept_bytes = 0;  // newest meshes and borders of all chunks in view, at the end
+  std::uint64_t kept_mesh_bytes = 0;  // of the newest meshes of all chunks in view, at the end
 };
 
 /// Frames as they were drawn, on the draw thread.

@@ -39,7 +39,6 @@ void MeshPlanner::take(std::span<const ChunkNews> news) {
     state.serial = chunk.serial;
     state.changed |= chunk.layers;
     state.edited = state.edited || !chunk.edits.empty();
-    if (chunk.layers.dirty.any()) state.borders.reset();
     if (!chunk.whole) {
       mark(chunk.key, state);
       continue;
@@ -123,10 +122,6 @@ std::optional<MeshJob> MeshPlanner::next() {
         state.open_sides == open_sides) {
       job.before = std::move(state.mesh);
       job.changed = state.changed;
-    } else {
-      for (std::size_t i = 0; i < job.borders.size(); ++i) {
-        job.borders[i] = borders_of(beside(key, static_cast<Direction>(i)));
-      }
     }
     state.mesh.reset();
     state.changed = {};
@@ -142,28 +137,17 @@ std::optional<MeshJob> MeshPlanner::next() {
   return std::nullopt;
 }
 
-/// Null also where news wait: the chunk is another one than that of which they are kept, or may be.
-BordersPtr MeshPlanner::borders_of(const ChunkKey& key) const {
-  const auto it = states_.find(key);
-  if (it == states_.end() || it->second.serial != replica_.shown_serial(key)) return nullptr;
-  return it->second.borders;
-}
-
-bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh, BordersPtr borders) {
+bool MeshPlanner::finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh) {
   const auto it = states_.find(key);
   if (it == states_.end() || number != it->second.job) return false;
   it->second.mesh = std::move(mesh);
-  if (borders && !it->second.changed.dirty.any()) it->second.borders = std::move(borders);
   it->second.job = 0;
   place(key, it->second);
   return true;
 }
 
 void MeshPlanner::forget_meshes() {
-  for (auto& [key, state] : states_) {
-    state.borders.reset();
-    mark_whole(key, state);
-  }
+  for (auto& [key, state] : states_) mark_whole(key, state);
 }
 
 std::size_t MeshPlanner::kept_bytes() const {
@@ -173,7 +157,6 @@ std::size_t MeshPlanner::kept_bytes() const {
     if (state.mesh && !state.mesh->empty()) {
       bytes += sizeof(ChunkMesh) + state.mesh->quad_count() * sizeof(Quad);
     }
-    if (state.borders) bytes += sizeof(ChunkBorders) + state.borders->byte_size();
   }
   return bytes;
 }

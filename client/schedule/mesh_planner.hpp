@@ -12,8 +12,6 @@
 // passes there, with all layers between the old runs and the new. A chunk is meshed as a whole where that
 // does not describe the way from the kept mesh to the picture of now: there is no mesh yet, the chunk or a
 // neighbour came, went or came back since, the axis order is another, or there are news not yet taken.
-// A whole mesh makes the borders of its chunk on the way. They are kept until the chunk changes, and spare
-// the whole meshes beside it from reading its runs; where none are kept, those read them.
 // One thread. Cost: O(log chunks) a change or job, O(chunks to mesh) when the eye crosses into another chunk.
 // Memory: kept_bytes(), and some 500 bytes a chunk in view.
 #pragma once
@@ -31,14 +29,12 @@
 #include "client/replica/replica_news.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
-#include "common/mesh/rdm/chunk_borders.hpp"
 #include "common/runs/axis_order.hpp"
 
 namespace runstone {
 
 /// Null: none.
 using MeshPtr = std::shared_ptr<const ChunkMesh>;
-using BordersPtr = std::shared_ptr<const ChunkBorders>;
 
 struct MeshJob {
   ChunkKey key;
@@ -50,8 +46,6 @@ struct MeshJob {
   /// the whole chunk.
   MeshPtr before;
   PictureLayers changed;
-  /// For a whole mesh: what is kept of the neighbours' borders.
-  std::array<BordersPtr, kDirectionCount> borders;
 };
 
 class MeshPlanner {
@@ -66,12 +60,10 @@ class MeshPlanner {
   /// The next job; none while everything left waits for a neighbour or for a result. Every job must be
   /// finished, or made void.
   std::optional<MeshJob> next();
-  /// Takes the mesh of a job that is done, and the borders it made if it did, and keeps them. Returns whether
-  /// the mesh should be drawn: not if its chunk left the view since, even if it came back, or if the job was
-  /// made void.
-  bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh, BordersPtr borders = nullptr);
-  /// No mesh and no border holds any more, nor will those of any job out: materials look different now. Meshes
-  /// all again.
+  /// Takes the mesh of a job that is done, and keeps it. Returns whether it should be drawn: not if its chunk
+  /// left the view since, even if it came back, or if the job was made void.
+  bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh);
+  /// No mesh holds any more, nor will that of any job out: materials look different now. Meshes all again.
   void forget_meshes();
 
   /// Chunks to mesh, and those of them that need not wait.
@@ -80,7 +72,7 @@ class MeshPlanner {
   std::uint64_t jobs() const { return jobs_; }
   /// Chunks that got at least one job. jobs() / this is the number of meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }
-  /// Bytes of the meshes and borders kept at the moment. O(chunks).
+  /// Bytes of the meshes kept at the moment. O(chunks).
   std::size_t kept_bytes() const;
 
  private:
@@ -96,11 +88,9 @@ class MeshPlanner {
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour
     MeshPtr mesh;
-    BordersPtr borders;        // as of the newest news; null where no whole mesh was made since
     std::optional<Rank> rank;  // place in ready_
   };
   bool ready(const ChunkKey& key) const;
-  BordersPtr borders_of(const ChunkKey& key) const;
   void mark(const ChunkKey& key, State& state);
   void mark_whole(const ChunkKey& key, State& state);
   void place(const ChunkKey& key, State& state);

@@ -84,12 +84,7 @@ MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
     mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.dirty, job.changed.beyond, scratch.rdm,
                     scratch.mesh);
   } else {
-    MeshBorders borders{};
-    for (std::size_t i = 0; i < borders.size(); ++i) borders[i] = job.borders[i].get();
-    // A chunk of one material is as quickly read as its borders.
-    const auto own = job.chunk->is_uniform() ? nullptr : std::make_shared<ChunkBorders>();
-    mesh_rdm(*job.chunk, neighbours, borders, visibility_, scratch.rdm, scratch.mesh, own.get());
-    result.borders = own;
+    mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);
   }
   result.mesh = scratch.mesh.empty() ? empty_ : std::make_shared<const ChunkMesh>(scratch.mesh);
   const std::int64_t end = clock_();

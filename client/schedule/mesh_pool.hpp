@@ -24,7 +24,6 @@ struct MeshResult {
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
   MeshPtr mesh;                          // of its own, or the one that all chunks without quads share
-  BordersPtr borders;                    // of the chunk; null for a mesh of layers or a chunk of one material
   bool layers_only = false;              // started from the mesh before
   std::int64_t mesh_ns = 0;              // from the job to the mesh
   TimeUs meshed_us = 0;                  // when it was done

@@ -2,7 +2,6 @@
 // come back, cut connections and crashes, driven through replica, planner and pool, with news taken and
 // results delivered at random. Every mesh is compared quad for quad with a whole mesh of what its job
 // held, and at the end with what the replica shows.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <deque>
 #include <functional>
@@ -61,7 +60,7 @@ struct Sabotage {
 };
 
 struct Counts {
-  std::uint64_t whole = 0, layers = 0, beyond = 0, bordered = 0, refused = 0, turned = 0, wrong = 0;
+  std::uint64_t whole = 0, layers = 0, beyond = 0, refused = 0, turned = 0, wrong = 0;
 };
 
 class MeshStream {
@@ -312,10 +311,7 @@ class MeshStream {
     if (!same(*result.mesh, whole_mesh(*job.chunk, neighbours))) ++counts_.wrong;
     ++(result.layers_only ? counts_.layers : counts_.whole);
     if (result.layers_only && job.changed.beyond != PictureLayers{}.beyond) ++counts_.beyond;
-    if (std::any_of(job.borders.begin(), job.borders.end(), [](const auto& b) { return b != nullptr; })) {
-      ++counts_.bordered;
-    }
-    if (planner_.finish(result.key, result.number, result.mesh, result.borders)) {
+    if (planner_.finish(result.key, result.number, result.mesh)) {
       drawn_.insert_or_assign(result.key, std::pair(job, result.mesh));
     } else {
       ++counts_.refused;
@@ -389,16 +385,14 @@ TEST_CASE("every mesh on its way through replica, planner and pool is a whole me
     sum.whole += c.whole;
     sum.layers += c.layers;
     sum.beyond += c.beyond;
-    sum.bordered += c.bordered;
     sum.refused += c.refused;
     sum.turned += c.turned;
   }
   // The interleavings reach what they are meant to reach.
-  CAPTURE(sum.whole, sum.layers, sum.beyond, sum.bordered, sum.refused, sum.turned);
+  CAPTURE(sum.whole, sum.layers, sum.beyond, sum.refused, sum.turned);
   CHECK(sum.layers > sum.whole);
   CHECK(sum.whole > sum.layers / 10);
   CHECK(sum.beyond > 100);
-  CHECK(sum.bordered > sum.whole / 10);
   CHECK(sum.refused > 10);
   CHECK(sum.turned > 10);
 }

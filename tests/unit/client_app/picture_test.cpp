@@ -180,7 +180,7 @@ TEST_CASE_METHOD(Fixture, "the report tells whole meshes from meshes of layers, 
     FrameStats frames;
     picture.report(chunks, frames);
     CHECK(chunks.mesh_jobs == chunks.whole_ns.count() + chunks.layers_ns.count());
-    return std::array{chunks.whole_ns.count(), chunks.layers_ns.count(), chunks.kept_bytes};
+    return std::array{chunks.whole_ns.count(), chunks.layers_ns.count(), chunks.kept_mesh_bytes};
   };
   CHECK(counts() == std::array<std::uint64_t, 3>{1, 0, 0});
   edit({5, 5, 5});

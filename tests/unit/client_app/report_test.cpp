@@ -22,7 +22,7 @@ ClientReport sample() {
   report.chunks.chunks_meshed = 20;
   for (int i = 0; i < 20; ++i) report.chunks.whole_ns.add(20'000);
   for (int i = 0; i < 10; ++i) report.chunks.layers_ns.add(5'000);
-  report.chunks.kept_bytes = 3 << 19;
+  report.chunks.kept_mesh_bytes = 3 << 19;
   return report;
 }
 
@@ -69,8 +69,7 @@ TEST_CASE("the table names what matters on lines of their own", "[client_app]") 
   const std::string table = to_table(sample(), session);
   CHECK_THAT(table, Catch::Contains("meshes per chunk: 1.50 (30 of 20 chunks)\n"));
   CHECK_THAT(table,
-             Catch::Contains(
-                 "meshes of changed layers only: 10, each 5.0 us; 1.5 MiB of meshes and borders kept\n"));
+             Catch::Contains("meshes of changed layers only: 10, each 5.0 us; 1.5 MiB of meshes kept\n"));
   CHECK_THAT(table, Catch::Contains("dense expansions: " + std::to_string(dense_expansions()) + "\n"));
   CHECK_THAT(table, Catch::Contains("drift: 0 of 0 audited\n"));
   CHECK_THAT(table, Catch::Matches("(.|\n)*remote +meshed +10 +0\\.10 +0\\.10 +inf +inf\n(.|\n)*"));
