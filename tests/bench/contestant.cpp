@@ -24,8 +24,8 @@ namespace {
 using namespace reference;
 
 constexpr std::array<std::string_view, 10> kNames = {
-    "rdm",         "rdm_alone", "rdm_plain", "decode_binary", "grid_binary",
-    "mask_binary", "culled",    "simple",    "grid_rdm",      "rle_rdm"};
+    "rdm",         "rdm_kept", "rdm_plain", "decode_binary", "grid_binary",
+    "mask_binary", "culled",   "simple",    "grid_rdm",      "rle_rdm"};
 
 /// Adds the time since `start` to a phase; returns the time now.
 std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
@@ -48,7 +48,7 @@ Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTabl
   state->neighbours = volume.scene.pointers();
   Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
   ChunkBorders* own = nullptr;
-  if (name != "rdm_alone") {
+  if (name == "rdm_kept") {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       if (state->neighbours[d] == nullptr) continue;
       state->kept[d].read(*state->neighbours[d], visibility);

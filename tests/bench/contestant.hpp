@@ -1,8 +1,8 @@
 // Contestant: a mesher set before one volume, with its input made ready and its buffers warm, so that calling
 // it times what the name says and nothing else.
-//   rdm               the product, from runs; the borders of the neighbours are kept from when they were meshed,
-//                     and those of the chunk itself are made in the time (ChunkBorders)
-//   rdm_alone         the same with nothing kept: borders are read from the neighbours' runs
+//   rdm               the product, from runs; borders are read from the neighbours' runs
+//   rdm_kept          the same with the borders of all neighbours kept from when they were meshed; those of the
+//                     chunk itself are made in the time (ChunkBorders)
 //   rdm_plain         rdm without vector instructions
 //   decode_binary     binary greedy from runs: decode, mask (from the runs), mesh
 //   grid_binary       binary greedy with the dense grid ready: mask, mesh

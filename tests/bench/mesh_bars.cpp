@@ -41,9 +41,9 @@ Bar landscape(const std::vector<MeshRow>& rows, const std::string& world, double
   if (of.empty() || !of[0]->against_grid) return unknown(what, wanted);
   const double a = *of[0]->against_decode, b = *of[0]->against_grid;
   std::string measured = fmt::format("{:.2f}x; {:.2f}x", a, b);
-  if (const auto alone = product_rows(rows, world, 62, "rdm_alone"); !alone.empty()) {
-    measured += fmt::format(" (nothing kept: {:.2f}x; {:.2f}x)", *alone[0]->against_decode,
-                            alone[0]->against_grid.value_or(0));
+  if (const auto kept = product_rows(rows, world, 62, "rdm_kept"); !kept.empty()) {
+    measured += fmt::format(" (borders kept: {:.2f}x; {:.2f}x)", *kept[0]->against_decode,
+                            kept[0]->against_grid.value_or(0));
   }
   return judged(what, wanted, measured, a >= decode && b >= grid);
 }
@@ -82,10 +82,9 @@ Bar luanti(const std::vector<MeshRow>& rows) {
   const Ratios ratios = ratios_of(of);
   const double mean = geometric_mean(ratios.each);
   std::string measured = fmt::format("{:.2f}x; {:.2f}x", mean, ratios.of_sums);
-  if (const auto alone = product_rows(rows, "luanti", 62, "rdm_alone"); !alone.empty()) {
-    const Ratios without = ratios_of(alone);
-    measured +=
-        fmt::format(" (nothing kept: {:.2f}x; {:.2f}x)", geometric_mean(without.each), without.of_sums);
+  if (const auto kept = product_rows(rows, "luanti", 62, "rdm_kept"); !kept.empty()) {
+    const Ratios with = ratios_of(kept);
+    measured += fmt::format(" (borders kept: {:.2f}x; {:.2f}x)", geometric_mean(with.each), with.of_sums);
   }
   return judged(fmt::format("{} ({} volumes)", what, of.size()), "3x; 2x", measured,
                 mean >= 3 && ratios.of_sums >= 2);
@@ -110,7 +109,7 @@ Bar never_below(const std::vector<MeshRow>& rows) {
   const MeshRow* lowest = nullptr;
   std::size_t cells = 0;
   for (const MeshRow& row : rows) {
-    if ((row.mesher != "rdm" && row.mesher != "rdm_alone") || !row.against_decode) continue;
+    if ((row.mesher != "rdm" && row.mesher != "rdm_kept") || !row.against_decode) continue;
     ++cells;
     if (lowest == nullptr || *row.against_decode < *lowest->against_decode) lowest = &row;
   }
@@ -186,7 +185,7 @@ Bar edit(const EditTiming& edits) {
 
 Bar storage(const std::vector<MeshRow>& rows) {
   const std::string what = "runs' storage over the 37 scenarios against 2 bytes a voxel: mean saving";
-  const auto of = product_rows(rows, "scenarios", 32, "rdm_alone");
+  const auto of = product_rows(rows, "scenarios", 32);
   if (of.empty()) return unknown(what, "80 %");
   double saving = 0;
   for (const MeshRow* row : of) {
