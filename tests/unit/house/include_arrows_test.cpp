@@ -61,6 +61,7 @@ const std::map<std::string, std::vector<std::string>, std::less<>>& arrows() {
         "common/edits/edit_stack.hpp"}},
       {"common/generate",
        {"common/core", "common/runs", "common/materials", "common/edits/edit_geometry.hpp"}},
+      {"common/rlog", {"common/core", "common/edits", "common/generate/generator.hpp"}},
       {"common/formats", {"common/core", "common/runs", "common/materials", "common/edits"}},
       {"protocol", {"common"}},
       {"server", {"protocol", "common"}},

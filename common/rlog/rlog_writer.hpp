@@ -1,0 +1,53 @@
+// RlogWriter: writes a log as an .rlog, front to back, holding one block at a time. The sink gets the file's
+// bytes in order; what it got so far is a file that was cut, until finish(). One thread.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "common/rlog/rlog_block.hpp"
+#include "common/rlog/rlog_edits.hpp"
+#include "common/rlog/rlog_world.hpp"
+
+namespace runstone {
+
+/// Takes the next bytes of the file; false when they cannot be written, which ends the writing.
+using RlogSink = std::function<bool(ByteView)>;
+
+struct RlogOptions {
+  int zstd_level = 9;  // 1 .. 19; 0: blocks stay as they are
+  /// Larger blocks pack better; a damaged byte costs its block and what follows. 1 .. kRlogCountMax.
+  std::uint32_t edits_per_block = 4096;
+};
+
+class RlogWriter {
+ public:
+  explicit RlogWriter(RlogSink sink, RlogOptions options = {});
+
+  /// Mark, world and players (ascending by author). Call once, first.
+  RlogResult<void> begin(const RlogWorld& world, std::span<const RlogPlayer> players);
+  /// The next edit. Fails with bad_value if it does not continue the log: another sequence than the next one,
+  /// another log than 0, an epoch or a time that falls, numbers no record can have.
+  RlogResult<void> add(const EditRecord& record);
+  /// Writes what is left and the end mark. Call once, last.
+  RlogResult<void> finish();
+
+  std::uint64_t bytes() const { return position_; }  // given to the sink
+
+ private:
+  RlogResult<void> write_block(RlogBlock block, ByteView raw);
+  RlogResult<void> write_edits();
+  Unexpected<RlogError> failure(ErrorCode code, const char* what, Sequence seq) const;
+
+  RlogSink sink_;
+  RlogOptions options_;
+  RlogEditsWriter edits_;
+  Bytes packed_, bytes_;
+  std::uint64_t position_ = 0, checksum_ = 0;
+  Sequence next_ = 1;
+  Epoch epoch_ = 0;
+  TimeUs last_us_ = 0;
+  bool is_first_ = true;  // no edit yet
+};
+
+}  // namespace runstone
