@@ -17,6 +17,16 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
   app.add_flag("--verify", options.verify, "also read and verify every row of every table");
   app.add_option("--json", options.json, "write digests and report to this file");
   app.add_option("--against", options.against, "compare with digests that a server or client wrote");
+  CLI::Option* to = app.add_option("--export", options.export_to, "write the log to this .rlog file instead");
+  app.add_option(
+         "--import", options.import_from,
+         "append this .rlog file to the world's log instead; makes the world if the folder holds none")
+      ->excludes(to);
+  for (const char* other : {"--verify", "--json", "--against"}) {
+    to->excludes(other);
+    app.get_option("--import")->excludes(other);
+  }
+  app.get_option("--import")->excludes("--at");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

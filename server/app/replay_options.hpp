@@ -14,8 +14,9 @@ struct ReplayOptions {
   std::string world;  // folder
   bool verify = false;
   Sequence at = std::numeric_limits<Sequence>::max();
-  std::string json;                  // file; empty: none
-  std::vector<std::string> against;  // files
+  std::string json;                    // file; empty: none
+  std::vector<std::string> against;    // files
+  std::string export_to, import_from;  // .rlog files; at most one is not empty
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

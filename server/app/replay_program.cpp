@@ -13,6 +13,7 @@
 #include "server/app/digest_list.hpp"
 #include "server/app/replay.hpp"
 #include "server/app/replay_options.hpp"
+#include "server/app/rlog_file.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -51,29 +52,31 @@ double rate_of(const ReplayReport& report, double seconds) {
   return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;
 }
 
+std::ostream& row(std::ostream& out, const char* name) {
+  return out << std::left << std::setw(12) << name << std::right;
+}
+
 void print_table(std::ostream& out, const Store& store, const ReplayReport& report, double seconds,
                  bool verified) {
   const WorldMeta& meta = store.meta();
-  const auto row = [&](const char* name) -> std::ostream& {
-    return out << std::left << std::setw(12) << name << std::right;
-  };
   out << std::fixed;
-  row("world") << to_hex(meta.world_id) << "  " << store.file() << '\n';
-  row("base") << meta.generator.name << " version " << meta.generator.version << ", seed "
-              << meta.generator.seed << '\n';
-  row("edits") << report.edits << ", up to sequence " << report.seq << '\n';
-  row("chunks") << report.digests.size() << " edited\n";
-  row("voxels") << report.voxels_changed << " changed\n";
-  row("snapshots") << report.snapshots_compared << " compared\n";
-  row("lists") << report.listed_compared << " chunks compared\n";
-  row("left out") << report.not_compared << " newer than the end, or of another level of detail\n";
-  if (verified) row("rows") << "all read and sound\n";
-  row("time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0) << rate_of(report, seconds)
-              << " edits/s\n";
-  row("digest") << to_hex(report.world_digest) << '\n';
-  row("result") << (report.differences == 0 ? "equal" : std::to_string(report.differences) + " differences")
-                << '\n';
-  if (report.first) row("first") << report.first->message() << '\n';
+  row(out, "world") << to_hex(meta.world_id) << "  " << store.file() << '\n';
+  row(out, "base") << meta.generator.name << " version " << meta.generator.version << ", seed "
+                   << meta.generator.seed << '\n';
+  row(out, "edits") << report.edits << ", up to sequence " << report.seq << '\n';
+  row(out, "chunks") << report.digests.size() << " edited\n";
+  row(out, "voxels") << report.voxels_changed << " changed\n";
+  row(out, "snapshots") << report.snapshots_compared << " compared\n";
+  row(out, "lists") << report.listed_compared << " chunks compared\n";
+  row(out, "left out") << report.not_compared << " newer than the end, or of another level of detail\n";
+  if (verified) row(out, "rows") << "all read and sound\n";
+  row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
+                   << rate_of(report, seconds) << " edits/s\n";
+  row(out, "digest") << to_hex(report.world_digest) << '\n';
+  row(out, "result") << (report.differences == 0 ? "equal"
+                                                 : std::to_string(report.differences) + " differences")
+                     << '\n';
+  if (report.first) row(out, "first") << report.first->message() << '\n';
 }
 
 /// A digest list that also says what the replay found.
@@ -98,6 +101,28 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
 int cannot_read(std::ostream& err, const std::string& message) {
   err << "runstone-replay: " << message << '\n';
   return static_cast<int>(ReplayExit::cannot_read);
+}
+
+int export_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
+  auto store = open_world(options.world, StoreAccess::read_only);
+  if (!store) return cannot_read(err, store.error().message());
+  const auto done = export_rlog(**store, options.export_to, options.at);
+  if (!done) return cannot_read(err, done.error());
+  row(out, "world") << to_hex((*store)->meta().world_id) << "  " << (*store)->file() << '\n';
+  row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
+  row(out, "written") << options.export_to << ", " << done->bytes << " bytes\n";
+  return static_cast<int>(ReplayExit::equal);
+}
+
+int import_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
+  const auto done = import_rlog(options.world, options.import_from);
+  if (!done) return cannot_read(err, done.error());
+  row(out, "world") << options.world << (done->made_world ? ", made\n" : "\n");
+  row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
+                    << " compacted\n";
+  row(out, "log") << "ends with sequence " << done->last << '\n';
+  if (done->stopped.empty()) return static_cast<int>(ReplayExit::equal);
+  return cannot_read(err, done->stopped);
 }
 
 int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
@@ -141,7 +166,10 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
 
 int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   const auto [options, exit_code] = parse_replay_options(argc, argv, out, err);
-  return options ? run(*options, out, err) : exit_code;
+  if (!options) return exit_code;
+  if (!options->export_to.empty()) return export_log(*options, out, err);
+  if (!options->import_from.empty()) return import_log(*options, out, err);
+  return run(*options, out, err);
 }
 
 }  // namespace runstone

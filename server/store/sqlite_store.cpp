@@ -90,16 +90,28 @@ StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table
 
 StoreResult<std::vector<HighWater>> SqliteStore::high_waters() { return player_table_.high_waters(); }
 
-StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> records) {
-  const auto last = last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
-  Sequence expected = *last;
+StoreResult<LogEnd> SqliteStore::log_head() { return meta_table_.log_head(); }
+
+StoreResult<bool> SqliteStore::has_base() {
+  const auto fold = meta_table_.fold(base_.fold_key());
+  if (!fold) return Unexpected<StoreError>{fold.error()};
+  return fold->count != 0;
+}
+
+StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> records, bool history) {
+  const auto range = log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  Sequence expected = range->last.version.seq;
+  Epoch epoch = range->last.version.epoch;
   for (const EditRecord& record : records) {
     ++expected;
     const std::string where = "edit_log seq=" + std::to_string(record.version.seq);
     if (record.version.seq != expected)
       return refuse(where, "the log continues at " + std::to_string(expected));
-    if (record.version.epoch != epoch_) return refuse(where, "the epoch is " + std::to_string(epoch_));
+    if (history ? record.version.epoch < epoch : record.version.epoch != epoch_) {
+      return refuse(where, "the epoch is " + std::to_string(history ? epoch : epoch_));
+    }
+    epoch = record.version.epoch;
     if (record.log != 0) return refuse(where, "belongs to another log");
     if (const auto numbers = validate_numbers(record); !numbers) return refuse(where, numbers.error().what);
   }
@@ -109,26 +121,42 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
 StoreResult<void> SqliteStore::append(std::span<const PlayerRow> players,
                                       std::span<const EditRecord> records) {
   return write([&]() -> StoreResult<void> {
-    if (auto continues = check_continues(records); !continues) return continues;
-    for (const PlayerRow& player : players) {
-      if (player.author == 0) return refuse("player author=0", "is the server itself");
-      if (auto put = player_table_.put(player); !put) return put;
-    }
-    std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
-    for (const EditRecord& record : records) {
-      if (auto inserted = log_.insert(record); !inserted) return inserted;
-      const auto [author, instance, seq] = record.op;
-      HighWater& mark =
-          marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
-              .first->second;
-      mark.decided = std::max(mark.decided, seq);
-      mark.last_us = std::max(mark.last_us, record.time_us);
-    }
-    for (const auto& [client, mark] : marks) {
-      if (auto raised = player_table_.raise(mark); !raised) return raised;
-    }
-    return {};
+    if (auto continues = check_continues(records, false); !continues) return continues;
+    return insert(players, records);
   });
+}
+
+StoreResult<void> SqliteStore::append_history(std::span<const PlayerRow> players,
+                                              std::span<const EditRecord> records) {
+  const Epoch epoch = records.empty() ? epoch_ : std::max(epoch_, records.back().version.epoch);
+  auto written = write([&]() -> StoreResult<void> {
+    if (auto continues = check_continues(records, true); !continues) return continues;
+    if (auto raised = meta_table_.put("epoch", std::int64_t{epoch}); !raised) return raised;
+    return insert(players, records);
+  });
+  if (written) epoch_ = epoch;
+  return written;
+}
+
+StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
+                                      std::span<const EditRecord> records) {
+  for (const PlayerRow& player : players) {
+    if (player.author == 0) return refuse("player author=0", "is the server itself");
+    if (auto put = player_table_.put(player); !put) return put;
+  }
+  std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
+  for (const EditRecord& record : records) {
+    if (auto inserted = log_.insert(record); !inserted) return inserted;
+    const auto [author, instance, seq] = record.op;
+    HighWater& mark =
+        marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us}).first->second;
+    mark.decided = std::max(mark.decided, seq);
+    mark.last_us = std::max(mark.last_us, record.time_us);
+  }
+  for (const auto& [client, mark] : marks) {
+    if (auto raised = player_table_.raise(mark); !raised) return raised;
+  }
+  return {};
 }
 
 StoreResult<void> SqliteStore::save_chunks(ChunkTable& table,

@@ -36,11 +36,15 @@ class SqliteStore final : public Store {
   StoreResult<Epoch> raise_epoch() override;
   Epoch epoch() const override { return epoch_; }
   StoreResult<LogRange> log_range() override;
+  StoreResult<LogEnd> log_head() override;
+  StoreResult<bool> has_base() override;
   StoreResult<Sequence> last_sequence() override;
   StoreResult<Sequence> checkpoint() override;
   StoreResult<std::vector<PlayerRow>> players() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
   StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override;
+  StoreResult<void> append_history(std::span<const PlayerRow> players,
+                                   std::span<const EditRecord> records) override;
   StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                    std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
@@ -63,7 +67,10 @@ class SqliteStore final : public Store {
   StoreResult<T> at_one_moment(const std::function<StoreResult<T>()>& body);
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys_of(ChunkTable& table);
   StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
-  StoreResult<void> check_continues(std::span<const EditRecord> records);
+  /// Also that they are of the epoch of now or, for history, that epochs do not fall.
+  StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
+  /// In the caller's transaction.
+  StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records);
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;

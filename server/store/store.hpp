@@ -82,6 +82,10 @@ class Store {
   virtual Epoch epoch() const = 0;
   /// What the log holds and where it ends. All of it is durable.
   virtual StoreResult<LogRange> log_range() = 0;
+  /// The last edit that was compacted away: the log begins behind it. (0, 0) and 0 if none was.
+  virtual StoreResult<LogEnd> log_head() = 0;
+  /// Whether there are base chunks: imported, or completed by a compaction.
+  virtual StoreResult<bool> has_base() = 0;
   /// Last sequence ever logged (0: none), compacted or not.
   virtual StoreResult<Sequence> last_sequence() = 0;
   /// Every edit up to here is contained in a snapshot of each chunk it touched (0: none).
@@ -96,6 +100,10 @@ class Store {
   /// (validate_numbers()); nothing is written otherwise (bad_request).
   virtual StoreResult<void> append(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) = 0;
+  /// Import only: as append(), for what another copy of this world logged. Each record keeps its epoch, which may
+  /// not be older than that of the one before it; the world's epoch rises to the newest.
+  virtual StoreResult<void> append_history(std::span<const PlayerRow> players,
+                                           std::span<const EditRecord> records) = 0;
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint, in one transaction.
   virtual StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                            std::optional<Sequence> checkpoint) = 0;

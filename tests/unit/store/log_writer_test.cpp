@@ -25,6 +25,9 @@ class FakeStore final : public Store {
   StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override {
     return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
   }
+  StoreResult<void> append_history(std::span<const PlayerRow>, std::span<const EditRecord>) override {
+    return {};
+  }
   StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                    std::optional<Sequence> checkpoint) override {
     return commit({{}, {}, chunks.size(), checkpoint});
@@ -50,6 +53,8 @@ class FakeStore final : public Store {
   StoreResult<Epoch> raise_epoch() override { return Epoch{1}; }
   Epoch epoch() const override { return 1; }
   StoreResult<LogRange> log_range() override { return LogRange{1, {{1, last()}, 0}}; }
+  StoreResult<LogEnd> log_head() override { return LogEnd{}; }
+  StoreResult<bool> has_base() override { return false; }
   StoreResult<Sequence> last_sequence() override { return last(); }
   StoreResult<Sequence> checkpoint() override { return Sequence{0}; }
   StoreResult<std::vector<PlayerRow>> players() override { return std::vector<PlayerRow>(); }
