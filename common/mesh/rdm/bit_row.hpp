@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/core/assert.hpp"
-
 namespace runstone::rdm {
 
 using Row64 = std::uint64_t;

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-#include "common/core/assert.hpp"
 #include "common/mesh/rdm/bit_row.hpp"
 #include "common/mesh/rdm/divider.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
+#include "common/mesh/rdm/side_axes.hpp"
 #include "common/runs/layer_walk.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "common/runs/run_cursor.hpp"
@@ -19,6 +19,9 @@ namespace runstone::rdm {
 struct LayerPlace {
   Axis axis, bit_axis;
   std::uint32_t at;
+  constexpr Axis row_axis() const {
+    return static_cast<Axis>(3 - static_cast<int>(axis) - static_cast<int>(bit_axis));
+  }
 };
 
 /// One layer as rows of bits, a plane per bit of the codes that `code_of(material)` gives.
@@ -159,14 +162,11 @@ void read_layer_rows(const RunChunk& chunk, LayerPlace place,
     LayerReader<kPlanes, Row, CodeOf>(chunk, place, planes, code_of);
     return;
   }
-  const auto side_of = [&chunk](Axis axis) { return chunk.extent.sides()[static_cast<std::size_t>(axis)]; };
-  const Axis row_axis =
-      static_cast<Axis>(3 - static_cast<int>(place.axis) - static_cast<int>(place.bit_axis));
   const Code code = code_of(chunk.runs.material(0));
-  const Row row = bits_below<Row>(side_of(place.bit_axis));
+  const Row row = bits_below<Row>(side_of(chunk, place.bit_axis));
   for (unsigned k = 0; k < kPlanes; ++k) {
     planes[k].fill(0);
-    std::fill_n(planes[k].begin(), side_of(row_axis), (code >> k & 1) != 0 ? row : Row{0});
+    std::fill_n(planes[k].begin(), side_of(chunk, place.row_axis()), (code >> k & 1) != 0 ? row : Row{0});
   }
 }
 

@@ -3,20 +3,18 @@
 #include <algorithm>
 
 #include "common/mesh/rdm/border_rows.hpp"
-#include "common/mesh/rdm/scratch_state.hpp"
+#include "common/mesh/rdm/side_axes.hpp"
 
 namespace runstone {
 
 void ChunkBorders::lay_out(const RunChunk& chunk) {
-  const auto sides = chunk.extent.sides();
-  const auto side_of = [&sides](Axis axis) { return sides[static_cast<std::size_t>(axis)]; };
   std::size_t size = 0;
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
       const auto at = static_cast<std::size_t>(rdm::direction_of(axes.layer, positive));
       first_[at] = static_cast<std::uint16_t>(size);
-      row_words_[at] = static_cast<std::uint8_t>((side_of(axes.bit) + 31) / 32);
-      row_count_[at] = side_of(axes.row);
+      row_words_[at] = static_cast<std::uint8_t>((rdm::side_of(chunk, axes.bit) + 31) / 32);
+      row_count_[at] = static_cast<std::uint8_t>(rdm::side_of(chunk, axes.row));
       bit_axis_[at] = axes.bit;
       size += std::size_t{row_words_[at]} * row_count_[at];
     }
@@ -41,11 +39,10 @@ void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility
 template <class Row>
 void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visibility) {
   std::array<std::array<Row, rdm::kRowBits<Row>>, 2> planes;
-  const auto sides = chunk.extent.sides();
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
       const Direction side = rdm::direction_of(axes.layer, positive);
-      const std::uint32_t layer = positive ? sides[static_cast<std::size_t>(axes.layer)] - 1u : 0u;
+      const std::uint32_t layer = positive ? rdm::side_of(chunk, axes.layer) - 1 : 0;
       rdm::read_layer_rows(chunk, {axes.layer, axes.bit, layer}, planes,
                            [of = visibility.data()](Material material) -> rdm::Code {
                              static_assert(static_cast<int>(Visibility::opaque) == 1 &&

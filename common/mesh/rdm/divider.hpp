@@ -4,8 +4,6 @@
 #pragma once
 #include <cstdint>
 
-#include "common/core/assert.hpp"
-
 namespace runstone::rdm {
 
 class Divider {

@@ -3,9 +3,9 @@
 #include <bitset>
 #include <span>
 
-#include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
+#include "common/mesh/rdm/side_axes.hpp"
 #include "common/runs/layer_walk.hpp"
 
 namespace runstone {
@@ -15,11 +15,8 @@ using rdm::LayerPatch;
 using rdm::QuadShape;
 using rdm::RowPlace;
 using rdm::RowRuns;
+using rdm::side_of;
 using LayerSet = std::bitset<kSideMax>;
-
-std::uint32_t side_of(const RunChunk& chunk, Axis axis) {
-  return chunk.extent.sides()[static_cast<std::size_t>(axis)];
-}
 
 /// Calls visit(place) for all of a set, upwards.
 template <class F>
@@ -120,7 +117,7 @@ class Remesher {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       const auto direction = static_cast<Direction>(d);
       const auto axis = static_cast<std::size_t>(axis_of(direction));
-      const unsigned side = chunk.extent.sides()[axis];
+      const unsigned side = side_of(chunk, axis_of(direction));
       const RunChunk* const neighbour = neighbours[d];
       const bool border =
           neighbour != nullptr &&
@@ -155,10 +152,7 @@ class Remesher {
 
  private:
   rdm::StripAxes axes(std::size_t direction) const {
-    const auto all = rdm::strip_axes(chunk_.order);
-    return *std::find_if(all.begin(), all.end(), [direction](const rdm::StripAxes& s) {
-      return static_cast<std::size_t>(s.layer) == direction / 2;
-    });
+    return rdm::strip_axes(chunk_.order, axis_of(static_cast<Direction>(direction)));
   }
 
   void mesh_layer(Direction direction, std::uint32_t layer, const rdm::StripAxes& a) {

@@ -12,6 +12,7 @@
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
+#include "common/mesh/rdm/side_axes.hpp"
 #include "common/runs/layer.hpp"
 
 namespace runstone {
@@ -25,13 +26,13 @@ void RdmScratch::use_plain_path(bool plain) { state_->plain = plain; }
 namespace {
 
 using rdm::Code;
-using rdm::Side;
-using Scratch = RdmScratch::State;
-
 using rdm::direction_of;
 using rdm::RowScratch;
+using rdm::Side;
 using rdm::side_axes;
+using rdm::side_of;
 using rdm::SideAxes;
+using Scratch = RdmScratch::State;
 
 /// Numbers the materials of the chunk and lists its runs by code.
 void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
@@ -71,7 +72,7 @@ void copy_border(const ChunkBorders& borders, Direction side, Axis bit_axis, Row
   rdm::transpose(out);
 }
 
-/// The border of a chunk with opaque and transparent materials, where the neighbour may have some, too.
+/// The border of a chunk that has transparent materials among others, where the neighbour may have them, too.
 template <class Row>
 void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
                        const VisibilityTable& visibility, Scratch& scratch, std::size_t at,
@@ -80,10 +81,8 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
   const auto class_of = [&codes, &visibility](Material material) -> Code {
     return codes.transparent_code(material) != 0 ? 2 : visibility[material] == Visibility::opaque ? 1 : 0;
   };
-  const auto sides = neighbour.extent.sides();
-  const auto row_axis = 3 - static_cast<std::size_t>(place.axis) - static_cast<std::size_t>(place.bit_axis);
-  const std::uint32_t rows = sides[row_axis];
-  const std::uint32_t bits = sides[static_cast<std::size_t>(place.bit_axis)];
+  const std::uint32_t rows = side_of(neighbour, place.row_axis());
+  const std::uint32_t bits = side_of(neighbour, place.bit_axis);
   auto& voxels = scratch.border_voxels;
   const auto read_voxels = [&] {
     voxels.resize(std::size_t{bits} * rows);
@@ -119,7 +118,7 @@ template <class Row>
 void read_border(const RunChunk& chunk, Direction direction, const RunChunk* neighbour,
                  const ChunkBorders* kept, const SideAxes& axes, const VisibilityTable& visibility,
                  Scratch& scratch, Side side, rdm::Borders<Row>& borders) {
-  const auto at = static_cast<std::size_t>(side);
+  const std::size_t at = rdm::at(side);
   const rdm::MaterialCodes& codes = scratch.codes;
   auto& hiding = borders.hiding[at];
   borders.meets[at] = false;
@@ -128,12 +127,9 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
     hiding.fill(0);
     return;
   }
-  const auto side_of = [](const RunChunk& c, Axis axis) {
-    return c.extent.sides()[static_cast<std::size_t>(axis)];
-  };
   RUNSTONE_ASSERT(side_of(*neighbour, axes.bit) == side_of(chunk, axes.bit) &&
                   side_of(*neighbour, axes.row) == side_of(chunk, axes.row));
-  const std::uint32_t layer = is_positive(direction) ? 0u : side_of(*neighbour, axes.layer) - 1u;
+  const std::uint32_t layer = is_positive(direction) ? 0 : side_of(*neighbour, axes.layer) - 1;
   const rdm::LayerPlace place{axes.layer, axes.bit, layer};
   std::array<typename rdm::Borders<Row>::Rows, 1> plane;
   const Direction touching = opposite(direction);
@@ -171,7 +167,7 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   input.opaque = &scratch.opaque;
   input.transparent = &scratch.transparent;
   input.own_sides = own != nullptr;
-  for (std::size_t side = 0; side < 6; ++side) {
+  for (std::size_t side = 0; side < kDirectionCount; ++side) {
     const SideAxes& a = axes[side / 2];
     const Direction direction = direction_of(a.layer, side % 2 != 0);
     input.direction[side] = direction;
@@ -202,20 +198,16 @@ bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const
   }
   out.clear();
   const Material material = chunk.runs.material(0);
-  const auto axes = rdm::strip_axes(chunk.order);
-  const auto sides = chunk.extent.sides();
   QuadLayers& pass = visibility[material] == Visibility::transparent ? out.transparent : out.opaque;
   for (std::size_t d = 0; d < kDirectionCount; ++d) {
     const Material beyond = neighbours[d] == nullptr ? kEmpty : neighbours[d]->runs.material(0);
     if (!visibility.face_drawn(material, beyond)) continue;
     const auto direction = static_cast<Direction>(d);
-    const rdm::StripAxes& a = *std::find_if(axes.begin(), axes.end(), [direction](const rdm::StripAxes& s) {
-      return s.layer == axis_of(direction);
-    });
-    const std::uint32_t layer = is_positive(direction) ? sides[d / 2] - 1u : 0u;
+    const rdm::StripAxes a = rdm::strip_axes(chunk.order, axis_of(direction));
+    const std::uint32_t layer = is_positive(direction) ? side_of(chunk, a.layer) - 1 : 0;
     const rdm::QuadShape shape(direction, a.strip, a.row);
-    const Quad strip = shape.open({layer, 0, sides[static_cast<std::size_t>(a.strip)], 0}, material);
-    pass.quads.push_back(shape.close(strip, sides[static_cast<std::size_t>(a.row)]));
+    const Quad strip = shape.open({layer, 0, side_of(chunk, a.strip), 0}, material);
+    pass.quads.push_back(shape.close(strip, side_of(chunk, a.row)));
     std::fill(pass.first.begin() + static_cast<std::ptrdiff_t>(d * kSideMax + layer + 1), pass.first.end(),
               static_cast<std::uint32_t>(pass.quads.size()));
   }

@@ -8,6 +8,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 #include "common/mesh/rdm/bit_row.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,21 +32,12 @@ struct OneRow {
   static V differing(V a, V b) { return a ^ b; }
   static V without(V a, V b) { return a & ~b; }
   static V sum(V a, V b) { return a + b; }
-  template <int kBits>
-  static V up(V a) {
-    return a << kBits;
-  }
+  static V up(V a) { return a << 1; }
   static V down(V a) { return a >> 1; }
   /// Bit i: lane i is not zero.
   static std::uint64_t any(V a) { return a != 0 ? 1 : 0; }
-  /// Bit i: the highest bit of lane i.
-  static std::uint64_t tops(V a) { return static_cast<std::uint64_t>(a >> (kRowBits<Row> - 1)); }
   /// `row` in the lanes whose bit is set.
   static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
-  /// Flips `bit` in those of eight rows whose bit in `which` is set.
-  static void flip(Row* eight, unsigned which, Row bit) {
-    for (unsigned k = 0; k < 8; ++k) eight[k] ^= (which >> k & 1) != 0 ? bit : 0;
-  }
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
@@ -62,34 +55,38 @@ struct VectorRows {
   static HWY_INLINE V differing(V a, V b) { return hn::Xor(a, b); }
   static HWY_INLINE V without(V a, V b) { return hn::AndNot(b, a); }
   static HWY_INLINE V sum(V a, V b) { return hn::Add(a, b); }
-  template <int kBits>
-  static HWY_INLINE V up(V a) {
-    return hn::ShiftLeft<kBits>(a);
-  }
+  static HWY_INLINE V up(V a) { return hn::ShiftLeft<1>(a); }
   static HWY_INLINE V down(V a) { return hn::ShiftRight<1>(a); }
-  static HWY_INLINE std::uint64_t bits_of(hn::Mask<D> mask) {
+  static HWY_INLINE std::uint64_t any(V a) {
     std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(D(), mask, bytes);
+    hn::StoreMaskBits(D(), hn::Ne(a, hn::Zero(D())), bytes);
     return bytes[0];
-  }
-  static HWY_INLINE std::uint64_t any(V a) { return bits_of(hn::Ne(a, hn::Zero(D()))); }
-  static HWY_INLINE std::uint64_t tops(V a) {
-    const hn::RebindToSigned<D> d;
-    return bits_of(hn::RebindMask(D(), hn::Lt(hn::BitCast(d, a), hn::Zero(d))));
   }
   static HWY_INLINE V where(std::uint64_t lanes, Row row) {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes)};
     return hn::IfThenElseZero(hn::LoadMaskBits(D(), bytes), hn::Set(D(), row));
   }
-  static HWY_INLINE void flip(Row* eight, unsigned which, Row bit) {
-    for (unsigned k = 0; k < 8; k += kLanes) {
-      store(differing(load(eight + k), where(which >> k, bit)), eight + k);
-    }
-  }
 };
 #else
 using VectorRows = OneRow<Row64>;
 #endif
+
+/// Calls step(first row) for every step of whole vectors over `count` rows; the last may go beyond them.
+template <class Lanes, class F>
+HWY_INLINE void for_rows(std::uint32_t count, F&& step) {
+  for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) step(m);
+}
+
+/// Bit m: whether row m, below `count`, has the bit of `bit`.
+template <class Lanes, class Row>
+Row column_of(const Row* rows, std::uint32_t count, Row bit) {
+  const auto wanted = Lanes::all(bit);
+  Row column = 0;
+  for_rows<Lanes>(count, [&](std::uint32_t m) {
+    column |= Row{Lanes::any(Lanes::both(Lanes::load(rows + m), wanted))} << m;
+  });
+  return column & bits_below<Row>(count);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace runstone::rdm

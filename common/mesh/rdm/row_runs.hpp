@@ -4,10 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "common/core/assert.hpp"
 #include "common/core/ids.hpp"
 #include "common/runs/axis_order.hpp"
-#include "common/runs/layer_walk.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "common/runs/run_cursor.hpp"
 

@@ -21,7 +21,7 @@ struct RowScratch {
   SweepState<Row> sweep;
 };
 
-/// Quads of some layers that take the place of others, in one pass.
+/// Quads of some layers that take the place of others, in one pass (opaque or transparent).
 struct LayerPatch {
   struct Layer {
     std::size_t index = 0;        // in QuadLayers::first
@@ -31,28 +31,6 @@ struct LayerPatch {
   std::vector<Quad> quads;
   std::vector<Quad> merged;  // scratch
 };
-
-constexpr Direction direction_of(Axis axis, bool positive) {
-  return static_cast<Direction>(static_cast<unsigned>(axis) * 2 + (positive ? 1 : 0));
-}
-
-/// How the sides of a chunk lie as rows of bits, by its axis order: slow, middle, fast.
-struct SideAxes {
-  Axis layer, bit, row;
-};
-/// How their quads come about: which axis strips run along, and from row to row of which they are joined.
-struct StripAxes {
-  Axis layer, strip, row;
-};
-constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
-  const auto axes = axes_of(order);
-  return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[1], axes[2]}}};
-}
-
-constexpr std::array<StripAxes, 3> strip_axes(AxisOrder order) {
-  const auto axes = axes_of(order);
-  return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[2], axes[1]}}};
-}
 
 }  // namespace runstone::rdm
 

@@ -1,0 +1,59 @@
+// Strip lanes: row_strips.hpp for as many rows a step as the machine takes. Included once per instruction set,
+// inside no namespace.
+#if defined(RUNSTONE_MESH_RDM_STRIP_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_STRIP_LANES_INL
+#undef RUNSTONE_MESH_RDM_STRIP_LANES_INL
+#else
+#define RUNSTONE_MESH_RDM_STRIP_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace runstone::rdm {
+namespace HWY_NAMESPACE {
+
+/// The faces of some rows, and the first and last of each strip. Form: a SweepForm.
+template <class Form>
+struct StripLanes {
+  using Lanes = typename Form::Lanes;
+  using Row = typename Form::Row;
+  using V = typename Lanes::V;
+  V face, start, end;
+
+  /// strips_along(): `face` and `cut` are the first of the rows.
+  static HWY_INLINE StripLanes along(const Row* face, [[maybe_unused]] const Row* cut) {
+    const V f = Lanes::load(face);
+    V before = Lanes::up(f);
+    V behind = Lanes::down(f);
+    if constexpr (Form::kNumbered) {
+      const V c = Lanes::load(cut);
+      before = Lanes::without(before, c);
+      behind = Lanes::without(behind, Lanes::down(c));
+    }
+    return {f, Lanes::without(f, before), Lanes::without(f, behind)};
+  }
+  /// changed(): `cut` is the first of the rows.
+  static HWY_INLINE V changed(const StripLanes& now, const StripLanes& before,
+                              [[maybe_unused]] const Row* cut) {
+    V x = Lanes::either(
+        Lanes::differing(now.face, before.face),
+        Lanes::either(Lanes::differing(now.start, before.start), Lanes::differing(now.end, before.end)));
+    if constexpr (Form::kNumbered) {
+      x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
+    }
+    return x;
+  }
+  /// ends_with().
+  HWY_INLINE V ends_with(V x) const {
+    x = Lanes::both(x, face);
+    const V inner = Lanes::without(face, end);
+    return Lanes::both(end, Lanes::either(x, Lanes::sum(inner, Lanes::both(x, inner))));
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace runstone::rdm
+HWY_AFTER_NAMESPACE();
+
+#endif

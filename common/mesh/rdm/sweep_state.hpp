@@ -1,0 +1,84 @@
+// SweepState: what a layer sweep writes and reads again: two layers as codes and as rows of bits, the strips
+// that are open, and the chunk's own sides. Kept between sweeps, so that none allocates. Internal to rdm.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "common/mesh/quad.hpp"
+#include "common/mesh/rdm/bit_row.hpp"
+#include "common/mesh/rdm/material_codes.hpp"
+
+namespace runstone::rdm {
+
+/// Rows of one layer, with room before and behind for steps of whole vectors.
+template <class Row>
+struct alignas(64) LayerRows {
+  static constexpr std::size_t kBefore = 64 / sizeof(Row);
+  static constexpr std::size_t kBehind = 64 / sizeof(Row);
+  std::array<Row, kBefore + kRowBits<Row> + kBehind> slots{};
+  Row* data() { return slots.data() + kBefore; }
+  const Row* data() const { return slots.data() + kBefore; }
+};
+
+/// The codes of one layer, line behind line, with room before and behind for whole rows and vectors.
+template <class Row, class C>
+struct LayerCodes {
+  static constexpr std::size_t kRoom = 128;
+  alignas(64) std::array<C, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
+  C* data() { return slots.data() + kRoom; }
+};
+
+/// Which of the two layers in SweepState is the one at hand, and which the one before it.
+struct Rings {
+  unsigned here = 0, there = 1;
+};
+
+template <class Row>
+struct SweepState {
+  using Rows = LayerRows<Row>;
+  template <class C>
+  using Codes = std::array<LayerCodes<Row, C>, 2>;
+  static constexpr std::size_t kPlaces = std::size_t{kRowBits<Row>} * kRowBits<Row>;  // rows * bits
+
+  // What LayerBuilder makes. Where there are two of a thing, they are by ring.
+  Codes<ByteCode> byte_codes;
+  std::unique_ptr<Codes<Code>> whole_codes;  // made for the first chunk whose codes do not fit bytes
+  std::array<Rows, 2> solid;                 // voxels with faces
+  std::array<Rows, 2> hiding;  // voxels that hide a face, with the middle neighbours' in the slots around
+  Rows transparent;            // of the layer at hand
+  std::array<Rows, 2> cut_fast, cut_mid;  // where the material differs from the voxel before, along an axis
+  Rows cut_slow;
+
+  /// Voxels whose face shows, by Side; slow sides lie between two layers and use the first ring only.
+  std::array<std::array<Rows, 2>, 6> face;
+
+  // What StripTracer makes of one side of a layer: strips that end and begin, by row.
+  Rows closing, opening, start;  // last bits of strips that close and that open; first bits of strips
+  Rows beside;                   // of upright strips: bits that close in the row before as well
+  /// Places of bits that close and open, row * kRowBits + bit, with room for a step behind.
+  std::array<std::uint16_t, kPlaces + 4> closed, opened;
+  // And what it keeps from row to row, or layer to layer.
+  /// Quads that are open, by Side; then by end of the strip (slow), or by row and end (middle).
+  std::array<std::array<Quad, kPlaces>, 4> open;
+  /// Layer in which a face across the fastest axis appeared: negative and positive side, then row and bit.
+  std::array<std::array<std::uint8_t, kPlaces>, 2> born;
+
+  // What OwnSides makes, by Side.
+  std::array<std::array<Row, kRowBits<Row>>, 6> own_sides;  // opaque voxels, laid out as in Borders
+  std::array<bool, 6> own_transparent;                      // whether there are transparent ones
+
+  /// The codes in the form C. Allocates for the first chunk that needs whole ones.
+  template <class C>
+  Codes<C>& codes() {
+    if constexpr (sizeof(C) == 1) {
+      return byte_codes;
+    } else {
+      if (!whole_codes) whole_codes = std::make_unique<Codes<Code>>();
+      return *whole_codes;
+    }
+  }
+};
+
+}  // namespace runstone::rdm
