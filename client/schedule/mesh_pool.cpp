@@ -75,14 +75,13 @@ MeshResult MeshPool::mesh(const MeshJob& job, Scratch& scratch) const {
   result.number = job.number;
   result.serial = job.serial;
   result.edge = job.chunk->extent.x;
-  result.layers_only = job.before != nullptr;
   MeshNeighbours neighbours{};
   for (std::size_t i = 0; i < neighbours.size(); ++i) neighbours[i] = job.neighbours[i].get();
   const std::int64_t start = clock_();
   if (job.before) {
     scratch.mesh = *job.before;
-    mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.dirty, job.changed.beyond, scratch.rdm,
-                    scratch.mesh);
+    result.layers_only = mesh_rdm_layers(*job.chunk, neighbours, visibility_, job.changed.dirty,
+                                         job.changed.beyond, scratch.rdm, scratch.mesh);
   } else {
     mesh_rdm(*job.chunk, neighbours, visibility_, scratch.rdm, scratch.mesh);
   }

@@ -24,7 +24,7 @@ struct MeshResult {
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
   MeshPtr mesh;                          // of its own, or the one that all chunks without quads share
-  bool layers_only = false;              // started from the mesh before
+  bool layers_only = false;              // the mesh before served for the rest
   std::int64_t mesh_ns = 0;              // from the job to the mesh
   TimeUs meshed_us = 0;                  // when it was done
 };

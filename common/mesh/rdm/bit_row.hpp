@@ -20,7 +20,7 @@ constexpr Row bits_below(unsigned count) {
   return count == kRowBits<Row> ? ~Row{0} : (Row{1} << count) - 1;
 }
 
-/// Place of the lowest set bit. Requires row != 0.
+/// Place of the lowest set bit; kRowBits<Row> if there is none.
 constexpr unsigned lowest_bit(Row64 row) { return static_cast<unsigned>(std::countr_zero(row)); }
 constexpr unsigned lowest_bit(Row128 row) {
   const auto low = static_cast<Row64>(row);

@@ -8,6 +8,8 @@
 namespace runstone {
 
 void ChunkBorders::lay_out(const RunChunk& chunk) {
+  extent_ = chunk.extent;
+  order_ = chunk.order;
   std::size_t size = 0;
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
@@ -25,6 +27,7 @@ void ChunkBorders::lay_out(const RunChunk& chunk) {
 void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility) {
   if (chunk.is_uniform()) {
     words_.clear();
+    transparent_.fill(false);
     return;
   }
   lay_out(chunk);

@@ -1,6 +1,7 @@
 // ChunkBorders: what the six outermost layers of a chunk hide, a bit a voxel. The helper structure for borders
 // that thesis 9.1 asks for: whoever keeps it beside a chunk spares the meshes of the six chunks around it
-// from reading runs that lie nowhere near them.
+// from reading runs that lie nowhere near them. It pays where whole chunks are meshed again and again; our
+// client meshes most of them once and does not keep it (docs/meshing.md).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,6 +27,10 @@ class ChunkBorders {
             const std::array<bool, kDirectionCount>& transparent);
 
   bool empty() const { return words_.empty(); }
+  /// Whether it may be that of a chunk of several materials, by its extent and axis order.
+  bool fits(const RunChunk& chunk) const {
+    return !empty() && extent_ == chunk.extent && order_ == chunk.order;
+  }
   /// Whether a side has transparent voxels.
   bool has_transparent(Direction side) const { return transparent_[static_cast<std::size_t>(side)]; }
   /// The axis along the bits of a side's rows.
@@ -47,6 +52,8 @@ class ChunkBorders {
   void keep_side(Direction side, const Rows& rows);
 
   std::vector<std::uint32_t> words_;
+  Extent extent_;
+  AxisOrder order_{};
   std::array<std::uint16_t, kDirectionCount> first_{};
   std::array<std::uint8_t, kDirectionCount> row_words_{}, row_count_{};
   std::array<Axis, kDirectionCount> bit_axis_{};

@@ -68,7 +68,7 @@ struct PlainCodes {
   };
 };
 
-#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 /// A vector of codes at a time.
 struct VectorCodes {
   template <class C>

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "common/core/assert.hpp"
 #include "common/mesh/rdm/sweep_form.hpp"
 
 // The rest of this file is compiled once per instruction set; Highway picks one at run time.
@@ -233,8 +234,11 @@ void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState
 void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
   sweep<OneRow<Row128>, VectorCodes>(input, borders, state);
 }
-void sweep_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
+void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
   sweep<OneRow<Row64>, PlainCodes>(input, borders, state);
+}
+void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+  sweep<OneRow<Row128>, PlainCodes>(input, borders, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -246,16 +250,36 @@ namespace runstone::rdm {
 
 HWY_EXPORT(sweep_64);
 HWY_EXPORT(sweep_128);
-HWY_EXPORT(sweep_plain);
+HWY_EXPORT(sweep_plain_64);
+HWY_EXPORT(sweep_plain_128);
+
+namespace {
+
+template <class Row>
+void check(const SweepInput& input) {
+  const OrderedExtent& e = input.extent;
+  RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<Row>);
+  RUNSTONE_ASSERT(!input.runs.empty() && input.runs.back().end == e.layer() * e.s);
+  RUNSTONE_ASSERT(input.codes->solid_count() != 0);
+}
+
+}  // namespace
 
 void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
+  check<Row64>(input);
   HWY_DYNAMIC_DISPATCH(sweep_64)(input, borders, state);
 }
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+  check<Row128>(input);
   HWY_DYNAMIC_DISPATCH(sweep_128)(input, borders, state);
 }
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  HWY_DYNAMIC_DISPATCH(sweep_plain)(input, borders, state);
+  check<Row64>(input);
+  HWY_DYNAMIC_DISPATCH(sweep_plain_64)(input, borders, state);
+}
+void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+  check<Row128>(input);
+  HWY_DYNAMIC_DISPATCH(sweep_plain_128)(input, borders, state);
 }
 
 }  // namespace runstone::rdm

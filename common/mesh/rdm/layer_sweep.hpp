@@ -18,7 +18,8 @@ namespace runstone::rdm {
 void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state);
 
-/// The same, a row at a time: the plain path that the others must agree with.
+/// The same, a row and a code at a time: the plain path that the others must agree with.
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
+void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state);
 
 }  // namespace runstone::rdm

@@ -3,6 +3,7 @@
 #include <bitset>
 #include <span>
 
+#include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
@@ -114,11 +115,15 @@ class Remesher {
         visibility_(visibility),
         scratch_(scratch),
         passes_{&mesh.opaque, &mesh.transparent} {
+    const auto sides = chunk.extent.sides();
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       const auto direction = static_cast<Direction>(d);
       const auto axis = static_cast<std::size_t>(axis_of(direction));
-      const unsigned side = side_of(chunk, axis_of(direction));
+      const unsigned side = sides[axis];
       const RunChunk* const neighbour = neighbours[d];
+      for (std::size_t other = 0; neighbour != nullptr && other < 3; ++other) {
+        RUNSTONE_ASSERT(other == axis || neighbour->extent.sides()[other] == sides[other]);
+      }
       const bool border =
           neighbour != nullptr &&
           beyond[d].layer[axis][is_positive(direction) ? 0 : side_of(*neighbour, axis_of(direction)) - 1];
@@ -294,7 +299,7 @@ class Remesher {
 
 }  // namespace
 
-void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
+bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh) {
@@ -303,9 +308,11 @@ void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
   constexpr std::size_t kSweepRows = 8;
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   if (remesher.row_count() * kSweepRows > std::size_t{kDirectionCount} * e.m * e.s) {
-    return mesh_rdm(chunk, neighbours, visibility, scratch, mesh);
+    mesh_rdm(chunk, neighbours, visibility, scratch, mesh);
+    return false;
   }
   remesher.run();
+  return true;
 }
 
 }  // namespace runstone

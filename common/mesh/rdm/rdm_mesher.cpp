@@ -51,8 +51,9 @@ void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch
 
 /// Rows of bits from those that a neighbour's holder keeps, in the chunk's own orientation.
 template <class Rows>
-void copy_border(const ChunkBorders& borders, Direction side, Axis bit_axis, Rows& out) {
+void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis, Rows& out) {
   using Row = typename Rows::value_type;
+  RUNSTONE_ASSERT(borders.fits(of));
   const std::uint32_t* from = borders.rows(side);
   const std::size_t words = borders.row_words(side);
   const std::size_t count = borders.row_count(side);
@@ -135,7 +136,7 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   const Direction touching = opposite(direction);
   const bool told = kept != nullptr && !neighbour->is_uniform();
   if (!codes.has_transparent() || (told && !kept->has_transparent(touching))) {
-    if (told) return copy_border(*kept, touching, axes.bit, hiding);
+    if (told) return copy_border(*kept, *neighbour, touching, axes.bit, hiding);
     rdm::read_layer_rows(*neighbour, place, plane, [table = visibility.data()](Material material) -> Code {
       return table[material] == Visibility::opaque ? 1 : 0;
     });
@@ -176,12 +177,8 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
     read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch, static_cast<Side>(side),
                 rows->borders);
   }
-  if constexpr (rdm::kRowBits<Row> == 64) {
-    if (scratch.plain) {
-      rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
-    } else {
-      rdm::sweep_layers(input, rows->borders, rows->sweep);
-    }
+  if (scratch.plain) {
+    rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
   } else {
     rdm::sweep_layers(input, rows->borders, rows->sweep);
   }

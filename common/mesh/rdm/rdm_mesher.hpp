@@ -41,9 +41,9 @@ class RdmScratch {
 /// Quads of a layer cover each exposed face exactly once, never another, never two materials.
 /// The same input gives the same quads in the same order; another axis order gives the same faces, but may
 /// cut them into other quads. Requires valid chunks, and neighbours with the chunk's sides across their
-/// direction. Cost: O(runs + faces of the chunk + runs of the neighbours), plus a layer for each neighbour
-/// whose border has to be transposed; a uniform chunk among uniform ones is O(1). Any thread, one scratch
-/// each.
+/// direction. Cost: O(runs + quads of the chunk + runs of the neighbours), a pass over each layer that is not
+/// like the one before it, 64 voxels at a time, and a layer for each neighbour whose border has to be
+/// transposed; a uniform chunk among uniform ones is O(1). Any thread, one scratch each.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
               RdmScratch& scratch, ChunkMesh& out);
 
@@ -60,8 +60,8 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
 /// for quad. The chunk's axis order must be the one it was meshed in. In each layer, the rows in which a
 /// voxel may have changed are decoded, and joined anew with the quads above and below them. O(rows * (line +
 /// log runs + quads of the layer) + quads moved); where that would cost more, it is mesh_rdm(). Allocates
-/// nothing in a steady state. Any thread, one scratch each.
-void mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
+/// nothing in a steady state. Returns whether only layers were meshed. Any thread, one scratch each.
+bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const VisibilityTable& visibility, const DirtyLayers& dirty,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh);

@@ -40,7 +40,7 @@ struct OneRow {
   static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
 };
 
-#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR
+#if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 /// As many rows a step as a vector holds.
 struct VectorRows {
   using Row = Row64;

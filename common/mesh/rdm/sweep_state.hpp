@@ -9,6 +9,7 @@
 #include "common/mesh/quad.hpp"
 #include "common/mesh/rdm/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
+#include "common/runs/extent.hpp"
 
 namespace runstone::rdm {
 
@@ -25,7 +26,7 @@ struct alignas(64) LayerRows {
 /// The codes of one layer, line behind line, with room before and behind for whole rows and vectors.
 template <class Row, class C>
 struct LayerCodes {
-  static constexpr std::size_t kRoom = 128;
+  static constexpr std::size_t kRoom = kSideMax;  // the line before the first one is read, and a row behind
   alignas(64) std::array<C, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
   C* data() { return slots.data() + kRoom; }
 };
@@ -41,6 +42,7 @@ struct SweepState {
   template <class C>
   using Codes = std::array<LayerCodes<Row, C>, 2>;
   static constexpr std::size_t kPlaces = std::size_t{kRowBits<Row>} * kRowBits<Row>;  // rows * bits
+  static_assert(kPlaces <= 1u << 16 && kSideMax <= 1u << 8);  // places and layers as they are kept here
 
   // What LayerBuilder makes. Where there are two of a thing, they are by ring.
   Codes<ByteCode> byte_codes;

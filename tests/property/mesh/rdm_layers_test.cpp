@@ -20,10 +20,12 @@ DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   return fill_and_mark(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
 }
 
-void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
+// Returns how many steps did with layers only.
+int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   RdmScratch scratch;
   ChunkMesh mesh;
   ChunkMesh full;
+  int by_layers = 0;
   mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
   for (int step = 0; step < steps; ++step) {
     DirtyLayers dirty;
@@ -34,18 +36,26 @@ void edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
       auto& neighbour = scene.neighbours.at(d);
       if (neighbour) beyond.at(d) = change(rng, *neighbour);
     }
-    mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond, scratch, mesh);
+    by_layers +=
+        mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond, scratch, mesh) ? 1
+                                                                                                        : 0;
     mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, full);
     CAPTURE(Catch::rngSeed(), step, scene.chunk.order);
     require_equal(mesh.opaque, full.opaque);
     require_equal(mesh.transparent, full.transparent);
   }
+  return by_layers;
 }
 
 TEST_CASE("remeshed layers equal a full mesh, quad for quad, while chunk and neighbours are edited",
           "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 8);
-  for (int round = 0; round < 300; ++round) edit_and_compare(rng, random_scene(rng, 33), 12);
+  constexpr int kRounds = 300, kSteps = 12;
+  int by_layers = 0;
+  for (int round = 0; round < kRounds; ++round)
+    by_layers += edit_and_compare(rng, random_scene(rng, 33), kSteps);
+  CHECK(by_layers > kRounds * kSteps / 4);  // both ways are taken often
+  CHECK(by_layers < kRounds * kSteps * 19 / 20);
 }
 
 TEST_CASE("remeshed layers equal a full mesh in the largest extents", "[mesh][property]") {
