@@ -1,5 +1,6 @@
-// Counts what a test program takes from the heap: it replaces the global operator new. Include it in one file
-// of a program. Test programs are single-threaded unless a test starts threads; then read it while they rest.
+// Counts what a test program takes from the heap: it replaces the global operator new, with and without an
+// alignment. Include it in one file of a program. Test programs are single-threaded unless a test starts
+// threads; then read it while they rest.
 #pragma once
 #include <atomic>
 #include <cstdlib>
@@ -39,5 +40,18 @@ Allocations allocations_of(F&& f) {
   if (void* p = operator new(size, std::nothrow)) return p;
   throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align,
+                                     const std::nothrow_t&) noexcept {
+  ++runstone::test::counting::count;
+  runstone::test::counting::bytes += size;
+  const auto step = static_cast<std::size_t>(align);
+  return std::aligned_alloc(step, (size + step - 1) / step * step);
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align) {
+  if (void* p = operator new(size, align, std::nothrow)) return p;
+  throw std::bad_alloc();
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }

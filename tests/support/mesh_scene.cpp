@@ -1,5 +1,8 @@
 #include "tests/support/mesh_scene.hpp"
 
+#include <algorithm>
+
+#include "common/runs/dense.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -39,6 +42,11 @@ const MaterialTable& many_materials() {
 
 const VisibilityTable& mesh_visibility() {
   static const VisibilityTable table(mesh_materials());
+  return table;
+}
+
+const VisibilityTable& many_visibility() {
+  static const VisibilityTable table(many_materials());
   return table;
 }
 
@@ -84,6 +92,23 @@ MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order) {
   return scene;
 }
 
+MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent, unsigned materials) {
+  const auto filled = [&rng, extent, materials] {
+    std::vector<Material> voxels(extent.volume());
+    for (Material& voxel : voxels) voxel = static_cast<Material>(rng.below(materials));
+    for (std::size_t i = 1; i < voxels.size(); i += 3) voxels[i] = voxels[i - 1];
+    const AxisOrder order = kAxisOrders[rng.below(kAxisOrderCount)];
+    return from_dense(extent, order, voxels);
+  };
+  MeshScene scene;
+  scene.chunk = filled();
+  for (auto& neighbour : scene.neighbours) {
+    if (rng.below(4) != 0) neighbour = filled();
+  }
+  scene.neighbours[rng.below(kDirectionCount)] = scene.chunk;
+  return scene;
+}
+
 DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material) {
   const RunChunk before = chunk;
   fill(chunk, first, count, material);
@@ -114,6 +139,20 @@ reference::DenseGrid grid_of(const MeshScene& scene) {
   reference::DenseGrid grid;
   reference::decode(scene.chunk, scene.pointers(), layer, grid);
   return grid;
+}
+
+bool equal_borders(const RunChunk& chunk, const ChunkBorders& a, const ChunkBorders& b) {
+  if (a.empty() != chunk.is_uniform() || b.empty() != chunk.is_uniform()) return false;
+  for (std::size_t d = 0; d < kDirectionCount && !a.empty(); ++d) {
+    const auto side = static_cast<Direction>(d);
+    const std::size_t words = a.row_count(side) * a.row_words(side);
+    if (a.bit_axis(side) != b.bit_axis(side) || a.row_count(side) != b.row_count(side) ||
+        a.row_words(side) != b.row_words(side) || a.has_transparent(side) != b.has_transparent(side) ||
+        !std::equal(a.rows(side), a.rows(side) + words, b.rows(side))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 ChunkMesh mesh_of(const MeshScene& scene) {

@@ -26,6 +26,7 @@ const VisibilityTable& mesh_visibility();
 /// More materials than fit a byte: ids 1 to 149 are opaque, 150 to 299 transparent.
 inline constexpr unsigned kManyMaterialCount = 300;
 const MaterialTable& many_materials();
+const VisibilityTable& many_visibility();
 
 struct MeshScene {
   RunChunk chunk;
@@ -40,6 +41,10 @@ MeshScene random_scene(SplitMix64& rng, unsigned side_max);
 /// Seeded scene of one extent: any shapes in the chunk, boxes in all six neighbours, in any axis order.
 MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order);
 
+/// Seeded scene of one extent with the first `materials` of many_materials() as noise, in which equal
+/// transparent ones meet. Some neighbours are missing, and one is the chunk itself. Dense.
+MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent, unsigned materials = kManyMaterialCount);
+
 /// Fills voxels of the flattened chunk, and says in which layers any has another material than before.
 /// Requires first + count <= volume. O(count * log runs).
 DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material);
@@ -50,6 +55,9 @@ std::vector<UnitFace> expected_faces(const MeshScene& scene,
 
 /// The scene as the dense meshers get it.
 reference::DenseGrid grid_of(const MeshScene& scene);
+
+/// Whether two say the same of the sides of a chunk, and keep nothing if it is of one material.
+bool equal_borders(const RunChunk& chunk, const ChunkBorders& a, const ChunkBorders& b);
 
 /// mesh_rdm with scratch of its own.
 ChunkMesh mesh_of(const MeshScene& scene);

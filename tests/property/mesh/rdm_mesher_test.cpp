@@ -1,11 +1,11 @@
-// RDM against the face oracle on random scenes. Small extents, so that many scenes fit into a test run.
+// RDM against the face oracle on random scenes. Mostly small extents, so that many scenes fit into a test
+// run.
 #include "common/mesh/rdm/rdm_mesher.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "common/runs/dense.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -24,6 +24,17 @@ RunChunk turned(const RunChunk& chunk, AxisOrder order) {
   return out;
 }
 
+/// Scene number i of ten thousand: most are small, one in twenty has sides up to 64, one in a hundred is flat
+/// with sides up to 128.
+MeshScene scene_of_many(SplitMix64& rng, int i) {
+  if (i % 100 != 50) return random_scene(rng, i % 20 == 0 ? 64 : i % 20 == 10 ? 20 : 10);
+  const auto longest = static_cast<std::uint8_t>(rng.between(65, 128));
+  const auto other = static_cast<std::uint8_t>(rng.between(8, 128));
+  const auto least = static_cast<std::uint8_t>(rng.between(8, 10));
+  const Extent turns[] = {{longest, other, least}, {least, longest, other}, {other, least, longest}};
+  return scene_of_extent(rng, turns[rng.below(3)], random_order(rng));
+}
+
 TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 1);
   RdmScratch scratch;  // one for all: what a scene leaves behind would show in the next
@@ -31,8 +42,7 @@ TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property
   std::set<AxisOrder> orders;
   std::size_t transparent_quads = 0;
   for (int scene_number = 0; scene_number < 10000; ++scene_number) {
-    const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
-    const MeshScene scene = random_scene(rng, side_max);
+    const MeshScene scene = scene_of_many(rng, scene_number);
     mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
     const auto difference = scene_difference(scene, mesh);
     if (!difference) {
@@ -107,29 +117,14 @@ TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch"
 
 TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 7);
-  const VisibilityTable visibility(many_materials());
   RdmScratch scratch;
   ChunkMesh mesh;
   for (int round = 0; round < 40; ++round) {
     // Few materials in between: what the forms leave behind would show.
     const unsigned count = round % 4 == 3 ? 5 : kManyMaterialCount;
     const Extent extent = round % 10 == 0 ? Extent{65, 9, 12} : Extent{12, 9, 11};
-    MeshScene scene;
-    const auto filled = [&rng, extent, count] {
-      std::vector<Material> voxels(extent.volume());
-      for (Material& voxel : voxels) voxel = static_cast<Material>(rng.below(count));
-      // Equal transparent ones meet.
-      for (std::size_t i = 1; i < voxels.size(); i += 3) voxels[i] = voxels[i - 1];
-      const AxisOrder order = kAxisOrders[rng.below(6)];
-      return from_dense(extent, order, voxels);
-    };
-    scene.chunk = filled();
-    for (auto& neighbour : scene.neighbours) {
-      if (rng.below(4) != 0) neighbour = filled();
-    }
-    // Our own layer on the other side.
-    scene.neighbours[rng.below(6)] = scene.chunk;
-    mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
+    const MeshScene scene = scene_of_many_materials(rng, extent, count);
+    mesh_rdm(scene.chunk, scene.pointers(), many_visibility(), scratch, mesh);
     CAPTURE(Catch::rngSeed(), round);
     REQUIRE(mesh_difference(mesh, extent, many_materials(), expected_faces(scene, many_materials()))
                 .value_or("") == "");
@@ -158,16 +153,7 @@ TEST_CASE("kept borders of neighbours give the same quads as their runs, and are
     REQUIRE(mesh.opaque.quads == plain.opaque.quads);
     REQUIRE(mesh.opaque.first == plain.opaque.first);
     REQUIRE(mesh.transparent.quads == plain.transparent.quads);
-    REQUIRE(own.empty() == scene.chunk.is_uniform());
-    REQUIRE(read.empty() == scene.chunk.is_uniform());
-    for (std::size_t d = 0; d < kDirectionCount && !own.empty(); ++d) {
-      const auto side = static_cast<Direction>(d);
-      const std::size_t words = own.row_count(side) * own.row_words(side);
-      REQUIRE(words == read.row_count(side) * read.row_words(side));
-      REQUIRE(own.bit_axis(side) == read.bit_axis(side));
-      REQUIRE(std::equal(own.rows(side), own.rows(side) + words, read.rows(side)));
-      REQUIRE(own.has_transparent(side) == read.has_transparent(side));
-    }
+    REQUIRE(equal_borders(scene.chunk, own, read));
   }
 }
 

@@ -1,45 +1,106 @@
 // The promise of RdmScratch: once its buffers and the output's have grown, meshing allocates nothing. Counted
 // by the global operator new of this test program.
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
+#include <memory>
+#include <vector>
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
+#include "tests/support/count_allocations.hpp"
 #include "tests/support/mesh_scene.hpp"
-
-namespace {
-std::size_t allocations = 0;  // test programs are single-threaded
-}  // namespace
-
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size);
-}
-void* operator new(std::size_t size) {
-  if (void* const memory = operator new(size, std::nothrow)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
 namespace {
 
+struct Place {
+  MeshScene scene;
+  const VisibilityTable* visibility = &mesh_visibility();
+};
+
+/// Two transparent materials on both sides of all borders, so that equal and other ones meet.
+MeshScene scene_of_transparents(Extent extent) {
+  MeshScene scene;
+  const auto striped = [extent](std::uint32_t stripe) {
+    RunChunk chunk = uniform_chunk(extent, kWater);
+    for (std::uint32_t i = 0; i + stripe < chunk.volume(); i += 3 * stripe) fill(chunk, i, stripe, kGlass);
+    return chunk;
+  };
+  scene.chunk = striped(1);
+  for (auto& neighbour : scene.neighbours) neighbour = striped(2);
+  return scene;
+}
+
+/// Scenes that between them use every buffer: both widths of rows, both forms of codes, borders where
+/// transparents meet.
+std::vector<Place> places(SplitMix64& rng) {
+  std::vector<Place> out;
+  for (int i = 0; i < 40; ++i) out.push_back({random_scene(rng, 20)});
+  for (const Extent extent : {Extent{128, 9, 12}, Extent{8, 128, 9}, Extent{10, 8, 128}}) {
+    out.push_back({scene_of_extent(rng, extent, random_order(rng))});
+    out.push_back({scene_of_many_materials(rng, extent), &many_visibility()});
+    out.push_back({scene_of_transparents(extent)});
+  }
+  out.push_back({scene_of_many_materials(rng, {12, 9, 11}), &many_visibility()});
+  out.push_back({scene_of_transparents({12, 9, 11})});
+  return out;
+}
+
+TEST_CASE("aligned allocations are counted like others", "[mesh]") {
+  struct alignas(64) Aligned {
+    char bytes[64];
+  };
+  std::unique_ptr<Aligned> kept;
+  const Allocations cost = allocations_of([&kept] { kept = std::make_unique<Aligned>(); });
+  CHECK(reinterpret_cast<std::uintptr_t>(kept.get()) % 64 == 0);
+  CHECK(cost.count == 1);
+  CHECK(cost.bytes == 64);
+}
+
 TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh]") {
   SplitMix64 rng(23);
-  std::vector<MeshScene> scenes;
-  for (int i = 0; i < 40; ++i) scenes.push_back(random_scene(rng, 20));
+  const std::vector<Place> all = places(rng);
   RdmScratch scratch;
   ChunkMesh mesh;
-  const VisibilityTable& visibility = mesh_visibility();
   for (const bool grown : {false, true}) {
-    const std::size_t before = allocations;
-    for (const MeshScene& scene : scenes) mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
-    if (grown) {
-      CHECK(allocations == before);
-    } else {
-      CHECK(allocations > before);  // the counter counts
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto& [scene, visibility] = all[i];
+      const MeshNeighbours around = scene.pointers();
+      const auto cost = allocations_of([&] { mesh_rdm(scene.chunk, around, *visibility, scratch, mesh); });
+      counted += cost.count;
+      CAPTURE(i);
+      if (grown) CHECK(cost.count == 0);
     }
+    if (!grown) CHECK(counted > 0);  // the counter counts
+  }
+}
+
+TEST_CASE("meshing with kept borders, and making them, allocates nothing once all have grown", "[mesh]") {
+  SplitMix64 rng(25);
+  const std::vector<Place> all = places(rng);
+  RdmScratch scratch;
+  ChunkMesh mesh;
+  ChunkBorders own;
+  std::array<ChunkBorders, kDirectionCount> kept;
+  for (const bool grown : {false, true}) {
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto& [scene, visibility] = all[i];
+      const MeshNeighbours around = scene.pointers();
+      const auto cost = allocations_of([&] {
+        MeshBorders borders{};
+        for (std::size_t d = 0; d < kDirectionCount; ++d) {
+          if (around[d] == nullptr) continue;
+          kept[d].read(*around[d], *visibility);
+          borders[d] = &kept[d];
+        }
+        mesh_rdm(scene.chunk, around, borders, *visibility, scratch, mesh, &own);
+      });
+      counted += cost.count;
+      CAPTURE(i);
+      if (grown) CHECK(cost.count == 0);
+    }
+    if (!grown) CHECK(counted > 0);
   }
 }
 
@@ -60,9 +121,9 @@ TEST_CASE("remeshing layers allocates nothing once scratch and mesh have grown",
   std::size_t counted = 0;
   for (int round = 0; round < 12; ++round) {
     fill(scene.chunk, voxel, 1, round % 2 == 0 ? kStone : kWater);
-    const std::size_t before = allocations;
-    mesh_rdm_layers(scene.chunk, scene.pointers(), visibility, dirty, {}, scratch, mesh);
-    counted = allocations - before;
+    counted = allocations_of([&] {
+                mesh_rdm_layers(scene.chunk, scene.pointers(), visibility, dirty, {}, scratch, mesh);
+              }).count;
   }
   CHECK(counted == 0);
 }
