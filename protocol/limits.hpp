@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 /// Optional parts of the protocol that this build knows, a bit each. None exist yet.
 inline constexpr std::uint64_t kFeaturesKnown = 0;
 

@@ -28,6 +28,8 @@ class Words {
   }
   bool more() const { return next_ < words_.size(); }
   bool empty() const { return words_.empty(); }
+  /// The next word, without taking it; empty if there is none.
+  std::string_view peek() const { return more() ? words_[next_] : std::string_view{}; }
   std::string_view word(const char* what) {
     if (!more()) throw LineError{std::string("expected ") + what};
     return words_[next_++];
@@ -90,16 +92,30 @@ ScriptPosition position(Words& words) {
 
 std::string material(Words& words) { return std::string(words.word("MATERIAL")); }
 
+constexpr std::string_view kOnly = "only:";
+
+bool is_mask(std::string_view text) { return text == "empty" || text == "solid" || text.starts_with(kOnly); }
+
 ScriptMask mask(Words& words) {
   if (!words.more()) return {};
   const std::string_view text = words.word("MASK");
-  constexpr std::string_view kOnly = "only:";
   if (text == "empty") return {MaskKind::only_empty, {}};
   if (text == "solid") return {MaskKind::only_solid, {}};
   if (text.starts_with(kOnly) && text.size() > kOnly.size()) {
     return {MaskKind::only_material, std::string(text.substr(kOnly.size()))};
   }
   throw LineError{"MASK: \"" + std::string(text) + "\" is none of empty, solid, only:MATERIAL"};
+}
+
+script::Step stroke_step(Words& words) {
+  script::Stroke stroke;
+  stroke.radius = number<std::uint16_t>(words, "R", 1, kEditRadiusMax);
+  stroke.material = material(words);
+  while (words.more() && !is_mask(words.peek())) stroke.points.push_back(position(words));
+  if (stroke.points.size() < 2) throw LineError{"a stroke needs two positions or more"};
+  if (stroke.points.size() > kStrokePointsMax) throw LineError{"a stroke has at most 256 positions"};
+  stroke.mask = mask(words);
+  return stroke;
 }
 
 script::Step wait_step(Words& words) {
@@ -156,6 +172,7 @@ script::Step step_of(std::string_view verb, Words& words) {
     sphere.mask = mask(words);
     return sphere;
   }
+  if (verb == "stroke") return stroke_step(words);
   if (verb == "dig") return script::Dig{};
   if (verb == "place") return script::Place{material(words)};
   if (verb == "wait") return wait_step(words);

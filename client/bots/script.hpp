@@ -58,6 +58,12 @@ struct Sphere {
   std::string material;
   ScriptMask mask;
 };
+struct Stroke {
+  std::uint16_t radius = 1;
+  std::string material;
+  std::vector<ScriptPosition> points;  // two or more
+  ScriptMask mask;
+};
 struct Dig {};
 struct Place {
   std::string material;
@@ -97,8 +103,8 @@ struct Digests {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Dig, Place, Wait, WaitUntil, Screenshot,
-                          Expect, Repeat, End, Burst, Digests, Quit>;
+using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Dig, Place, Wait, WaitUntil,
+                          Screenshot, Expect, Repeat, End, Burst, Digests, Quit>;
 
 }  // namespace script
 

@@ -192,6 +192,20 @@ ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
   return submit({FillSphere{*centre, c.radius}, *mask, *material});
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
+  FillStroke stroke;
+  stroke.radius = c.radius;
+  for (const ScriptPosition& position : c.points) {
+    const auto point = resolve_voxel(position);
+    if (!point) return Progress::stop;
+    stroke.points.push_back(*point);
+  }
+  const auto material = resolve_material(c.material);
+  const auto mask = resolve_mask(c.mask);
+  if (!material || !mask) return Progress::stop;
+  return submit({std::move(stroke), *mask, *material});
+}
+
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
   const auto hit = host_.pick();
   if (!hit) {

@@ -45,6 +45,7 @@ class ScriptRunner {
   Progress run(const script::Set& c);
   Progress run(const script::Box& c);
   Progress run(const script::Sphere& c);
+  Progress run(const script::Stroke& c);
   Progress run(const script::Dig& c);
   Progress run(const script::Place& c);
   Progress run(const script::Wait& c);

@@ -118,7 +118,7 @@ Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submit
   if (!within(edit, opening_->heights)) {
     return fail(ErrorCode::bad_value, "edit reaches above or below the world's heights");
   }
-  if (voxel_count(edit) > opening_->edit_volume_max) {
+  if (counted_voxels(edit) > opening_->edit_volume_max) {
     return fail(ErrorCode::limit_exceeded, "edit covers more voxels than the server allows");
   }
   if (own_.full()) return fail(ErrorCode::limit_exceeded, "too many own edits wait for the server");

@@ -12,7 +12,7 @@
 
 namespace runstone {
 
-/// One edit of a stack, clipped to the chunk at hand.
+/// One edit of a stack, or one segment of a stroke, clipped to the chunk at hand.
 struct StackedEdit {
   OrderedShape shape;
   Mask mask;

@@ -1,6 +1,8 @@
 #include "common/edits/edit_descriptor.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 
 namespace runstone {
 namespace {
@@ -37,6 +39,31 @@ Result<void> validate_shape(const FillSphere& shape) {
   return {};
 }
 
+Result<void> validate_shape(const FillStroke& shape) {
+  if (shape.points.size() < 2) return fail(ErrorCode::bad_value, "stroke has fewer than two points");
+  if (shape.points.size() > kStrokePointsMax) {
+    return fail(ErrorCode::limit_exceeded, "stroke has too many points");
+  }
+  if (shape.radius == 0) return fail(ErrorCode::bad_value, "stroke radius is 0");
+  if (shape.radius > kEditRadiusMax) return fail(ErrorCode::limit_exceeded, "stroke radius too large");
+  const VoxelPos* before = nullptr;
+  for (const VoxelPos& p : shape.points) {
+    for (const std::int64_t c : {p.x, p.y, p.z}) {
+      if (!inside_world(c - shape.radius) || !inside_world(c + shape.radius)) {
+        return fail(ErrorCode::bad_value, "stroke reaches outside the world");
+      }
+    }
+    if (before != nullptr) {
+      if (p == *before) return fail(ErrorCode::bad_value, "stroke repeats a point");
+      const auto step =
+          std::max({std::abs(p.x - before->x), std::abs(p.y - before->y), std::abs(p.z - before->z)});
+      if (step > kStrokeStepMax) return fail(ErrorCode::limit_exceeded, "stroke step too long");
+    }
+    before = &p;
+  }
+  return {};
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -58,6 +85,16 @@ void write_shape(ByteWriter& w, const FillSphere& shape) {
   w.varint(shape.radius);
 }
 
+void write_shape(ByteWriter& w, const FillStroke& shape) {
+  w.varint(shape.radius);
+  w.varint(shape.points.size() - 2);
+  write_position(w, shape.points.front());
+  for (std::size_t i = 1; i < shape.points.size(); ++i) {
+    const VoxelPos &a = shape.points[i - 1], &b = shape.points[i];
+    write_position(w, {b.x - a.x, b.y - a.y, b.z - a.z});
+  }
+}
+
 std::int32_t read_coordinate(ByteReader& r) {
   return static_cast<std::int32_t>(
       r.svarint_in(-kWorldLimit, kWorldLimit - 1, "coordinate outside the world"));
@@ -73,6 +110,27 @@ VoxelPos read_position(ByteReader& r) {
 
 std::int32_t read_side(ByteReader& r) {
   return 1 + static_cast<std::int32_t>(r.varint_max(kEditBoxSideMax - 1, "box side too long"));
+}
+
+std::int32_t read_step(ByteReader& r) {
+  return static_cast<std::int32_t>(r.svarint_in(-kStrokeStepMax, kStrokeStepMax, "stroke step too long"));
+}
+
+FillStroke read_stroke(ByteReader& r) {
+  FillStroke shape;
+  shape.radius = static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "stroke radius too large"));
+  const std::uint64_t count = 2 + r.varint_max(kStrokePointsMax - 2, "stroke has too many points");
+  VoxelPos at = read_position(r);
+  if (!r.ok()) return shape;
+  shape.points.reserve(count);
+  shape.points.push_back(at);
+  while (r.ok() && shape.points.size() < count) {
+    at.x += read_step(r);
+    at.y += read_step(r);
+    at.z += read_step(r);
+    shape.points.push_back(at);
+  }
+  return shape;
 }
 
 Material read_material(ByteReader& r) {
@@ -97,6 +155,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
       shape.radius = static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "sphere radius too large"));
       return shape;
     }
+    case EditKind::fill_stroke:
+      return read_stroke(r);
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
@@ -136,11 +196,12 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
   EditDescriptor edit;
   const std::uint8_t tag = r.u8();
   if (tag < static_cast<std::uint8_t>(EditKind::set_voxel) ||
-      tag > static_cast<std::uint8_t>(EditKind::fill_sphere)) {
+      tag > static_cast<std::uint8_t>(EditKind::fill_stroke)) {
     r.reject(ErrorCode::unknown_kind, "unknown edit kind");
   }
-  // The bound of these kinds; a record has room for more.
-  if (in.size() > kDescriptorBytesMax) r.reject(ErrorCode::limit_exceeded, "descriptor too long");
+  // The kind's bound; a record has room for more. Before anything else of it is read.
+  if (r.ok() && in.size() > descriptor_bytes_max(static_cast<EditKind>(tag)))
+    r.reject(ErrorCode::limit_exceeded, "descriptor too long");
   const std::uint8_t mask = r.u8();
   if (mask > static_cast<std::uint8_t>(MaskKind::only_material)) {
     r.reject(ErrorCode::unknown_kind, "unknown mask kind");

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <variant>
+#include <vector>
 
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
@@ -13,8 +14,9 @@
 
 namespace runstone {
 
-/// Tags, stored. 4 (capsule stroke), 5 (replace) and 6 (paste) are reserved.
-enum class EditKind : std::uint8_t { set_voxel = 1, fill_box = 2, fill_sphere = 3 };
+/// Tags, stored. 6 (paste) is reserved. 5 is unused: to replace a material in a box is fill_box with the mask
+/// only_material.
+enum class EditKind : std::uint8_t { set_voxel = 1, fill_box = 2, fill_sphere = 3, fill_stroke = 4 };
 
 /// Which voxels of the geometry an edit may write. Stored.
 enum class MaskKind : std::uint8_t { everything = 0, only_empty = 1, only_solid = 2, only_material = 3 };
@@ -55,7 +57,15 @@ struct FillSphere {
   friend bool operator==(const FillSphere&, const FillSphere&) = default;
 };
 
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere>;  // order follows EditKind
+/// Voxels whose squared distance to some segment of the polyline through `points` is at most r^2 + r: a
+/// sphere drawn along it. A single point is a sphere, not a stroke; radius 0 would leave gaps.
+struct FillStroke {
+  std::vector<VoxelPos> points;  // 2 .. kStrokePointsMax, no two equal ones in a row
+  std::uint16_t radius = 1;      // 1 .. kEditRadiusMax
+  friend bool operator==(const FillStroke&, const FillStroke&) = default;
+};
+
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke>;  // order follows EditKind
 
 struct EditDescriptor {
   EditShape shape;
@@ -67,11 +77,19 @@ struct EditDescriptor {
 /// What the encoding can say at all. Servers allow less (protocol/limits.hpp, server configuration).
 inline constexpr std::int32_t kEditBoxSideMax = 4096;
 inline constexpr std::uint16_t kEditRadiusMax = 512;
-inline constexpr std::size_t kDescriptorBytesMax = 64;  // of the kinds above
+inline constexpr std::size_t kStrokePointsMax = 256;
+inline constexpr std::int32_t kStrokeStepMax = 1024;  // from point to point, along each axis
 
 EditKind kind_of(const EditDescriptor& edit);
 
-/// Names the first field outside its range (position beyond the world, empty or oversized box, radius).
+/// Bytes that a descriptor of this kind may have.
+constexpr std::size_t descriptor_bytes_max(EditKind kind) {
+  return kind == EditKind::fill_stroke ? 1600 : 64;
+}
+inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::fill_stroke);  // of all
+
+/// Names the first field outside its range (position beyond the world, empty or oversized box, radius, a
+/// stroke's points).
 Result<void> validate(const EditDescriptor& edit);
 
 /// Appends the canonical bytes. Requires a valid descriptor.

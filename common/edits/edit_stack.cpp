@@ -4,19 +4,24 @@
 #include "common/edits/change_tally.hpp"
 #include "common/edits/edit_stack_strategies.hpp"
 #include "common/edits/edit_sweep.hpp"
+#include "common/edits/ordered_shape.hpp"
 
 namespace runstone {
 namespace {
 
-void stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
-              std::vector<StackedEdit>& stack) {
+// Returns how many of the edits may touch the chunk; each stands in the stack as all its parts.
+std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+                     std::vector<StackedEdit>& stack) {
   stack.clear();
+  std::size_t count = 0;
   for (const EditDescriptor& edit : edits) {
     RUNSTONE_DASSERT(validate(edit).has_value());
-    if (const auto shape = clip(edit, origin, chunk.extent, chunk.order)) {
-      stack.push_back({*shape, edit.mask, edit.material});
-    }
+    const std::size_t before = stack.size();
+    for_each_part(edit, origin, chunk.extent, chunk.order,
+                  [&](const OrderedShape& shape) { stack.push_back({shape, edit.mask, edit.material}); });
+    count += stack.size() != before ? 1 : 0;
   }
+  return count;
 }
 
 // Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
@@ -51,9 +56,9 @@ void reset(ApplyResult& result) {
 void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
                  ApplyScratch& scratch, ApplyResult& result) {
   reset(result);
-  stack_up(chunk, origin, edits, scratch.stack);
-  if (scratch.stack.empty()) return;
-  const auto search = scratch.stack.size() == 1 ? ChangeSearch::walk : ChangeSearch::sweep;
+  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+  if (count == 0) return;
+  const auto search = count == 1 ? ChangeSearch::walk : ChangeSearch::sweep;
   search_changes(search, chunk, digest, scratch, result);
   write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
 }
@@ -68,8 +73,9 @@ ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
 ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& digest, VoxelPos origin,
                            std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
   ApplyResult result;
-  stack_up(chunk, origin, edits, scratch.stack);
-  if (scratch.stack.empty()) return result;
+  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+  if (count == 0) return result;
+  RUNSTONE_ASSERT(count == 1 || strategy.search == ChangeSearch::sweep);
   search_changes(strategy.search, chunk, digest, scratch, result);
   write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
   return result;

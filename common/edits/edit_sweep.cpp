@@ -252,10 +252,13 @@ void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& ta
 }
 
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally) {
-  RUNSTONE_ASSERT(scratch.stack.size() == 1);
-  const StackedEdit& edit = scratch.stack.front();
+  RUNSTONE_ASSERT(!scratch.stack.empty());
+  const StackedEdit& edit = scratch.stack.front();  // its parts differ in shape alone
   scratch.spans.clear();
-  append_spans(edit.shape, ordered(chunk.extent, chunk.order), scratch.spans);
+  for (const StackedEdit& part : scratch.stack) {
+    append_spans(part.shape, ordered(chunk.extent, chunk.order), scratch.spans);
+  }
+  if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     RunCursor<Runs> cursor(runs);
     for (const IndexSpan& span : scratch.spans) {

@@ -15,8 +15,8 @@ namespace runstone {
 /// entries of one layer). O(runs crossed + rows of all edits * line length / 16 + layers * edits / 64).
 void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
 
-/// The same for a stack of one edit: walks the runs inside each span. O(spans * log(runs between) + runs
-/// crossed).
+/// The same for a stack that is one edit, be it in several parts: walks the runs inside each span. O(spans *
+/// log(runs between) + runs crossed); in several parts, also O(n log n) of their spans.
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
 
 }  // namespace runstone

@@ -1,6 +1,8 @@
 // OrderedShape: an edit's geometry seen from one chunk, in the chunk's own order (fastest, middle, slowest
-// axis) and clipped to it. Boxes and spheres are convex, so each line of the chunk meets them in at most one
-// row of voxels; whoever needs the geometry asks for these rows. Internal to edits. Integers only.
+// axis) and clipped to it. Boxes, spheres and the segments of a stroke are convex, so each line of the chunk
+// meets them in at most one row of voxels; whoever needs the geometry asks for these rows. A stroke is as
+// many shapes as it has segments here: to apply a mask and a material twice to a voxel is to apply them once,
+// since what the first one wrote the second one leaves or writes again. Internal to edits. Integers only.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/edits/capsule_row.hpp"
 #include "common/edits/edit_geometry.hpp"
 #include "common/runs/axis_order.hpp"
 
@@ -26,28 +29,89 @@ constexpr std::uint32_t isqrt(std::uint32_t v) {
 }
 
 struct OrderedShape {
+  enum class Form : std::uint8_t { box, sphere, capsule };
   std::array<std::uint32_t, 3> first{}, last{};  // clipped bounding box along f, m, s; half-open, never empty
-  std::array<std::int32_t, 3> centre{};          // of a sphere, relative to the chunk's first voxel
-  std::int32_t reach = 0;                        // r * r + r of a sphere: the largest squared distance inside
-  bool round = false;
+  std::array<std::int32_t, 3> centre{};  // of a sphere, of a capsule's start; relative to the first voxel
+  std::array<std::int32_t, 3> along{};   // from a capsule's start to its end
+  std::int32_t reach = 0;                // r * r + r: the largest squared distance inside
+  Form form = Form::box;
 
-  bool covers_layers(OrderedExtent e) const {
-    return !round && first[0] == 0 && last[0] == e.f && first[1] == 0 && last[1] == e.m;
-  }
-  bool covers_lines(OrderedExtent e) const { return !round && first[0] == 0 && last[0] == e.f; }
+  bool covers_layers(OrderedExtent e) const { return covers_lines(e) && first[1] == 0 && last[1] == e.m; }
+  bool covers_lines(OrderedExtent e) const { return form == Form::box && first[0] == 0 && last[0] == e.f; }
 };
 
-/// Nothing when the bounding box misses the chunk. O(1). A sphere may still have no voxel inside.
+/// Nothing when the bounding box misses the chunk. O(1). A sphere may still have no voxel inside. Not for
+/// strokes: their segments are clipped one by one.
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order);
+
+/// The segment from point `i` of the stroke to the next one, clipped to a box of voxels, relative to the
+/// box's first voxel. Nothing when it passes by; a few that pass by closely are told by their rows alone.
+/// O(1).
+std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i, const VoxelBox& box,
+                                         AxisOrder order);
+
+/// Whether the capsule has a voxel inside its clipped box. Exact. O(lines it meets until one is found).
+bool has_voxel(const OrderedShape& capsule);
+
+/// Calls part(shape) for each shape of the edit that may have a voxel in the chunk: one, or one per segment.
+template <class F>
+void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order, F&& part) {
+  if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
+    const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
+    for (std::size_t i = 0; i + 1 < stroke->points.size(); ++i) {
+      if (const auto shape = clip_segment(*stroke, i, chunk, order)) part(*shape);
+    }
+  } else if (const auto shape = clip(edit, origin, extent, order)) {
+    part(*shape);
+  }
+}
 
 /// append_spans() of edit_geometry.hpp for a shape that is clipped already.
 void append_spans(const OrderedShape& shape, OrderedExtent e, std::vector<IndexSpan>& out);
+
+/// Makes one ascending list of disjoint stretches of the spans from `start` on, which several shapes
+/// appended.
+void unite_spans(std::vector<IndexSpan>& spans, std::size_t start);
+
+/// Calls row(m, first, last), which returns whether to go on, as for_each_row() does, for a capsule. O(lines
+/// it meets).
+template <class F>
+bool visit_capsule_rows(const OrderedShape& shape, std::uint32_t s, F&& row) {
+  const std::int64_t qs = static_cast<std::int64_t>(s) - shape.centre[2];
+  const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
+  // The lines that the capsule meets at all are the row of its shadow on the plane across them.
+  CapsuleRoots roots;
+  const CapsuleRow lines = capsule_row(dm, ds * ds, qs * ds, qs * qs, shape.reach, roots);
+  const std::int64_t m_first = std::max<std::int64_t>(shape.first[1], lines.first + shape.centre[1]);
+  const std::int64_t m_last = std::min<std::int64_t>(shape.last[1], lines.last + shape.centre[1] + 1);
+  roots = {};
+  for (std::int64_t m = m_first; m < m_last; ++m) {
+    const std::int64_t qm = m - shape.centre[1];
+    const CapsuleRow inside =
+        capsule_row(df, dm * dm + ds * ds, qm * dm + qs * ds, qm * qm + qs * qs, shape.reach, roots);
+    const std::int64_t f_first = std::max<std::int64_t>(shape.first[0], inside.first + shape.centre[0]);
+    const std::int64_t f_last = std::min<std::int64_t>(shape.last[0], inside.last + shape.centre[0] + 1);
+    if (f_first >= f_last) continue;
+    if (!row(static_cast<std::uint32_t>(m), static_cast<std::uint32_t>(f_first),
+             static_cast<std::uint32_t>(f_last))) {
+      return false;
+    }
+  }
+  return true;
+}
 
 /// Calls row(m, first, last) for the voxels [first, last) of each line that the shape meets in layer `s`,
 /// ascending. Requires s inside the clipped box. O(lines), plus O(radius) once for a sphere.
 template <class F>
 void for_each_row(const OrderedShape& shape, std::uint32_t s, F&& row) {
-  if (!shape.round) {
+  if (shape.form == OrderedShape::Form::capsule) {
+    visit_capsule_rows(shape, s, [&row](std::uint32_t m, std::uint32_t first, std::uint32_t last) {
+      row(m, first, last);
+      return true;
+    });
+    return;
+  }
+  if (shape.form == OrderedShape::Form::box) {
     for (std::uint32_t m = shape.first[1]; m < shape.last[1]; ++m) row(m, shape.first[0], shape.last[0]);
     return;
   }

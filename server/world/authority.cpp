@@ -9,10 +9,11 @@ namespace {
 
 // What an edit costs at most in a commit message: fields and tables of OrderedEdit, the descriptor, and a
 // varint per touched chunk. Commits end well before kServerEditBytesMax.
-constexpr std::size_t kOrderedEditBytesMax = 128 + kDescriptorBytesMax;
+constexpr std::size_t kOrderedEditBytesMax = 128;  // beside the descriptor
 constexpr std::size_t kPreviousBytesMax = 10;
 constexpr std::size_t kCommitBytesTarget = kServerEditBytesMax / 2;
-static_assert(kOrderedEditBytesMax + kPreviousBytesMax * kTouchedChunksMax < kServerEditBytesMax / 2,
+static_assert(kOrderedEditBytesMax + kDescriptorBytesMax + kPreviousBytesMax * kTouchedChunksMax <
+                  kServerEditBytesMax / 2,
               "one more edit over the target still fits the message");
 
 }  // namespace
@@ -67,7 +68,8 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
       ordered.previous.push_back(chunks_.push(key, version, offer.edit));
       batch.touched.push_back(key);
     }
-    bytes += kOrderedEditBytesMax + kPreviousBytesMax * ordered.previous.size();
+    bytes += kOrderedEditBytesMax + descriptor_bytes_max(kind_of(offer.edit)) +
+             kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
     batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
   }

@@ -14,7 +14,7 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
   if (!within(edit, limits.heights)) return RejectReason::outside_world;
   if (touched_chunks_bound(edit, limits.chunk_edge) > limits.touched_chunks_max)
     return RejectReason::too_large;
-  if (voxel_count(edit) > limits.volume_max) return RejectReason::too_large;
+  if (counted_voxels(edit) > limits.volume_max) return RejectReason::too_large;
   return std::nullopt;
 }
 

@@ -13,9 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     RUNSTONE_ASSERT(validate(*edit).has_value());
     const Bytes again = encode(*edit);
     RUNSTONE_ASSERT(again == Bytes(in.begin(), in.end()));
-    RUNSTONE_ASSERT(again.size() <= kDescriptorBytesMax);
+    RUNSTONE_ASSERT(again.size() <= descriptor_bytes_max(kind_of(*edit)));
     const VoxelBox box = bounding_box(*edit);
-    RUNSTONE_ASSERT(touches(*edit, box) && voxel_count(*edit) > 0);
+    RUNSTONE_ASSERT(touches(*edit, box) && counted_voxels(*edit) > 0);
     const std::uint64_t bound = touched_chunks_bound(*edit, 128);
     if (bound <= 1000) {
       const auto chunks = touched_chunks(*edit, 128);

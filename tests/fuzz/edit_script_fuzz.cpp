@@ -33,9 +33,17 @@ EditDescriptor read_edit(ByteReader& in) {
   const std::int32_t x = in.u8() % 40;
   const std::int32_t y = in.u8() % 40;
   const std::int32_t z = in.u8() % 40;
-  if (kind % 3 == 0) edit.shape = SetVoxel{at};
-  if (kind % 3 == 1) edit.shape = FillBox{{at, {at.x + 1 + x, at.y + 1 + y, at.z + 1 + z}}};
-  if (kind % 3 == 2) edit.shape = FillSphere{at, static_cast<std::uint16_t>(x)};
+  if (kind % 4 == 0) edit.shape = SetVoxel{at};
+  if (kind % 4 == 1) edit.shape = FillBox{{at, {at.x + 1 + x, at.y + 1 + y, at.z + 1 + z}}};
+  if (kind % 4 == 2) edit.shape = FillSphere{at, static_cast<std::uint16_t>(x)};
+  if (kind % 4 == 3) {
+    FillStroke stroke{{at}, static_cast<std::uint16_t>(1 + kind / 4 % 4)};
+    for (const VoxelPos step : {VoxelPos{x - 20, y - 20, z - 20}, VoxelPos{20 - y, x / 2 - 10, z / 4}}) {
+      const VoxelPos& last = stroke.points.back();
+      if (step != VoxelPos{}) stroke.points.push_back({last.x + step.x, last.y + step.y, last.z + step.z});
+    }
+    edit.shape = stroke.points.size() > 1 ? EditShape{stroke} : EditShape{SetVoxel{at}};
+  }
   return edit;
 }
 

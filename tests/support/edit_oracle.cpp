@@ -19,6 +19,13 @@ std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit) {
     out << "sphere ";
     print(sphere->centre);
     out << " r " << sphere->radius;
+  } else if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
+    out << "stroke";
+    for (const VoxelPos& p : stroke->points) {
+      out << ' ';
+      print(p);
+    }
+    out << " r " << stroke->radius;
   }
   out << " := " << edit.material;
   switch (edit.mask.kind) {
@@ -53,6 +60,28 @@ std::int32_t pick(SplitMix64& rng, std::int32_t low, std::int32_t high) {
   return high < low ? low : rng.between(low, high);
 }
 
+// The nearest point of the segment, in units of 1 / |ab|^2, then the distance to it, squared as it is
+// defined.
+bool near_segment(VoxelPos a, VoxelPos b, VoxelPos at, std::int64_t reach) {
+  // Most voxels are far away: along an axis alone.
+  const auto far = [reach](std::int64_t from, std::int64_t to, std::int64_t c) {
+    const std::int64_t d = std::max(std::min(from, to) - c, c - std::max(from, to));
+    return d > 0 && d * d > reach;
+  };
+  if (far(a.x, b.x, at.x) || far(a.y, b.y, at.y) || far(a.z, b.z, at.z)) return false;
+  __extension__ using Wide = __int128;
+  const std::array<Wide, 3> d = {b.x - a.x, b.y - a.y, b.z - a.z};
+  const std::array<Wide, 3> p = {Wide{at.x} - a.x, Wide{at.y} - a.y, Wide{at.z} - a.z};
+  const Wide whole = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const Wide place = std::clamp<Wide>(p[0] * d[0] + p[1] * d[1] + p[2] * d[2], 0, whole);
+  Wide squared = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Wide off = p[i] * whole - place * d[i];
+    squared += off * off;
+  }
+  return squared <= reach * whole * whole;
+}
+
 }  // namespace
 
 bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
@@ -64,6 +93,14 @@ bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
     const bool below = at.x < b.max.x && at.y < b.max.y && at.z < b.max.z;
     const bool above = at.x >= b.min.x && at.y >= b.min.y && at.z >= b.min.z;
     return below && above;
+  }
+  if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
+    const std::int64_t r = stroke->radius;
+    const std::int64_t rim = fault == OracleFault::thin_stroke ? 0 : r;
+    for (std::size_t i = 1; i < stroke->points.size(); ++i) {
+      if (near_segment(stroke->points[i - 1], stroke->points[i], at, r * r + rim)) return true;
+    }
+    return false;
   }
   // |d| < r + 1/2, with both sides doubled and squared.
   const auto& sphere = std::get<FillSphere>(edit.shape);
@@ -155,6 +192,26 @@ std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_area
   return areas;
 }
 
+FillStroke random_stroke(SplitMix64& rng, VoxelPos at) {
+  FillStroke stroke;
+  stroke.radius = static_cast<std::uint16_t>(1 + rng.below(rng.below(4) == 0 ? 9 : 3));
+  const auto count = rng.below(3) == 0 ? 2 : 2 + rng.below(5);
+  const std::int32_t step = rng.below(3) == 0 ? 30 : 9;
+  stroke.points.push_back(at);
+  while (stroke.points.size() < count) {
+    VoxelPos next = stroke.points.back();
+    // Often along an axis or a plane, and never far from the start.
+    const auto wander = [&](std::int32_t& c, std::int32_t home) {
+      if (rng.below(3) != 0) c = std::clamp(c + rng.between(-step, step), home - 24, home + 24);
+    };
+    wander(next.x, at.x);
+    wander(next.y, at.y);
+    wander(next.z, at.z);
+    if (next != stroke.points.back()) stroke.points.push_back(next);
+  }
+  return stroke;
+}
+
 EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent) {
   EditDescriptor edit;
   const std::array<std::int32_t, 3> sides = {extent.x, extent.y, extent.z};
@@ -173,12 +230,15 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
     at[i] += low[i];
     end[i] += low[i];
   }
-  switch (rng.below(3)) {
+  switch (rng.below(4)) {
     case 0:
       edit.shape = SetVoxel{{at[0], at[1], at[2]}};
       break;
     case 1:
       edit.shape = FillBox{{{at[0], at[1], at[2]}, {end[0], end[1], end[2]}}};
+      break;
+    case 2:
+      edit.shape = random_stroke(rng, {at[0], at[1], at[2]});
       break;
     default: {
       const std::uint32_t size = rng.below(8);
@@ -204,7 +264,7 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
                        : pick(rng, low, high);
   };
   const auto id = [&rng] { return static_cast<Material>(rng.below(4) == 0 ? 65535 : rng.below(65536)); };
-  switch (rng.below(3)) {
+  switch (rng.below(4)) {
     case 0:
       edit.shape = SetVoxel{{span(-kWorldLimit, kWorldLimit - 1), span(-kWorldLimit, kWorldLimit - 1),
                              span(-kWorldLimit, kWorldLimit - 1)}};
@@ -220,6 +280,25 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
       side(fill.box.min.y, fill.box.max.y);
       side(fill.box.min.z, fill.box.max.z);
       edit.shape = fill;
+      break;
+    }
+    case 2: {
+      FillStroke stroke;
+      const std::int32_t r = span(1, kEditRadiusMax);
+      stroke.radius = static_cast<std::uint16_t>(r);
+      const auto count = static_cast<std::size_t>(rng.below(8) == 0 ? span(2, std::int32_t{kStrokePointsMax})
+                                                                    : 2 + span(0, 3));
+      const std::int32_t low = -kWorldLimit + r, high = kWorldLimit - 1 - r;
+      const auto step = [&](std::int32_t c) {
+        return std::clamp(c + span(-kStrokeStepMax, kStrokeStepMax), low, high);
+      };
+      stroke.points.push_back({span(low, high), span(low, high), span(low, high)});
+      while (stroke.points.size() < count) {
+        const VoxelPos& last = stroke.points.back();
+        const VoxelPos next{step(last.x), step(last.y), step(last.z)};
+        if (next != last) stroke.points.push_back(next);
+      }
+      edit.shape = stroke;
       break;
     }
     default: {

@@ -28,6 +28,7 @@ namespace runstone::test {
 enum class OracleFault {
   none,
   thin_sphere,       // |d| <= r instead of |d| < r + 1/2
+  thin_stroke,       // distance <= r likewise
   early_mask,        // masks look at the chunk before the stack
   lost_voxel,        // the last changed voxel is left as it was
   miscounted_voxel,  // one changed voxel too many is reported
@@ -51,6 +52,9 @@ std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
 /// (first, before, after) of the groups of runs that differ between two run lists, by comparing all runs.
 std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
                                                                                   const RunChunk& after);
+
+/// A stroke of few points that starts at `at` and stays within 33 voxels of it.
+FillStroke random_stroke(SplitMix64& rng, VoxelPos at);
 
 /// Any kind, mask and material, valid, near the chunk at `origin`: mostly inside, often partly, sometimes
 /// wholly outside. Materials 0 .. 7, so that masks meet what earlier edits left.

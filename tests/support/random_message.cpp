@@ -1,4 +1,5 @@
 #include "tests/support/random_message.hpp"
+#include "tests/support/edit_oracle.hpp"
 
 #include <algorithm>
 
@@ -57,11 +58,14 @@ Pose any_pose(SplitMix64& rng) {
 EditDescriptor any_edit(SplitMix64& rng) {
   const VoxelPos at{rng.between(-1'000'000, 1'000'000), rng.between(-300, 300), rng.between(-1'000, 1'000)};
   EditDescriptor edit;
-  switch (rng.below(3)) {
+  switch (rng.below(4)) {
     case 0:
       edit.shape = SetVoxel{at};
       break;
     case 1:
+      edit.shape = random_stroke(rng, at);
+      break;
+    case 2:
       edit.shape =
           FillBox{{at, {at.x + rng.between(1, 60), at.y + rng.between(1, 60), at.z + rng.between(1, 60)}}};
       break;

@@ -11,6 +11,7 @@
 #include "common/edits/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/store/store.hpp"
+#include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -37,12 +38,12 @@ inline PlayerRow sample_player(AuthorId author) {
   return row;
 }
 
-/// An edit near the origin: voxels, boxes and spheres, some masked, so that edits overlap and depend on
-/// order.
+/// An edit near the origin: voxels, boxes, strokes and spheres, some masked, so that edits overlap and depend
+/// on order.
 inline EditDescriptor sample_edit(SplitMix64& rng) {
   EditDescriptor edit;
   const VoxelPos at{rng.between(-40, 40), rng.between(-20, 40), rng.between(-40, 40)};
-  switch (rng.below(3)) {
+  switch (rng.below(4)) {
     case 0:
       edit.shape = SetVoxel{at};
       break;
@@ -51,6 +52,9 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
       edit.shape = FillBox{{at, max}};
       break;
     }
+    case 2:
+      edit.shape = random_stroke(rng, at);
+      break;
     default:
       edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(12))};
       break;

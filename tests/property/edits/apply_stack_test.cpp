@@ -182,7 +182,7 @@ TEST_CASE("an edit that reaches over many chunks changes each as the oracle says
       oracle_apply(oracle, origin, std::span(&edit, 1));
       REQUIRE(DenseChunk::of(chunk) == oracle);
     }
-    REQUIRE(voxels <= voxel_count(edit));
+    REQUIRE(voxels <= counted_voxels(edit));
   }
 }
 
@@ -205,6 +205,7 @@ TEST_CASE("a broken edit oracle is caught", "[edits][property]") {
   };
   CHECK(caught_by(OracleFault::none).empty());
   CHECK(caught_by(OracleFault::thin_sphere)["voxels"] > 20);
+  CHECK(caught_by(OracleFault::thin_stroke)["voxels"] > 20);
   CHECK(caught_by(OracleFault::early_mask)["voxels"] > 20);
   CHECK(caught_by(OracleFault::lost_voxel)["voxels"] > 60);
   CHECK(caught_by(OracleFault::miscounted_voxel)["voxels_changed"] > 60);

@@ -11,6 +11,7 @@
 #include "client/replica/replica.hpp"
 #include "common/core/hash.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/edit_oracle.hpp"
 
 using namespace runstone;
 using runstone::test::AuthorityModel;
@@ -31,9 +32,12 @@ EditDescriptor random_edit(SplitMix64& rng) {
   const VoxelPos at{coordinate(), coordinate(), coordinate()};
   EditDescriptor edit;
   edit.material = static_cast<Material>(rng.below(5));
-  switch (rng.below(4)) {
+  switch (rng.below(5)) {
     case 0:
       edit.shape = SetVoxel{at};
+      break;
+    case 2:
+      edit.shape = test::random_stroke(rng, at);
       break;
     case 1:
       edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(7))};

@@ -19,6 +19,7 @@
 #include "common/core/hash.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/edit_oracle.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -41,6 +42,9 @@ EditDescriptor random_edit(SplitMix64& rng) {
     case 1:
       edit.shape =
           FillBox{{at, {at.x + rng.between(1, 9), at.y + rng.between(1, 9), at.z + rng.between(1, 9)}}};
+      break;
+    case 2:
+      edit.shape = random_stroke(rng, at);
       break;
     default:
       edit.shape = SetVoxel{at};

@@ -102,6 +102,16 @@ TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both includ
   CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
 }
 
+TEST_CASE_METHOD(Fixture, "a stroke goes through its places", "[bots]") {
+  run("stroke 2 stone 1 2 3 1.5 9.25 -0.5 solid");
+  REQUIRE(host.edits.size() == 1);
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{FillStroke{{{1, 2, 3}, {1, 9, -1}}, 2}, {MaskKind::only_solid, 0}, 5});
+  run("stroke 2 stone 1 2 3 1.5 2 3");  // one voxel twice
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
+}
+
 TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {
   run("look 90 -45");
   CHECK(host.yaw == Approx(std::numbers::pi / 2));

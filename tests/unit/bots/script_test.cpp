@@ -52,6 +52,14 @@ TEST_CASE("every command is read with its values", "[bots]") {
   const auto sphere = only<script::Sphere>("sphere 1 2 3 50 0 solid");
   CHECK(sphere.radius == 50);
   CHECK(sphere.mask.kind == MaskKind::only_solid);
+  const auto stroke = only<script::Stroke>("stroke 2 stone 1 2 3 ~ ^+1 ~5 7 8 9 only:sand");
+  CHECK(stroke.radius == 2);
+  CHECK(stroke.material == "stone");
+  REQUIRE(stroke.points.size() == 3);
+  CHECK(stroke.points[1][1].base == Base::surface);
+  CHECK(stroke.points[2][2].offset == 9);
+  CHECK(stroke.mask.material == "sand");
+  CHECK(only<script::Stroke>("stroke 1 0 1 2 3 4 5 6").mask.kind == MaskKind::everything);
   only<script::Dig>("dig");
   CHECK(only<script::Place>("place sand").material == "sand");
   CHECK(only<script::Wait>("wait 0.25").seconds == 0.25);
@@ -96,6 +104,11 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
   CHECK(message_of("set 1 2 3") == "s.txt:1: expected MATERIAL");
   CHECK(message_of("sphere 1 2 3 513 stone") == "s.txt:1: R: \"513\" is not a number in its range");
   CHECK(message_of("sphere 1 2 3 -1 stone") == "s.txt:1: R: \"-1\" is not a number in its range");
+  CHECK(message_of("stroke 0 stone 1 2 3 4 5 6") == "s.txt:1: R: \"0\" is not a number in its range");
+  CHECK(message_of("stroke 1 stone 1 2 3") == "s.txt:1: a stroke needs two positions or more");
+  CHECK(message_of("stroke 1 stone 1 2 3 solid 4 5 6") == "s.txt:1: a stroke needs two positions or more");
+  CHECK(message_of("stroke 1 stone 1 2 3 4 5") == "s.txt:1: expected Z");
+  CHECK(message_of("stroke 1 stone 1 2 3 4 5 6 solid 7") == "s.txt:1: unexpected \"7\"");
   CHECK(message_of("walk 1 2 3 0") == "s.txt:1: SPEED: \"0\" is not a number in its range");
   CHECK(message_of("box 1 2 3 4 5 6 stone some") ==
         "s.txt:1: MASK: \"some\" is none of empty, solid, only:MATERIAL");

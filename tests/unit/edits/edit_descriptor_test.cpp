@@ -57,6 +57,34 @@ TEST_CASE("descriptors at the limits are valid, one step beyond they are not", "
   CHECK(error_of({FillSphere{{0, 0, kEnd - 512}, 512}, {}, 1}) == ErrorCode::bad_value);
 }
 
+TEST_CASE("a stroke has points, steps and a radius within its limits, and no point twice in a row",
+          "[edits]") {
+  constexpr std::int32_t kEnd = kWorldLimit;
+  const auto stroke = [](std::vector<VoxelPos> points, std::uint16_t radius = 1) {
+    return EditDescriptor{FillStroke{std::move(points), radius}, {}, 1};
+  };
+  CHECK(validate(stroke({{0, 0, 0}, {1024, -1024, 1024}}, 512)).has_value());
+  CHECK(validate(stroke({{0, 0, 0}, {0, 1, 0}, {0, 0, 0}})).has_value());
+  CHECK(
+      validate(stroke({{-kEnd + 1, 0, 0}, {-kEnd + 2, kEnd - 2, 0}, {-kEnd + 2, kEnd - 3, 0}})).has_value() ==
+      false);  // the step in y
+  CHECK(validate(stroke({{-kEnd + 1, kEnd - 9, 0}, {-kEnd + 2, kEnd - 2, 0}})).has_value());
+  CHECK(error_of(stroke({})) == ErrorCode::bad_value);
+  CHECK(error_of(stroke({{0, 0, 0}})) == ErrorCode::bad_value);
+  CHECK(error_of(stroke({{0, 0, 0}, {0, 0, 0}})) == ErrorCode::bad_value);
+  CHECK(error_of(stroke({{0, 0, 0}, {1, 0, 0}}, 0)) == ErrorCode::bad_value);
+  CHECK(error_of(stroke({{0, 0, 0}, {1, 0, 0}}, 513)) == ErrorCode::limit_exceeded);
+  CHECK(error_of(stroke({{0, 0, 0}, {1025, 0, 0}})) == ErrorCode::limit_exceeded);
+  CHECK(error_of(stroke({{0, 0, 0}, {0, 0, -1025}})) == ErrorCode::limit_exceeded);
+  CHECK(error_of(stroke({{0, kEnd - 1, 0}, {0, kEnd - 2, 0}})) == ErrorCode::bad_value);
+  CHECK(error_of(stroke({{0, 5, INT32_MIN}, {0, 5, INT32_MAX}})) == ErrorCode::bad_value);
+  std::vector<VoxelPos> points;
+  for (std::int32_t i = 0; i < 256; ++i) points.push_back({i, 0, 0});
+  CHECK(validate(stroke(points)).has_value());
+  points.push_back({0, 0, 0});
+  CHECK(error_of(stroke(points)) == ErrorCode::limit_exceeded);
+}
+
 TEST_CASE("a mask material belongs to the only_material mask alone", "[edits]") {
   EditDescriptor edit = kVoxel;
   edit.mask = {MaskKind::only_material, 9};
@@ -81,7 +109,7 @@ TEST_CASE("masks admit what their names say", "[edits]") {
 
 TEST_CASE("unknown kinds, long varints and out-of-range fields are rejected", "[edits]") {
   CHECK(decode_error({}) == ErrorCode::truncated);
-  for (const std::uint8_t tag : Bytes{0, 4, 5, 6, 7, 255}) {
+  for (const std::uint8_t tag : Bytes{0, 5, 6, 7, 255}) {
     CHECK(decode_error({tag, 0, 4, 0, 0, 0}) == ErrorCode::unknown_kind);
   }
   CHECK(decode_error({1, 4, 4, 0, 0, 0}) == ErrorCode::unknown_kind);
@@ -90,6 +118,12 @@ TEST_CASE("unknown kinds, long varints and out-of-range fields are rejected", "[
   CHECK(decode_error({1, 0, 4, 0x80, 0x80, 0x80, 0x80, 0x04, 0, 0}) == ErrorCode::bad_value);  // x = 2^29
   CHECK(decode_error({2, 0, 4, 0, 0, 0, 0x80, 0x20, 0, 0}) == ErrorCode::bad_value);           // side 4097
   CHECK(decode_error({3, 0, 4, 0, 0, 0, 0x81, 0x04}) == ErrorCode::bad_value);                 // radius 513
+  CHECK(decode_error({4, 0, 4, 0x81, 0x04, 0, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);     // radius 513
+  CHECK(decode_error({4, 0, 4, 0, 0, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);              // radius 0
+  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0, 0, 0}) == ErrorCode::bad_value);           // the same point
+  CHECK(decode_error({4, 0, 4, 1, 0xff, 0x01, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);  // 257 points
+  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0x82, 0x10, 0, 0}) == ErrorCode::bad_value);  // step 1,025
+  CHECK(decode_error({4, 0, 4, 1, 1, 0, 0, 0, 2, 0, 0}) == ErrorCode::truncated);           // a point short
   // Every field in range, yet the box ends beyond the world.
   CHECK(decode_error({2, 0, 4, 0xfe, 0xff, 0xff, 0xff, 0x03, 0, 0, 1, 0, 0}) == ErrorCode::bad_value);
 }
@@ -169,9 +203,27 @@ TEST_CASE("flipped record bytes are rejected or mean exactly their own bytes, an
   CHECK(survivors > 0);
 }
 
-TEST_CASE("descriptors of these kinds have at most 64 bytes, wherever they lie", "[edits]") {
+TEST_CASE("the longest stroke fits its bound, which is its kind's", "[edits]") {
+  FillStroke stroke{{{-kWorldLimit + 512, kWorldLimit - 513 - 1024, -kWorldLimit + 512}}, 512};
+  while (stroke.points.size() < kStrokePointsMax) {
+    const VoxelPos& last = stroke.points.back();
+    const std::int32_t up = stroke.points.size() % 2 == 0 ? -1024 : 1024;
+    stroke.points.push_back({last.x + 1024, last.y + up, last.z + 1024});
+  }
+  Bytes bytes = encode({stroke, {MaskKind::only_material, 65535}, 65535});
+  CHECK(bytes.size() == 1557);
+  const auto back = decode_descriptor(bytes);
+  REQUIRE(back.has_value());
+  CHECK(std::get<FillStroke>(back->shape) == stroke);
+  bytes.resize(descriptor_bytes_max(EditKind::fill_stroke), 0);
+  CHECK(decode_error(bytes) == ErrorCode::trailing_bytes);
+  bytes.push_back(0);
+  CHECK(decode_error(bytes) == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("descriptors of the small kinds have at most 64 bytes, wherever they lie", "[edits]") {
   Bytes bytes = encode(kVoxel);
-  bytes.resize(kDescriptorBytesMax, 0);
+  bytes.resize(descriptor_bytes_max(EditKind::set_voxel), 0);
   CHECK(decode_error(bytes) == ErrorCode::trailing_bytes);
   bytes.push_back(0);
   CHECK(decode_error(bytes) == ErrorCode::limit_exceeded);

@@ -29,12 +29,39 @@ TEST_CASE("bounding boxes hold the geometry tightly", "[edits]") {
 }
 
 TEST_CASE("small geometries have the voxel counts one can count by hand", "[edits]") {
-  CHECK(voxel_count(voxel({5, 5, 5})) == 1);
-  CHECK(voxel_count(box({0, 0, 0}, {2, 3, 4})) == 24);
-  CHECK(voxel_count(box({0, 0, 0}, {4096, 4096, 4096})) == 1ULL << 36);
-  CHECK(voxel_count(sphere({0, 0, 0}, 0)) == 1);
-  CHECK(voxel_count(sphere({0, 0, 0}, 1)) ==
+  CHECK(counted_voxels(voxel({5, 5, 5})) == 1);
+  CHECK(counted_voxels(box({0, 0, 0}, {2, 3, 4})) == 24);
+  CHECK(counted_voxels(box({0, 0, 0}, {4096, 4096, 4096})) == 1ULL << 36);
+  CHECK(counted_voxels(sphere({0, 0, 0}, 0)) == 1);
+  CHECK(counted_voxels(sphere({0, 0, 0}, 1)) ==
         19);  // centre, 6 faces, 12 edges; the 8 corners are at 3 > 1 + 1
+}
+
+TEST_CASE("a stroke is the spheres along its line", "[edits]") {
+  const auto stroke = [](std::vector<VoxelPos> points, std::uint16_t radius) {
+    return EditDescriptor{FillStroke{std::move(points), radius}, {}, 1};
+  };
+  CHECK(bounding_box(stroke({{0, 9, 0}, {5, 2, -7}, {1, 1, 1}}, 2)) == VoxelBox{{-2, -1, -9}, {8, 12, 4}});
+  // Along x with radius 1: a bar of 3 x 3, and at each end the face of a sphere, which is a plus.
+  const EditDescriptor bar = stroke({{2, 3, 3}, {5, 3, 3}}, 1);
+  Spans middle;
+  for (const IndexSpan& span : spans_of(bar)) {
+    if (span.first >= 3 * 64 && span.last <= 4 * 64) middle.push_back(span);
+  }
+  CHECK(middle == Spans{{17 + 192, 23 + 192}, {25 + 192, 31 + 192}, {33 + 192, 39 + 192}});
+  CHECK(touches(bar, {{1, 3, 3}, {2, 4, 4}}));
+  CHECK(touches(bar, {{1, 2, 3}, {2, 3, 4}}));        // 1 + 1 <= 1 + 1
+  CHECK_FALSE(touches(bar, {{1, 2, 2}, {2, 3, 3}}));  // 3 > 1 + 1
+  CHECK(touches(bar, {{2, 2, 2}, {3, 3, 3}}));        // beside the end, not before it
+  CHECK_FALSE(touches(bar, {{0, 0, 0}, {8, 2, 8}}));
+  CHECK(counted_voxels(bar) == 6 * 9);  // as its box
+  CHECK(counted_voxels(stroke({{0, 0, 0}, {9, 9, 9}}, 1)) == 2 * 9 * (9 + 3));
+  CHECK(counted_voxels(stroke({{0, 0, 0}, {9, 9, 9}, {0, 0, 0}}, 1)) == 2 * 2 * 9 * (9 + 3));
+  // A bend in a corner chunk of the bounding box, which none of the two segments reaches.
+  const EditDescriptor bend = stroke({{8, 8, 8}, {40, 8, 8}, {40, 40, 8}}, 3);
+  CHECK(touched_chunks(bend, 16) ==
+        std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}});
+  CHECK(touched_chunks_bound(bend, 16) == 6);
 }
 
 TEST_CASE("a sphere touches a box when its nearest voxel does", "[edits]") {

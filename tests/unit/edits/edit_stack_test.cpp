@@ -221,6 +221,25 @@ TEST_CASE("a chunk at a world position takes edits in world coordinates", "[edit
   CHECK(digest == digest_of(chunk));
 }
 
+TEST_CASE("to replace a material in a box is a box with a mask", "[edits]") {
+  // No kind of its own: A becomes B inside the box and nowhere else; C and empty voxels stay.
+  const EditDescriptor replace = {FillBox{{{2, 0, 0}, {6, 1, 1}}}, {MaskKind::only_material, A}, B};
+  CHECK(apply({{3, A}, {4, C}, {5, _}, {8, A}, {512, _}}, {replace}).runs ==
+        Runs{{2, A}, {3, B}, {4, C}, {5, _}, {6, B}, {8, A}, {512, _}});
+}
+
+TEST_CASE("a stroke meets the mask once, also where its segments overlap", "[edits]") {
+  // Along the line and back: A becomes B, and what became B is not asked again.
+  const FillStroke there_and_back{{{-2, 0, 0}, {9, 0, 0}, {-2, 0, 0}}, 1};
+  const Runs start = {{8, A}, {512, _}};
+  const Applied swapped = apply(start, {{there_and_back, {MaskKind::only_material, A}, B}});
+  CHECK(swapped.runs == Runs{{8, B}, {512, _}});
+  CHECK(swapped.result.voxels_changed == 8);
+  // Only empty voxels: the two lines and the layer beside the first one.
+  const Applied filled = apply(start, {{there_and_back, {MaskKind::only_empty, _}, C}});
+  CHECK(filled.runs == Runs{{8, A}, {16, C}, {64, _}, {80, C}, {512, _}});
+}
+
 TEST_CASE("a reused result forgets the call before", "[edits]") {
   ApplyScratch scratch;
   ApplyResult result;

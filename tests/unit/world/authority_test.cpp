@@ -138,6 +138,15 @@ TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
   CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);              // volume
   CHECK(reason({FillBox{{{0, 0, 0}, {4096, 1, 4096}}}, {}, 1}) == RejectReason::too_large);  // chunks
   CHECK(reason({FillBox{{{0, 0, 0}, {0, 1, 1}}}, {}, 1}) == RejectReason::bad_edit);         // empty
+  const auto stroke = [&](std::int32_t length, std::uint16_t radius) {
+    return reason({FillStroke{{{0, 0, 0}, {length, 0, 0}}, radius}, {}, 1});
+  };
+  CHECK_FALSE(stroke(1024, 2).has_value());           // counts 1,029 layers of 5 x 5
+  CHECK(stroke(1024, 3) == RejectReason::too_large);  // 1,031 of 7 x 7
+  CHECK(stroke(0, 2) == RejectReason::bad_edit);      // one point twice
+  CHECK(stroke(1025, 2) == RejectReason::bad_edit);
+  CHECK(reason({FillStroke{{{0, 0, 0}, {1024, 1024, 1024}}, 1}, {}, 1}) ==
+        RejectReason::too_large);  // chunks
   CHECK(reason({SetVoxel{{kWorldLimit, 0, 0}}, {}, 1}) == RejectReason::bad_edit);
   CHECK(reason({SetVoxel{{0, 0, 0}}, {}, 8}) == RejectReason::unknown_material);
   CHECK(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 8}, 1}) == RejectReason::unknown_material);
@@ -154,6 +163,8 @@ TEST_CASE("an edit that reaches above or below the world is refused whole", "[wo
   CHECK(reason(SetVoxel{{0, -9, 0}}) == RejectReason::outside_world);
   CHECK_FALSE(reason(FillBox{{{0, -8, 0}, {1, 8, 1}}}).has_value());
   CHECK(reason(FillBox{{{0, 0, 0}, {1, 9, 1}}}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillStroke{{{0, -6, 0}, {9, 5, 0}}, 2}).has_value());
+  CHECK(reason(FillStroke{{{0, -6, 0}, {9, 6, 0}}, 2}) == RejectReason::outside_world);
   CHECK_FALSE(reason(FillSphere{{0, 2, 0}, 5}).has_value());
   CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
 }
@@ -188,8 +199,9 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
   SplitMix64 rng(Catch::rngSeed());
   for (ClientSequence seq = 1; seq <= 60; ++seq) {
     const VoxelPos at{rng.between(0, 15), rng.between(0, 15), rng.between(0, 15)};
-    const EditOffer edit = offer(seq, FillSphere{at, static_cast<std::uint16_t>(rng.below(5))},
-                                 static_cast<Material>(rng.below(8)));
+    EditShape shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(5))};
+    if (seq % 3 == 0) shape = FillStroke{{at, {15 - at.x, at.y, at.z}, {at.x, 15 - at.y, 20}}, 1};
+    const EditOffer edit = offer(seq, shape, static_cast<Material>(rng.below(8)));
     (void)authority.submit(edit, true);
     (void)resident.submit(edit, true);
     if (rng.below(3) == 0) {
