@@ -21,8 +21,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "common/core/assert.hpp"
-
 namespace runstone {
 
 /// Whole numbers first .. last, both included; empty if last < first.
