@@ -2,6 +2,7 @@
 // the same quads in the same order.
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/support/mesh_scene.hpp"
@@ -10,6 +11,15 @@
 namespace runstone::test {
 namespace {
 
+struct Trial {
+  MeshScene scene;
+  const VisibilityTable* visibility;
+  ChunkMesh plain;
+  void mesh(RdmScratch& scratch, ChunkMesh& out) const {
+    mesh_rdm(scene.chunk, scene.pointers(), *visibility, scratch, out);
+  }
+};
+
 void require_equal(const QuadLayers& a, const QuadLayers& b) {
   REQUIRE(a.quads == b.quads);
   REQUIRE(a.first == b.first);
@@ -17,29 +27,42 @@ void require_equal(const QuadLayers& a, const QuadLayers& b) {
 
 TEST_CASE("every instruction set gives the quads of the plain path", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 7);
-  std::vector<MeshScene> scenes;
-  for (int i = 0; i < 400; ++i) scenes.push_back(random_scene(rng, i % 20 == 0 ? 64 : 20));
+  std::vector<Trial> trials;
+  for (int i = 0; i < 400; ++i) {
+    const unsigned side_max = i % 20 == 0 ? 64 : i % 20 == 10 ? 128 : 20;
+    trials.push_back({random_scene(rng, side_max), &mesh_visibility(), {}});
+  }
+  for (const Extent extent : {Extent{12, 9, 11}, Extent{64, 8, 33}, Extent{65, 9, 12}, Extent{8, 128, 10}}) {
+    for (int i = 0; i < 5; ++i) {
+      trials.push_back({scene_of_many_materials(rng, extent), &many_visibility(), {}});
+    }
+  }
   RdmScratch plain_scratch;
   plain_scratch.use_plain_path(true);
-  std::vector<ChunkMesh> plain(scenes.size());
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    mesh_rdm(scenes[i].chunk, scenes[i].pointers(), mesh_visibility(), plain_scratch, plain[i]);
-  }
+  for (Trial& trial : trials) trial.mesh(plain_scratch, trial.plain);
   const auto targets = hwy::SupportedAndGeneratedTargets();
   REQUIRE_FALSE(targets.empty());
   RdmScratch scratch;
   ChunkMesh mesh;
   for (const auto target : targets) {
     hwy::SetSupportedTargetsForTest(target);
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-      mesh_rdm(scenes[i].chunk, scenes[i].pointers(), mesh_visibility(), scratch, mesh);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      trials[i].mesh(scratch, mesh);
       CAPTURE(Catch::rngSeed(), hwy::TargetName(target), i);
-      require_equal(mesh.opaque, plain[i].opaque);
-      require_equal(mesh.transparent, plain[i].transparent);
+      require_equal(mesh.opaque, trials[i].plain.opaque);
+      require_equal(mesh.transparent, trials[i].plain.transparent);
     }
   }
   hwy::SetSupportedTargetsForTest(0);
 }
+
+#if HWY_ARCH_X86_64
+TEST_CASE("every build runs vector code, those with sanitizers too", "[mesh][property]") {
+  const auto targets = hwy::SupportedAndGeneratedTargets();
+  CHECK(std::any_of(targets.begin(), targets.end(),
+                    [](auto target) { return target != HWY_SCALAR && target != HWY_EMU128; }));
+}
+#endif
 
 }  // namespace
 }  // namespace runstone::test
