@@ -2,8 +2,8 @@
 // scene and some edits:
 //   3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128), 1 byte axis order, 1 byte
 //   mask of neighbours (bit 6: every run of stone becomes a material of its own),
-//   then per chunk (the chunk itself first) a byte of axis order (neighbours only) and (length, material)
-//   byte pairs until it is full; when the bytes run out, the rest of a chunk is empty;
+//   then per chunk (the chunk itself first) a byte of axis order and depth (neighbours only) and (length,
+//   material) byte pairs until it is full; when the bytes run out, the rest of a chunk is empty;
 //   then kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one voxel),
 //   material. When the bytes run out, the edits are drawn from a generator that the whole input seeds, so
 //   that every scene is edited.
@@ -69,6 +69,15 @@ Extent read_extent(Input& in) {
 
 AxisOrder read_order(Input& in) { return kAxisOrders[in.next() % kAxisOrderCount]; }
 
+/// A neighbour's extent: along its direction as deep as the chunk, or deeper, or flatter. `code`: 0 .. 42.
+Extent extent_beyond(Extent extent, Axis axis, unsigned code) {
+  constexpr std::array<std::uint8_t, 3> kDeep = {64, 65, 128};
+  if (code == 0) return extent;
+  const auto depth = code < 40 ? static_cast<std::uint8_t>(kSideMin + code - 1) : kDeep.at(code - 40);
+  (axis == Axis::x ? extent.x : axis == Axis::y ? extent.y : extent.z) = depth;
+  return extent;
+}
+
 /// `stone`: the material that the next run of stone gets, where each gets one of its own; else none.
 RunChunk read_chunk(Input& in, Extent extent, AxisOrder order, std::optional<Material>& stone) {
   RunBuilder builder(extent, order);
@@ -93,15 +102,16 @@ test::MeshScene read_scene(Input& in) {
   test::MeshScene scene{read_chunk(in, extent, order, stone), {}};
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     if ((mask >> d & 1) == 0) continue;
-    const AxisOrder theirs = read_order(in);
-    scene.neighbours[d] = read_chunk(in, extent, theirs, stone);
+    const std::uint8_t form = in.next();
+    const Extent theirs = extent_beyond(extent, axis_of(static_cast<Direction>(d)), form / kAxisOrderCount);
+    scene.neighbours[d] = read_chunk(in, theirs, kAxisOrders[form % kAxisOrderCount], stone);
   }
   return scene;
 }
 
 DirtyLayers read_edit(Input& in, RunChunk& chunk) {
-  const std::uint32_t high = in.next_or_drawn();
-  const std::uint32_t first = (high << 8 | in.next_or_drawn()) * chunk.volume() >> 16;
+  const std::uint64_t high = in.next_or_drawn();
+  const auto first = static_cast<std::uint32_t>((high << 8 | in.next_or_drawn()) * chunk.volume() >> 16);
   const std::uint32_t byte = in.next_or_drawn();
   const std::uint32_t length = byte < 128 ? 1 : byte - 126;
   const auto material = static_cast<Material>(in.next_or_drawn() % (test::kMeshMaterialCount + 1));
@@ -149,8 +159,10 @@ class Trial {
       kept_[d].read(*scene.neighbours[d], test::mesh_visibility());
       borders[d] = &kept_[d];
     }
-    mesh_rdm(scene.chunk, scene.pointers(), borders, test::mesh_visibility(), scratch_, other_);
+    mesh_rdm(scene.chunk, scene.pointers(), borders, test::mesh_visibility(), scratch_, other_, &own_);
     demand(equal(mesh_, other_), "kept borders give other quads");
+    read_.read(scene.chunk, test::mesh_visibility());
+    demand(test::equal_borders(scene.chunk, own_, read_), "a mesh makes other borders than its chunk has");
   }
 
   /// Edits a scene that was meshed; dirty layers give the mesh that all of it does.
@@ -175,6 +187,7 @@ class Trial {
   RdmScratch scratch_, plain_;
   ChunkMesh mesh_, other_;
   std::array<ChunkBorders, kDirectionCount> kept_;
+  ChunkBorders own_, read_;
 };
 
 }  // namespace
