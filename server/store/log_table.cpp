@@ -126,6 +126,19 @@ StoreResult<void> LogTable::insert(const EditRecord& record) {
       .run();
 }
 
+StoreResult<sql::Statement> LogTable::reader() { return database_->prepare(kSelect); }
+
+StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq) {
+  const sql::ResetAtEnd reset_at_end(reader);
+  const auto there =
+      reader.bind(1, static_cast<std::int64_t>(seq)).bind(2, static_cast<std::int64_t>(seq)).step();
+  if (!there) return Unexpected<StoreError>{there.error()};
+  if (!*there) return corrupt(seq, "is missing");
+  const auto record = record_of(reader);
+  if (!record) return corrupt(seq, "checksum is wrong");
+  return *record;
+}
+
 StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence last_wanted,
                                  const std::function<bool(const EditRecord&)>& each) {
   const Sequence until = std::min(last_wanted, range.last.version.seq);

@@ -23,6 +23,11 @@ class LogTable {
   StoreResult<void> read(const LogRange& range, Sequence first, Sequence last,
                          const std::function<bool(const EditRecord&)>& each);
 
+  /// A statement for read_one(), which may be used for many records.
+  StoreResult<sql::Statement> reader();
+  /// Record `seq`, verified as in read().
+  StoreResult<EditRecord> read_one(sql::Statement& reader, Sequence seq);
+
  private:
   LogTable(sql::Database& database, sql::Statement first, sql::Statement last, sql::Statement insert)
       : database_(&database), first_(std::move(first)), last_(std::move(last)), insert_(std::move(insert)) {}

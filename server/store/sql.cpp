@@ -95,6 +95,8 @@ StoreResult<void> Statement::run() {
   }
 }
 
+void Statement::rewind() { sqlite3_reset(handle_.get()); }
+
 void Statement::reset() {
   sqlite3_reset(handle_.get());
   sqlite3_clear_bindings(handle_.get());

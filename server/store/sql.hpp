@@ -34,6 +34,8 @@ class Statement {
   StoreResult<bool> step();
   /// For statements that give no rows: steps to the end and resets.
   StoreResult<void> run();
+  /// Ready to be stepped again with what is bound, or with some of it bound anew. Views of columns die.
+  void rewind();
   /// Ready to be bound and stepped again. Views of columns die.
   void reset();
 

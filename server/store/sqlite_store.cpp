@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "server/store/log_search.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -17,6 +18,7 @@ SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, WriterLock loc
       meta_table_(std::move(meta_table)),
       player_table_(std::move(player_table)),
       log_(std::move(log_table)),
+      segments_(*database_),
       base_(std::move(base)),
       snapshots_(std::move(snapshots)),
       access_(access) {}
@@ -33,7 +35,10 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
   }
   auto transaction = sql::Transaction::begin(*database_);
   if (!transaction) return Unexpected<StoreError>{transaction.error()};
-  if (auto done = body(); !done) return done;
+  if (auto done = body(); !done) {
+    segments_.forget();
+    return done;
+  }
   auto committed = transaction->commit();
   broken_ = !committed.has_value();
   return committed;
@@ -147,6 +152,7 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
   std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
   for (const EditRecord& record : records) {
     if (auto inserted = log_.insert(record); !inserted) return inserted;
+    if (auto added = segments_.add(record); !added) return added;
     const auto [author, instance, seq] = record.op;
     HighWater& mark =
         marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us}).first->second;
@@ -156,7 +162,7 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
   for (const auto& [client, mark] : marks) {
     if (auto raised = player_table_.raise(mark); !raised) return raised;
   }
-  return {};
+  return segments_.flush();
 }
 
 StoreResult<void> SqliteStore::save_chunks(ChunkTable& table,
@@ -217,6 +223,49 @@ StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last,
   const auto range = log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
   return log_.read(*range, first, last, each);
+}
+
+StoreResult<void> SqliteStore::query_log(const LogQuery& query,
+                                         const std::function<bool(const EditRecord&)>& each) {
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto version = database_->integer("PRAGMA user_version");
+    if (!version) return Unexpected<StoreError>{version.error()};
+    if (*version < kIndexedFormat)
+      return refuse("edit_log", "has no indexes until it was opened for writing");
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    const auto range = log_.range(*head);
+    if (!range) return Unexpected<StoreError>{range.error()};
+    auto reader = log_.reader();
+    if (!reader) return Unexpected<StoreError>{reader.error()};
+    StoreResult<void> read;
+    auto searched = LogSearch(*database_, segments_, *range).run(query, [&](Sequence seq) {
+      const auto record = log_.read_one(*reader, seq);
+      if (!record) read = Unexpected<StoreError>{record.error()};
+      return record.has_value() && each(*record);
+    });
+    return read ? searched : read;
+  });
+}
+
+StoreResult<void> SqliteStore::upgrade() {
+  const auto version = database_->integer("PRAGMA user_version");
+  if (!version) return Unexpected<StoreError>{version.error()};
+  if (*version >= kIndexedFormat) return {};
+  const auto upgraded = write([&]() -> StoreResult<void> {
+    if (auto made = create_indexes(*database_); !made) return made;
+    StoreResult<void> added;
+    auto read = read_log(1, kSequenceMax, [&](const EditRecord& record) {
+      added = segments_.add(record);
+      return added.has_value();
+    });
+    if (!read) return read;
+    if (!added) return added;
+    return segments_.flush();
+  });
+  if (!upgraded) return upgraded;
+  // The mark must stand in the main file, where check_marks() of older programs looks.
+  return database_->run("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::keys_of(ChunkTable& table) {

@@ -8,6 +8,7 @@
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
+#include "server/store/segment_table.hpp"
 #include "server/store/sql.hpp"
 #include "server/store/store.hpp"
 #include "server/store/writer_lock.hpp"
@@ -52,6 +53,8 @@ class SqliteStore final : public Store {
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
   StoreResult<void> read_log(Sequence first, Sequence last,
                              const std::function<bool(const EditRecord&)>& each) override;
+  StoreResult<void> query_log(const LogQuery& query,
+                              const std::function<bool(const EditRecord&)>& each) override;
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
   StoreResult<void> check() override;
 
@@ -73,6 +76,9 @@ class SqliteStore final : public Store {
   StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records);
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
+  StoreResult<void> check_segments_cover_log();
+  /// A world of format 1 gets its indexes and becomes one of format 2, in one transaction.
+  StoreResult<void> upgrade();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
   // Order matters: statements die before their database, and the database is closed before the lock is let
@@ -82,6 +88,7 @@ class SqliteStore final : public Store {
   MetaTable meta_table_;
   PlayerTable player_table_;
   LogTable log_;
+  SegmentTable segments_;
   ChunkTable base_, snapshots_;
   StoreAccess access_;
   WorldMeta meta_;

@@ -157,6 +157,9 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
                       *std::move(players), *std::move(log), *std::move(base), *std::move(snapshots)));
   store->meta_ = *std::move(meta);
   store->epoch_ = static_cast<Epoch>(*epoch);
+  if (access == StoreAccess::read_write) {
+    if (const auto upgraded = store->upgrade(); !upgraded) return Unexpected<StoreError>{upgraded.error()};
+  }
   return store;
 }
 

@@ -26,10 +26,11 @@
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/players/player_rows.hpp"
+#include "server/store/log_query.hpp"
 
 namespace runstone {
 
-inline constexpr std::uint32_t kStoreFormatVersion = 1;
+inline constexpr std::uint32_t kStoreFormatVersion = 2;
 
 struct StoreError {
   enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked };
@@ -119,6 +120,10 @@ class Store {
   /// Each record's checksum is verified and the sequence checked to be without gaps.
   virtual StoreResult<void> read_log(Sequence first, Sequence last,
                                      const std::function<bool(const EditRecord&)>& each) = 0;
+  /// Calls `each` for the records that answer the query, in order; stops early when it returns false. Fails
+  /// (bad_request) in a world of format 1 that is open for reading only: it has no indexes yet.
+  virtual StoreResult<void> query_log(const LogQuery& query,
+                                      const std::function<bool(const EditRecord&)>& each) = 0;
   /// Keys and versions of all snapshots, ascending.
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() = 0;
 

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "common/edits/edit_geometry.hpp"
 #include "server/store/sqlite_store.hpp"
+#include "server/store/world_schema.hpp"
 
 namespace runstone {
 
@@ -55,6 +57,33 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
        "is behind the log, which holds client edit " + std::to_string(uncovered->seq)}};
 }
 
+StoreResult<void> SqliteStore::check_segments_cover_log() {
+  const auto version = database_->integer("PRAGMA user_version");
+  if (!version) return Unexpected<StoreError>{version.error()};
+  if (*version < kIndexedFormat) return {};
+  // Before the segments: a server that runs meanwhile moves both on.
+  const auto range = log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  const auto segments = segments_.find(std::nullopt, std::nullopt, 1, kSequenceMax);
+  if (!segments) return Unexpected<StoreError>{segments.error()};
+  std::map<AuthorId, const LogSegment*> open;
+  auto next = segments->begin();
+  Sequence uncovered = 0;
+  auto read = read_log(range->first, range->last.version.seq, [&](const EditRecord& record) {
+    const Sequence seq = record.version.seq;
+    for (; next != segments->end() && next->first <= seq; ++next) open[next->author] = &*next;
+    const auto found = open.find(record.op.author);
+    const VoxelBox box = bounding_box(record.edit);
+    if (found == open.end() || found->second->last < seq || intersect(found->second->box, box) != box) {
+      uncovered = seq;
+    }
+    return uncovered == 0;
+  });
+  if (!read || uncovered == 0) return read;
+  return Unexpected<StoreError>{
+      {StoreError::Kind::corrupt, file(), "log_box", "lacks edit_log seq=" + std::to_string(uncovered)}};
+}
+
 StoreResult<void> SqliteStore::check() {
   const auto verdict = database_->text("PRAGMA integrity_check(1)");
   if (!verdict) return Unexpected<StoreError>{verdict.error()};
@@ -64,6 +93,7 @@ StoreResult<void> SqliteStore::check() {
   if (const auto rows = player_table_.players(); !rows) return Unexpected<StoreError>{rows.error()};
   if (const auto seq = checkpoint(); !seq) return Unexpected<StoreError>{seq.error()};
   if (auto marks = check_marks_cover_log(); !marks) return marks;
+  if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
   return check_chunks(snapshots_);
 }

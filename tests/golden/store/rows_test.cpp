@@ -1,4 +1,4 @@
-// The bytes of world format 1: columns, row checksums and marks. A change here means a new
+// The bytes of world format 2: columns, row checksums and marks. A change here means a new
 // kStoreFormatVersion and a way to open the old one.
 #include <catch2/catch.hpp>
 #include <string>
@@ -46,15 +46,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 1 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 2 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "1");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "2");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 2", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -72,16 +72,27 @@ TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
   CHECK(columns(file, "player_instance") ==
         "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
+  CHECK(
+      raw_sql(file,
+              "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
+              "ORDER BY name)") ==
+      "base edit_log log_box log_box_node log_box_parent log_box_rowid meta player player_instance snapshot");
   CHECK(raw_sql(file,
-                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
-                "ORDER BY name)") == "base edit_log meta player player_instance snapshot");
+                "SELECT group_concat(name || ' ' || sql, '; ') FROM (SELECT name, sql FROM sqlite_master "
+                "WHERE type = 'index' AND sql IS NOT NULL ORDER BY name)") ==
+        "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); edit_log_cause CREATE INDEX "
+        "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0");
+  CHECK(raw_sql(
+            file,
+            "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || min_y || ' ' || "
+            "min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z FROM log_box") == "1 2 1 -4 5 6 7 8 9");
   CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
         "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version log_head "
         "materials "
         "seed server_key_seed snapshot_fold spawn world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 2", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {
@@ -116,7 +127,7 @@ TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") == "0100000000000000D2455B47B79BD394");
 }
 
-TEST_CASE("the head of a compacted log has the bytes of format 1", "[store][golden]") {
+TEST_CASE("the head of a compacted log has the bytes of format 2", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   compact_by_hand(file, {{1, 2}, 1'700'000'000'000'001}, {});

@@ -65,6 +65,9 @@ class FakeStore final : public Store {
   StoreResult<void> read_log(Sequence, Sequence, const std::function<bool(const EditRecord&)>&) override {
     return {};
   }
+  StoreResult<void> query_log(const LogQuery&, const std::function<bool(const EditRecord&)>&) override {
+    return {};
+  }
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {
     return std::vector<std::pair<ChunkKey, Version>>();
   }

@@ -1,0 +1,120 @@
+#include "server/store/log_search.hpp"
+
+#include <algorithm>
+
+namespace runstone {
+
+StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
+  if (!time_) {
+    auto prepared = database_.prepare("SELECT time_us FROM edit_log WHERE log = 0 AND seq = ?1");
+    if (!prepared) return Unexpected<StoreError>{prepared.error()};
+    time_ = *std::move(prepared);
+  }
+  const sql::ResetAtEnd reset_at_end(*time_);
+  const auto row = time_->bind(1, static_cast<std::int64_t>(seq)).step();
+  if (!row) return Unexpected<StoreError>{row.error()};
+  if (!*row) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, database_.file(), "edit_log seq=" + std::to_string(seq), "is missing"}};
+  }
+  return time_->integer(0);
+}
+
+StoreResult<Sequence> LogSearch::first_at(TimeUs time, Sequence first, Sequence last) {
+  Sequence end = last + 1;
+  while (first < end) {
+    const Sequence middle = first + (end - first) / 2;
+    const auto there = time_of(middle);
+    if (!there) return Unexpected<StoreError>{there.error()};
+    if (*there < time) {
+      first = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return first;
+}
+
+StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query, std::optional<AuthorId> author) const {
+  // Named, because the planner has no statistics and the wrong index reads the whole log.
+  std::string text = "SELECT seq FROM edit_log";
+  const bool by_cause = !author && query.cause && *query.cause != Cause::player;
+  text += author ? " INDEXED BY edit_log_author" : by_cause ? " INDEXED BY edit_log_cause" : " NOT INDEXED";
+  text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
+  if (author) text += " AND author = ?3";
+  if (query.cause) text += " AND cause = ?4";
+  if (by_cause) text += " AND cause <> 0";  // what the partial index asks for
+  if (query.box) {
+    text += " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > ?10";
+  }
+  auto rows = database_.prepare(text + " ORDER BY seq");
+  if (!rows) return rows;
+  if (author) rows->bind(3, std::int64_t{*author});
+  if (query.cause) rows->bind(4, static_cast<std::int64_t>(*query.cause));
+  if (query.box) {
+    const VoxelBox& box = *query.box;
+    rows->bind(5, std::int64_t{box.max.x}).bind(6, std::int64_t{box.min.x});
+    rows->bind(7, std::int64_t{box.max.y}).bind(8, std::int64_t{box.min.y});
+    rows->bind(9, std::int64_t{box.max.z}).bind(10, std::int64_t{box.min.z});
+  }
+  return rows;
+}
+
+StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query, Sequence first,
+                                                          Sequence last) {
+  std::vector<Sequence> found;
+  const auto segments = segments_.find(query.box, query.author, first, last);
+  if (!segments) return Unexpected<StoreError>{segments.error()};
+  // Any author stands for the one that each segment names.
+  auto rows = matching(query, query.author.value_or(0));
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  for (const LogSegment& segment : *segments) {
+    rows->rewind();
+    rows->bind(1, static_cast<std::int64_t>(std::max(first, segment.first)))
+        .bind(2, static_cast<std::int64_t>(std::min(last, segment.last)))
+        .bind(3, std::int64_t{segment.author});
+    for (;;) {
+      const auto more = rows->step();
+      if (!more) return Unexpected<StoreError>{more.error()};
+      if (!*more) break;
+      found.push_back(static_cast<Sequence>(rows->integer(0)));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool(Sequence)>& each) {
+  Sequence first = std::max(query.first, range_.first);
+  Sequence last = std::min(query.last, range_.last.version.seq);
+  if (first > last || query.from_us > query.until_us) return {};
+  if (query.from_us != std::numeric_limits<TimeUs>::min()) {
+    const auto from = first_at(query.from_us, first, last);
+    if (!from) return Unexpected<StoreError>{from.error()};
+    first = *from;
+  }
+  if (query.until_us != std::numeric_limits<TimeUs>::max()) {
+    const auto behind = first_at(query.until_us + 1, first, last);
+    if (!behind) return Unexpected<StoreError>{behind.error()};
+    last = *behind - 1;
+  }
+  if (first > last) return {};
+  if (query.box) {
+    const auto found = in_segments(query, first, last);
+    if (!found) return Unexpected<StoreError>{found.error()};
+    for (const Sequence seq : *found) {
+      if (!each(seq)) break;
+    }
+    return {};
+  }
+  auto rows = matching(query, query.author);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  rows->bind(1, static_cast<std::int64_t>(first)).bind(2, static_cast<std::int64_t>(last));
+  for (;;) {
+    const auto more = rows->step();
+    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!*more || !each(static_cast<Sequence>(rows->integer(0)))) return {};
+  }
+}
+
+}  // namespace runstone

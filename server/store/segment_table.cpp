@@ -1,0 +1,112 @@
+#include "server/store/segment_table.hpp"
+
+#include <algorithm>
+
+#include "common/edits/edit_geometry.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kOpenMax = 1024;  // authors whose segment goes on; bounds memory
+
+VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
+  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
+}
+
+bool is_small(const VoxelBox& box) {
+  return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) <= kSegmentSide;
+}
+
+}  // namespace
+
+StoreResult<void> SegmentTable::add(const EditRecord& record) {
+  const VoxelBox box = bounding_box(record.edit);
+  const AuthorId author = record.op.author;
+  if (open_.size() >= kOpenMax && !open_.contains(author)) {
+    if (auto flushed = flush(); !flushed) return flushed;
+    open_.clear();
+  }
+  Open& open = open_[author];
+  if (open.edits > 0) {
+    const VoxelBox joined = join(open.segment.box, box);
+    if (open.edits < kSegmentEditsMin || (open.edits < kSegmentEditsMax && is_small(joined))) {
+      open.segment.box = joined;
+      open.segment.last = record.version.seq;
+      ++open.edits;
+      open.is_written = false;
+      return {};
+    }
+    if (auto written = write(open); !written) return written;
+  }
+  open = {{record.version.seq, record.version.seq, author, box}, 1, false};
+  return {};
+}
+
+StoreResult<void> SegmentTable::flush() {
+  for (auto& [author, open] : open_) {
+    if (auto written = write(open); !written) return written;
+  }
+  return {};
+}
+
+StoreResult<void> SegmentTable::write(Open& open) {
+  if (open.is_written) return {};
+  if (!put_) {
+    auto put = database_->prepare(
+        "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, last_seq, "
+        "author) "
+        "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+    if (!put) return Unexpected<StoreError>{put.error()};
+    put_ = *std::move(put);
+  }
+  const LogSegment& segment = open.segment;
+  open.is_written = true;
+  return put_->bind(1, static_cast<std::int64_t>(segment.first))
+      .bind(2, std::int64_t{segment.box.min.x})
+      .bind(3, std::int64_t{segment.box.max.x})
+      .bind(4, std::int64_t{segment.box.min.y})
+      .bind(5, std::int64_t{segment.box.max.y})
+      .bind(6, std::int64_t{segment.box.min.z})
+      .bind(7, std::int64_t{segment.box.max.z})
+      .bind(8, static_cast<std::int64_t>(segment.last))
+      .bind(9, std::int64_t{segment.author})
+      .run();
+}
+
+StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<VoxelBox>& box,
+                                                        std::optional<AuthorId> author, Sequence first,
+                                                        Sequence last) {
+  std::string text =
+      "SELECT first_seq, last_seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM log_box WHERE "
+      "first_seq <= ?1 AND last_seq >= ?2";
+  if (author) text += " AND author = ?3";
+  if (box)
+    text += " AND min_x < ?4 AND max_x > ?5 AND min_y < ?6 AND max_y > ?7 AND min_z < ?8 AND max_z > ?9";
+  auto rows = database_->prepare(text);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  rows->bind(1, static_cast<std::int64_t>(last)).bind(2, static_cast<std::int64_t>(first));
+  if (author) rows->bind(3, std::int64_t{*author});
+  if (box) {
+    rows->bind(4, std::int64_t{box->max.x}).bind(5, std::int64_t{box->min.x});
+    rows->bind(6, std::int64_t{box->max.y}).bind(7, std::int64_t{box->min.y});
+    rows->bind(8, std::int64_t{box->max.z}).bind(9, std::int64_t{box->min.z});
+  }
+  const auto coordinate = [&](int column) { return static_cast<std::int32_t>(rows->integer(column)); };
+  std::vector<LogSegment> segments;
+  for (;;) {
+    const auto more = rows->step();
+    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!*more) break;
+    segments.push_back(
+        {static_cast<Sequence>(rows->integer(0)),
+         static_cast<Sequence>(rows->integer(1)),
+         static_cast<AuthorId>(rows->integer(2)),
+         {{coordinate(3), coordinate(4), coordinate(5)}, {coordinate(6), coordinate(7), coordinate(8)}}});
+  }
+  std::sort(segments.begin(), segments.end(),
+            [](const LogSegment& a, const LogSegment& b) { return a.first < b.first; });
+  return segments;
+}
+
+}  // namespace runstone
