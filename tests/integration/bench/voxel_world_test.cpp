@@ -69,9 +69,9 @@ TEST_CASE("edits are timed with the neighbours whose border they lie at", "[benc
   // Each edit aborts where remeshing differs from a full mesh.
   const VoxelWorld world = seeded_worlds().front();
   const EditTiming edits = measure_edits(world, volumes_of(world, 16), 100, 1);
-  CHECK(edits.edits == 200);
-  CHECK(edits.at_borders > 20);
-  CHECK(edits.at_borders < 150);
+  CHECK(edits.edits == 100);
+  CHECK(edits.at_borders > 10);
+  CHECK(edits.at_borders < 75);
   CHECK(edits.all_ns >= edits.own_ns);
   // A world of one volume has no neighbours.
   const VoxelWorld alone = bounded_world({{0, 0, 0}, {16, 16, 16}});
