@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/core/assert.hpp"
 #include "common/mesh/rdm/border_rows.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
 
@@ -80,9 +81,14 @@ template void ChunkBorders::keep(const RunChunk&,
 template <class Rows>
 void ChunkBorders::keep_side(Direction side, const Rows& rows) {
   const auto at = static_cast<std::size_t>(side);
+  RUNSTONE_ASSERT(row_count_[at] <= rows.size() && row_words_[at] * 32u <= sizeof(rows[0]) * 8);
   std::uint32_t* to = words_.data() + first_[at];
   for (std::size_t r = 0; r < row_count_[at]; ++r) {
-    for (unsigned w = 0; w < row_words_[at]; ++w) *to++ = static_cast<std::uint32_t>(rows[r] >> (32 * w));
+    auto row = rows[r];
+    for (unsigned w = 0; w < row_words_[at]; ++w) {
+      *to++ = static_cast<std::uint32_t>(row);
+      row >>= 32;
+    }
   }
 }
 

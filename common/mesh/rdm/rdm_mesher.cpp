@@ -64,7 +64,8 @@ void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side
   } else {
     for (std::size_t r = 0; r < count; ++r) {
       Row row = 0;
-      for (std::size_t w = 0; w < words; ++w) row |= Row{*from++} << (32 * w);
+      for (std::size_t w = words; w != 0; --w) row = row << 32 | from[w - 1];
+      from += words;
       out[r] = row;
     }
   }
