@@ -192,6 +192,18 @@ std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_area
   return areas;
 }
 
+std::vector<IndexSpan> oracle_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent,
+                                    AxisOrder order) {
+  std::vector<IndexSpan> spans;
+  for (std::uint32_t i = 0; i < extent.volume(); ++i) {
+    const VoxelPos p = dense_pos(extent, order, i);
+    if (!oracle_covers(edit, {origin.x + p.x, origin.y + p.y, origin.z + p.z})) continue;
+    if (spans.empty() || spans.back().last != i) spans.push_back({i, i});
+    ++spans.back().last;
+  }
+  return spans;
+}
+
 FillStroke random_stroke(SplitMix64& rng, VoxelPos at) {
   FillStroke stroke;
   stroke.radius = static_cast<std::uint16_t>(1 + rng.below(rng.below(4) == 0 ? 9 : 3));

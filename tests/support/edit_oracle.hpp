@@ -12,6 +12,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/edits/edit_descriptor.hpp"
+#include "common/edits/edit_geometry.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "tests/support/dense_chunk.hpp"
 
@@ -52,6 +53,10 @@ std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
 /// (first, before, after) of the groups of runs that differ between two run lists, by comparing all runs.
 std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
                                                                                   const RunChunk& after);
+
+/// The spans of an edit's geometry in a chunk, maximal and ascending, found voxel by voxel.
+std::vector<IndexSpan> oracle_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent,
+                                    AxisOrder order);
 
 /// A stroke of few points that starts at `at` and stays within 33 voxels of it.
 FillStroke random_stroke(SplitMix64& rng, VoxelPos at);

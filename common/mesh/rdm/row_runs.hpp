@@ -37,7 +37,8 @@ struct RowPlace {
 };
 
 /// Reads `count` rows side by side into out[0], out[1], ...: those of the layers from place.at on.
-/// O(log runs + runs between the first voxel and the last).
+/// O(length + log runs + runs between the first voxel and the last) a row; where the layers lie along the
+/// fastest axis, O(length * log runs) for all together.
 template <class Runs>
 void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, unsigned count, RowRuns* out) {
   std::uint32_t voxel = 0;
@@ -64,10 +65,9 @@ void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, u
     for (std::uint32_t i = 0; i < length; ++i) {
       const std::uint32_t first = voxel + i * step;
       for (unsigned r = 0; r < count; ++r) {
-        const std::uint32_t at = first + r * across;
         if (r == 0) {
-          cursor.jump(at);
-        } else if (cursor.end() <= at) {
+          cursor.jump(first);
+        } else if (cursor.end() <= first + r) {
           cursor.next();
         }
         out[r].append(i + 1, cursor.material());

@@ -14,6 +14,7 @@
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/raw_sql.hpp"
+#include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -184,19 +185,6 @@ std::vector<std::pair<ChunkKey, Digest>> pairs_of(const std::vector<AuditEntry>&
   std::vector<std::pair<ChunkKey, Digest>> pairs;
   for (const AuditEntry& entry : entries) pairs.emplace_back(entry.key, entry.digest);
   return pairs;
-}
-
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-
-Outcome run_program(std::vector<std::string> arguments) {
-  std::vector<const char*> argv = {"runstone-replay"};
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  std::ostringstream out, err;
-  const int code = replay_program(static_cast<int>(argv.size()), argv.data(), out, err);
-  return {code, out.str(), err.str()};
 }
 
 }  // namespace
@@ -390,7 +378,7 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
     REQUIRE(store->raise_epoch().has_value());
     REQUIRE(store->append({}, sample_records(rng, 1, 1, 80)).has_value());
   }
-  const Outcome first = run_program({"--world", world, "--verify", "--json", json});
+  const ReplayOutcome first = run_replay({"--world", world, "--verify", "--json", json});
   INFO(first.out << first.err);
   CHECK(first.code == 0);
   CHECK(first.err.empty());
@@ -401,36 +389,36 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
   REQUIRE(list.has_value());
   CHECK(list->seq == 80);
   CHECK(list->chunks.size() > 20);
-  const Outcome second = run_program({"--world", world, "--against", json, json});
+  const ReplayOutcome second = run_replay({"--world", world, "--against", json, json});
   CHECK(second.code == 0);
   CHECK(second.out.find("lists       " + std::to_string(2 * list->chunks.size()) + " chunks compared") !=
         std::string::npos);
-  CHECK(run_program({"--world", world, "--at", "40", "--json", other}).code == 0);
+  CHECK(run_replay({"--world", world, "--at", "40", "--json", other}).code == 0);
   CHECK(read_digests_json(other)->seq == 40);
-  CHECK(run_program({"--world", world, "--against", other}).code == 0);
+  CHECK(run_replay({"--world", world, "--against", other}).code == 0);
 
   DigestList wrong = *list;
   wrong.chunks[3].digest.lane[1] ^= 4;
   REQUIRE(write_digests_json(other, wrong).has_value());
-  const Outcome different = run_program({"--world", world, "--against", other});
+  const ReplayOutcome different = run_replay({"--world", world, "--against", other});
   CHECK(different.code == 1);
   CHECK(different.out.find("result      1 differences") != std::string::npos);
   CHECK(different.out.find("first       " + other + ": chunk=") != std::string::npos);
 
   wrong.world_id[0] ^= 1;
   REQUIRE(write_digests_json(other, wrong).has_value());
-  const Outcome stranger = run_program({"--world", world, "--against", other});
+  const ReplayOutcome stranger = run_replay({"--world", world, "--against", other});
   CHECK(stranger.code == 2);
   CHECK(stranger.err == "runstone-replay: " + other + ": is about another world\n");
-  CHECK(run_program({"--world", world, "--against", folder / "missing.json"}).code == 2);
-  CHECK(run_program({"--world", world, "--json", folder / "no/such/folder.json"}).code == 2);
-  CHECK(run_program({"--world", folder / "nothing"}).code == 2);
-  CHECK(run_program({}).code == 2);
-  CHECK(run_program({"--world", world, "--at", "minus one"}).code == 2);
-  CHECK(run_program({"--help"}).code == 0);
+  CHECK(run_replay({"--world", world, "--against", folder / "missing.json"}).code == 2);
+  CHECK(run_replay({"--world", world, "--json", folder / "no/such/folder.json"}).code == 2);
+  CHECK(run_replay({"--world", folder / "nothing"}).code == 2);
+  CHECK(run_replay({}).code == 2);
+  CHECK(run_replay({"--world", world, "--at", "minus one"}).code == 2);
+  CHECK(run_replay({"--help"}).code == 0);
 
   REQUIRE(raw_sql(world + "/world.sqlite", "UPDATE edit_log SET client_seq = 0 WHERE seq = 9").empty());
-  const Outcome damaged = run_program({"--world", world});
+  const ReplayOutcome damaged = run_replay({"--world", world});
   CHECK(damaged.code == 2);
   CHECK(damaged.err == "runstone-replay: " + world + "/world.sqlite: edit_log seq=9: checksum is wrong\n");
 }
@@ -477,7 +465,7 @@ TEST_CASE("a snapshot that is sound by itself but not what the log makes exits w
   const TempFolder folder;
   const std::string honest = folder / "honest", tampered = folder / "tampered";
   make_small_world(honest, [](const ChunkKey&, RunChunk&) {});
-  const Outcome equal = run_program({"--world", honest, "--verify"});
+  const ReplayOutcome equal = run_replay({"--world", honest, "--verify"});
   INFO(equal.out << equal.err);
   CHECK(equal.code == 0);
   CHECK(equal.out.find("snapshots   2 compared") != std::string::npos);
@@ -489,7 +477,7 @@ TEST_CASE("a snapshot that is sound by itself but not what the log makes exits w
     fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1, 2);  // a block that nobody placed
     stored = digest_of(voxels);
   });
-  const Outcome different = run_program({"--world", tampered, "--verify"});
+  const ReplayOutcome different = run_replay({"--world", tampered, "--verify"});
   INFO(different.out << different.err);
   CHECK(different.code == 1);
   CHECK(different.err.empty());
@@ -504,7 +492,7 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   const TempFolder folder;
   const std::string world = folder / "world", file = world + "/world.sqlite", json = folder / "out.json";
   make_small_world(world, [](const ChunkKey&, RunChunk&) {});
-  REQUIRE(run_program({"--world", world, "--verify", "--json", json}).code == 0);
+  REQUIRE(run_replay({"--world", world, "--verify", "--json", json}).code == 0);
   // The journal is part of the file afterwards, so that its bytes can be compared.
   REQUIRE(raw_sql(file,
                   "UPDATE edit_log SET descriptor = zeroblob(9) WHERE seq = 2; "
@@ -512,12 +500,12 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   const std::string damaged = bytes_of(file), report = bytes_of(json);
   REQUIRE(damaged.size() > 4096);
   for (const char* how : {"--verify", "--at=2"}) {  // found by the check, and by the replay itself
-    const Outcome outcome = run_program({"--world", world, how, "--json", json});
+    const ReplayOutcome outcome = run_replay({"--world", world, how, "--json", json});
     CHECK(outcome.code == 2);
     CHECK(outcome.out.empty());
     CHECK(outcome.err == "runstone-replay: " + file + ": edit_log seq=2: checksum is wrong\n");
   }
-  CHECK(run_program({"--world", world, "--at", "1"}).code == 0);  // what lies before it is sound
+  CHECK(run_replay({"--world", world, "--at", "1"}).code == 0);  // what lies before it is sound
   CHECK(bytes_of(file) == damaged);
   CHECK(bytes_of(json) == report);
 }
@@ -527,7 +515,7 @@ TEST_CASE("a world whose generator this program lacks is not replayed", "[store]
   WorldMeta meta = sample_meta();
   meta.generator.name = "atlantis";
   REQUIRE(create_world(folder.path(), meta).has_value());
-  const Outcome run = run_program({"--world", folder.path()});
+  const ReplayOutcome run = run_replay({"--world", folder.path()});
   CHECK(run.code == 2);
   CHECK(run.err.find("generator atlantis version 1") != std::string::npos);
 }

@@ -10,6 +10,7 @@
 #include "server/app/replay_program.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/rlog_bytes.hpp"
+#include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -18,22 +19,9 @@ using namespace runstone::test;
 
 namespace {
 
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-
-Outcome run_program(std::vector<std::string> arguments) {
-  std::vector<const char*> argv = {"runstone-replay"};
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  std::ostringstream out, err;
-  const int code = replay_program(static_cast<int>(argv.size()), argv.data(), out, err);
-  return {code, out.str(), err.str()};
-}
-
 /// The line of the table that a replay prints about the world's digest.
 std::string digest_of_world(const std::string& folder) {
-  const Outcome replay = run_program({"--world", folder, "--verify"});
+  const ReplayOutcome replay = run_replay({"--world", folder, "--verify"});
   INFO(replay.out << replay.err);
   REQUIRE(replay.code == 0);
   const std::size_t at = replay.out.find("digest ");
@@ -93,13 +81,13 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
   make_world(world, 60);
-  const Outcome written = run_program({"--world", world, "--export", file});
+  const ReplayOutcome written = run_replay({"--world", world, "--export", file});
   INFO(written.out << written.err);
   REQUIRE(written.code == 0);
   CHECK(written.out.find("edits       120, sequences 1 to 120") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(file + ".exporting"));
 
-  const Outcome made = run_program({"--world", copy, "--import", file});
+  const ReplayOutcome made = run_replay({"--world", copy, "--import", file});
   INFO(made.out << made.err);
   REQUIRE(made.code == 0);
   CHECK(made.out.find("edits       120 added, 0 known, 0 compacted") != std::string::npos);
@@ -118,11 +106,11 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   for (std::size_t i = 0; i < marks.size(); ++i) CHECK(marks[i].decided == marks_again[i].decided);
   b.reset();
 
-  const Outcome again = run_program({"--world", copy, "--import", file});
+  const ReplayOutcome again = run_replay({"--world", copy, "--import", file});
   CHECK(again.code == 0);
   CHECK(again.out.find("edits       0 added, 120 known, 0 compacted") != std::string::npos);
   const std::string second = folder / "second.rlog";
-  REQUIRE(run_program({"--world", copy, "--export", second}).code == 0);
+  REQUIRE(run_replay({"--world", copy, "--export", second}).code == 0);
   CHECK(bytes_of(second) == bytes_of(file));
 }
 
@@ -131,12 +119,12 @@ TEST_CASE("a log exported up to a sequence gives the world of that moment, and g
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
   make_world(world, 40);
-  REQUIRE(run_program({"--world", world, "--export", file, "--at", "30"}).code == 0);
-  REQUIRE(run_program({"--world", copy, "--import", file}).code == 0);
+  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "30"}).code == 0);
+  REQUIRE(run_replay({"--world", copy, "--import", file}).code == 0);
   CHECK(log_of(copy).size() == 30);
   CHECK(opened(copy)->epoch() == 1);
-  REQUIRE(run_program({"--world", world, "--export", file}).code == 0);
-  const Outcome rest = run_program({"--world", copy, "--import", file});
+  REQUIRE(run_replay({"--world", world, "--export", file}).code == 0);
+  const ReplayOutcome rest = run_replay({"--world", copy, "--import", file});
   CHECK(rest.out.find("edits       50 added, 30 known") != std::string::npos);
   CHECK(digest_of_world(copy) == digest_of_world(world));
 }
@@ -175,7 +163,7 @@ TEST_CASE("an imported log stops at the first bad block: named, and what stands 
     Bytes bytes = sound;
     damage.make(bytes);
     write_bytes(torn, bytes);
-    const Outcome imported = run_program({"--world", copy, "--import", torn});
+    const ReplayOutcome imported = run_replay({"--world", copy, "--import", torn});
     CAPTURE(i, imported.out);
     CHECK(imported.code == 2);
     CHECK(imported.err == "runstone-replay: " + torn + ": edit " + std::to_string(damage.edits + 1) +
@@ -184,7 +172,7 @@ TEST_CASE("an imported log stops at the first bad block: named, and what stands 
     CHECK(stands ==
           std::vector<EditRecord>(log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
     // The sound file mends it.
-    CHECK(run_program({"--world", copy, "--import", file}).code == 0);
+    CHECK(run_replay({"--world", copy, "--import", file}).code == 0);
     CHECK(log_of(copy) == log);
   }
 }
@@ -196,7 +184,7 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   export_small_blocks(world, file);
   const auto refused = [&](const std::string& into) {
     const auto before = log_of(into);
-    const Outcome imported = run_program({"--world", into, "--import", file});
+    const ReplayOutcome imported = run_replay({"--world", into, "--import", file});
     CHECK(imported.code == 2);
     CHECK(log_of(into) == before);
     return imported.err;
@@ -206,8 +194,8 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   REQUIRE(create_world(folder / "other", other).has_value());
   CHECK(refused(folder / "other").find("is of another world") != std::string::npos);
 
-  REQUIRE(run_program({"--world", world, "--export", file, "--at", "25"}).code == 0);
-  REQUIRE(run_program({"--world", folder / "fork", "--import", file}).code == 0);
+  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "25"}).code == 0);
+  REQUIRE(run_replay({"--world", folder / "fork", "--import", file}).code == 0);
   {
     auto fork = opened(folder / "fork", StoreAccess::read_write);
     REQUIRE(fork->raise_epoch().has_value());
@@ -218,7 +206,7 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   CHECK(refused(folder / "fork").find("edit 26 is another one than in") != std::string::npos);
 
   auto writer = opened(world, StoreAccess::read_write);
-  CHECK(run_program({"--world", world, "--import", file}).code == 2);  // a server holds it
+  CHECK(run_replay({"--world", world, "--import", file}).code == 2);  // a server holds it
 }
 
 TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", "[store][rlog]") {
@@ -237,11 +225,11 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
   std::filesystem::copy(world, folder / "copy");
   REQUIRE(opened(world, StoreAccess::read_write)->append({}, std::span(records).subspan(10)).has_value());
   export_small_blocks(world, file);
-  const Outcome alone = run_program({"--world", folder / "new", "--import", file});
+  const ReplayOutcome alone = run_replay({"--world", folder / "new", "--import", file});
   CHECK(alone.code == 2);
   CHECK(alone.err.find("holds not all of its world") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "new"));
-  const Outcome onto = run_program({"--world", folder / "copy", "--import", file});
+  const ReplayOutcome onto = run_replay({"--world", folder / "copy", "--import", file});
   CHECK(onto.out.find("edits       30 added, 10 known") != std::string::npos);
   CHECK(digest_of_world(folder / "copy") == digest_of_world(world));
 
@@ -249,17 +237,17 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
   compact_by_hand(world + "/world.sqlite", {records[19].version, records[19].time_us}, {});
   export_small_blocks(world, file);
   CHECK(read_rlog(bytes_of(file)).records.size() == 20);
-  CHECK(run_program({"--world", folder / "copy", "--import", file}).code == 0);
+  CHECK(run_replay({"--world", folder / "copy", "--import", file}).code == 0);
 }
 
 TEST_CASE("files that cannot be had are named", "[store][rlog]") {
   const TempFolder folder;
   make_world(folder / "world", 3);
-  CHECK(run_program({"--world", folder / "new", "--import", folder / "none.rlog"}).code == 2);
-  CHECK(run_program({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code == 2);
-  CHECK(run_program({"--world", folder / "world", "--export", "a", "--import", "b"}).code == 2);
-  CHECK(run_program({"--world", folder / "world", "--export", "a", "--verify"}).code == 2);
+  CHECK(run_replay({"--world", folder / "new", "--import", folder / "none.rlog"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--import", "b"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--verify"}).code == 2);
   write_bytes(folder / "text", {'n', 'o'});
-  CHECK(run_program({"--world", folder / "new", "--import", folder / "text"}).err ==
+  CHECK(run_replay({"--world", folder / "new", "--import", folder / "text"}).err ==
         "runstone-replay: " + folder / "text" + ": edit 1 at byte 0: is not an .rlog file\n");
 }

@@ -50,13 +50,7 @@ TEST_CASE("rows of the longest and widest strokes equal the oracle in any order"
     const Extent extent{10, 9, 11};
     const AxisOrder order = random_order(rng);
     CAPTURE(Catch::rngSeed(), round, edit, static_cast<int>(order), origin.x, origin.y, origin.z);
-    std::vector<IndexSpan> expected;
-    for (std::uint32_t i = 0; i < extent.volume(); ++i) {
-      const VoxelPos p = dense_pos(extent, order, i);
-      if (!oracle_covers(edit, {origin.x + p.x, origin.y + p.y, origin.z + p.z})) continue;
-      if (expected.empty() || expected.back().last != i) expected.push_back({i, i});
-      ++expected.back().last;
-    }
+    const std::vector<IndexSpan> expected = oracle_spans(edit, origin, extent, order);
     std::vector<IndexSpan> spans;
     append_spans(edit, origin, extent, order, spans);
     REQUIRE(spans == expected);

@@ -130,14 +130,7 @@ TEST_CASE("spans are the maximal stretches of covered voxels in index order", "[
     const VoxelPos origin{rng.between(-50, 50), rng.between(-50, 50), rng.between(-50, 50)};
     const EditDescriptor edit = random_edit_near(rng, origin, extent);
     CAPTURE(Catch::rngSeed(), round, edit, static_cast<int>(order));
-    std::vector<IndexSpan> expected;
-    const std::uint32_t volume = extent.volume();
-    for (std::uint32_t i = 0; i < volume; ++i) {
-      const VoxelPos p = dense_pos(extent, order, i);
-      if (!oracle_covers(edit, {origin.x + p.x, origin.y + p.y, origin.z + p.z})) continue;
-      if (expected.empty() || expected.back().last != i) expected.push_back({i, i});
-      ++expected.back().last;
-    }
+    const std::vector<IndexSpan> expected = oracle_spans(edit, origin, extent, order);
     std::vector<IndexSpan> spans;
     append_spans(edit, origin, extent, order, spans);
     REQUIRE(spans == expected);
