@@ -277,6 +277,8 @@ StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::keys_of(Chun
   });
 }
 
+StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::base_keys() { return keys_of(base_); }
+
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {
   return keys_of(snapshots_);
 }

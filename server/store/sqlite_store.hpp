@@ -51,6 +51,7 @@ class SqliteStore final : public Store {
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() override;
   StoreResult<void> read_log(Sequence first, Sequence last,
                              const std::function<bool(const EditRecord&)>& each) override;
   StoreResult<void> query_log(const LogQuery& query,

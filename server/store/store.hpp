@@ -33,7 +33,7 @@ namespace runstone {
 inline constexpr std::uint32_t kStoreFormatVersion = 2;
 
 struct StoreError {
-  enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked };
+  enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked, cancelled };
   Kind kind = Kind::io;
   std::string file;   // the database
   std::string where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
@@ -115,6 +115,8 @@ class Store {
   // -----------------------------------------------------------------------------------------------
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
+  /// Keys and versions of all base chunks, ascending.
+  virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() = 0;
   /// Calls `each` for records first..last (both included) in order; stops early when it returns false. What
   /// lies outside log_range() is left out.
   /// Each record's checksum is verified and the sequence checked to be without gaps.

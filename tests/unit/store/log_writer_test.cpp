@@ -62,6 +62,9 @@ class FakeStore final : public Store {
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() override {
+    return std::vector<std::pair<ChunkKey, Version>>();
+  }
   StoreResult<void> read_log(Sequence, Sequence, const std::function<bool(const EditRecord&)>&) override {
     return {};
   }
