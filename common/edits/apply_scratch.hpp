@@ -8,7 +8,7 @@
 #include "common/core/digest.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/ordered_shape.hpp"
-#include "common/runs/run_list.hpp"
+#include "common/runs/run_chunk.hpp"
 
 namespace runstone {
 
@@ -65,6 +65,7 @@ struct ApplyScratch {
   std::vector<Change> changes;          // ascending, disjoint
   std::vector<Run> runs;                // new runs of all edit areas, one after another
   std::vector<Run> whole;               // the same with the kept runs between them
+  std::vector<EditArea> areas;          // of write_changes(); apply_stack() has its result's
   std::vector<std::uint64_t> active;    // the active set: bit i is edit i of `stack`
   std::vector<std::uint32_t> starting;  // chains of edits by the layer where they begin
   std::vector<std::uint32_t> ending;    // ... and end
