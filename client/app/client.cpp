@@ -17,6 +17,7 @@
 #include "client/app/body_marker.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
+#include "client/replica/surface.hpp"
 #include "common/core/key_text.hpp"
 
 namespace runstone {
@@ -368,17 +369,7 @@ std::optional<RayHit> Client::pick() const {
 }
 
 std::optional<std::int32_t> Client::surface(std::int32_t x, std::int32_t z) const {
-  const Replica& replica = session_.replica();
-  const auto& view = replica.view();
-  if (!replica.opened() || !view) return std::nullopt;
-  const std::int32_t edge = replica.chunk_edge();
-  const std::int32_t top = (view->centre.y + view->radius_v + 1) * edge - 1;
-  const std::int32_t bottom = (view->centre.y - view->radius_v) * edge;
-  for (std::int32_t y = top; y >= bottom; --y) {
-    const auto material = replica.shown_at({x, y, z});
-    if (material && *material != kEmpty) return y;
-  }
-  return std::nullopt;
+  return surface_of(session_.replica(), x, z);
 }
 
 bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {

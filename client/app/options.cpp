@@ -5,25 +5,11 @@
 #include <map>
 #include <thread>
 
+#include "client/app/host_port.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
 namespace {
-
-/// "host:port" or "[v6 address]:port".
-std::string parse_address(const std::string& text, ClientOptions& out) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return "expected HOST:PORT";
-  std::string host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  unsigned port = 0;
-  if (!CLI::detail::lexical_cast(text.substr(colon + 1), port) || port == 0 || port > 65535) {
-    return "the port is not a number of 1 to 65535";
-  }
-  out.host = host;
-  out.port = static_cast<std::uint16_t>(port);
-  return {};
-}
 
 std::string parse_size(const std::string& text, ClientOptions& out) {
   const std::size_t cross = text.find('x');
@@ -76,7 +62,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   app.add_flag("--verbose", out.verbose, "log every step");
   try {
     app.parse(argc, argv);
-    std::string wrong = parse_address(address, out);
+    std::string wrong = parse_host_port(address, out.host, out.port);
     if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
     if (!size.empty()) wrong = parse_size(size, out);
     if (!wrong.empty()) throw CLI::ValidationError("--size", wrong);

@@ -1,237 +1,46 @@
 #include "client/net/net_client.hpp"
 
-#include <sodium.h>
-
-#include <algorithm>
-#include <asio.hpp>
-#include <asio/experimental/as_tuple.hpp>
-#include <chrono>
-#include <deque>
+#include <asio/io_context.hpp>
+#include <asio/post.hpp>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
-#include "client/net/steady_clock.hpp"
-
 namespace runstone {
-namespace {
 
-constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
-constexpr std::size_t kReadBytes = 64 * 1024;
-constexpr std::size_t kWriteBytes = 64 * 1024;
-using std::chrono::milliseconds;
+struct NetClient::State final : private LinkEvents {
+  State(NetConfig config, std::function<void()> net_wake)
+      : events_max(config.events_max), wake(std::move(net_wake)), link(io, std::move(config), *this) {}
 
-}  // namespace
+  void push(NetEvent event) {
+    {
+      const std::lock_guard lock(mutex);
+      events.push_back(std::move(event));
+    }
+    wake();
+  }
+  void on_connected(ConnectionNumber connection) override { push(NetConnected{connection}); }
+  void on_received(NetReceived received) override { push(std::move(received)); }
+  void on_disconnected(ConnectionNumber connection, std::string why) override {
+    push(NetDisconnected{connection, std::move(why)});
+  }
+  bool is_full() override {
+    const std::lock_guard lock(mutex);
+    return events.size() >= events_max;
+  }
 
-/// Lives on the network thread, except for what the mutex guards and the atomics.
-struct NetClient::State {
-  State(NetConfig net_config, std::function<void()> net_wake)
-      : config(std::move(net_config)), wake(std::move(net_wake)) {}
-
-  // One connection.
-  void push(NetEvent event);
-  bool events_full();
-  Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
-  void enqueue(ConnectionNumber to, const EncodedMessage& message);
-  void close_socket();
-
-  const NetConfig config;
+  const std::size_t events_max;
   const std::function<void()> wake;
-  NetStats stats;
-
   asio::io_context io{1};
-  asio::ip::tcp::resolver resolver{io};
-  asio::ip::tcp::socket socket{io};
-  asio::steady_timer pause{io};         // between attempts; for the connect timeout; while events are full
-  asio::steady_timer work_to_send{io};  // never expires: cancelled when there is something to send
-  bool stopping = false;
-
-  ConnectionNumber connection = 0;  // the last one made
-  bool up = false;
-  bool closing = false;  // close once everything is sent
-  std::string why_closed;
-  std::uint16_t chunk_edge = 0;  // of this connection's world; 0 before welcome
-  std::deque<EncodedMessage> edits, others;
-  std::size_t queued_bytes = 0;
-
+  Link link;  // belongs to the thread
   std::mutex mutex;
   std::vector<NetEvent> events;  // guarded by mutex
   std::thread thread;
 };
 
-void NetClient::State::push(NetEvent event) {
-  {
-    const std::lock_guard lock(mutex);
-    events.push_back(std::move(event));
-  }
-  wake();
-}
-
-bool NetClient::State::events_full() {
-  const std::lock_guard lock(mutex);
-  return events.size() >= config.events_max;
-}
-
-Result<void> NetClient::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
-  return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
-    const std::int64_t start_ns = steady_now_ns();
-    auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
-    if (!message) return Unexpected<Error>{message.error()};
-    const std::int64_t end_ns = steady_now_ns();
-    if (const auto* welcome = std::get_if<Welcome>(&*message)) chunk_edge = welcome->chunk_edge;
-    stats.messages_received.fetch_add(1, std::memory_order_relaxed);
-    stats.message_bytes_received[static_cast<std::size_t>(frame_class)].fetch_add(body.size(),
-                                                                                  std::memory_order_relaxed);
-    NetReceived received;
-    received.connection = connection;
-    received.message = std::move(*message);
-    received.bytes = body.size();
-    received.received_us = received_us;
-    received.unpacked_us = end_ns / 1000;
-    received.unpack_ns = end_ns - start_ns;
-    push(std::move(received));
-    return {};
-  });
-}
-
-void NetClient::State::enqueue(ConnectionNumber to, const EncodedMessage& message) {
-  if (!up || to != connection) return;
-  queued_bytes += message.bytes->size();
-  if (queued_bytes > kSendBytesMax) {
-    why_closed = "send queue full";
-    close_socket();
-    return;
-  }
-  (message.frame_class == FrameClass::edits ? edits : others).push_back(message);
-  work_to_send.cancel();
-}
-
-void NetClient::State::close_socket() {
-  std::error_code ignored;
-  socket.shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
-  socket.close(ignored);
-  work_to_send.cancel();
-}
-
-// Coroutines: named functions over the state, results as tuples, no temporaries with destructors beside a
-// co_await.
-namespace {
-
-template <class State>
-asio::awaitable<void> read_messages(State& state) {
-  FrameReader reader(Sender::server);
-  std::vector<std::uint8_t> buffer(kReadBytes);
-  while (true) {
-    const auto [error, count] = co_await state.socket.async_read_some(asio::buffer(buffer), kTuple);
-    if (error) {
-      if (state.why_closed.empty()) state.why_closed = error.message();
-      break;
-    }
-    state.stats.bytes_received.fetch_add(count, std::memory_order_relaxed);
-    const auto fed = state.take_message(reader, ByteView(buffer.data(), count), steady_now_us());
-    if (!fed) {
-      state.why_closed = std::string("bad bytes from the server: ") + fed.error().what;
-      break;
-    }
-    while (!state.stopping && state.events_full()) {
-      state.pause.expires_after(milliseconds(1));
-      co_await state.pause.async_wait(kTuple);
-    }
-  }
-  state.up = false;
-  state.close_socket();
-  if (state.stopping) state.pause.cancel();  // stop() need not wait any longer
-}
-
-template <class State>
-asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
-  FrameWriter writer;
-  Bytes out;
-  while (state.up && state.connection == mine) {
-    out.clear();
-    while (out.size() < kWriteBytes && (!state.edits.empty() || !state.others.empty())) {
-      auto& queue = state.edits.empty() ? state.others : state.edits;
-      writer.append(queue.front(), out);
-      state.queued_bytes -= queue.front().bytes->size();
-      queue.pop_front();
-    }
-    if (out.empty()) {
-      if (state.closing) {
-        if (state.why_closed.empty()) state.why_closed = "closed by this client";
-        state.close_socket();
-        break;
-      }
-      state.work_to_send.expires_at(asio::steady_timer::time_point::max());
-      co_await state.work_to_send.async_wait(kTuple);
-      continue;
-    }
-    const auto [error, count] = co_await asio::async_write(state.socket, asio::buffer(out), kTuple);
-    if (error) break;  // the reader sees it too and says why
-    state.stats.bytes_sent.fetch_add(count, std::memory_order_relaxed);
-  }
-}
-
-/// Resolves and connects; the socket is open afterwards iff the result is empty.
-template <class State>
-asio::awaitable<std::string> connect(State& state) {
-  const std::string port = std::to_string(state.config.port);
-  const auto [resolve_error, endpoints] =
-      co_await state.resolver.async_resolve(state.config.host, port, kTuple);
-  if (resolve_error) co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
-  state.socket = asio::ip::tcp::socket(state.io);
-  state.pause.expires_after(milliseconds(state.config.connect_ms_max));
-  State* const raw = &state;
-  state.pause.async_wait([raw](const std::error_code& cancelled) {
-    if (!cancelled) raw->close_socket();
-  });
-  const auto [error, endpoint] = co_await asio::async_connect(state.socket, endpoints, kTuple);
-  state.pause.cancel();
-  if (error) co_return "cannot connect: " + error.message();
-  std::error_code ignored;
-  state.socket.set_option(asio::ip::tcp::no_delay(true), ignored);
-  co_return std::string();
-}
-
-template <class State>
-asio::awaitable<void> keep_connected(State& state) {
-  std::int64_t pause_ms = state.config.pause_ms_first;
-  while (!state.stopping) {
-    std::string failure = co_await connect(state);
-    if (state.stopping) break;
-    if (failure.empty()) {
-      ++state.connection;
-      state.stats.connections.fetch_add(1, std::memory_order_relaxed);
-      state.up = true;
-      state.closing = false;
-      state.why_closed.clear();
-      state.chunk_edge = 0;
-      state.edits.clear();
-      state.others.clear();
-      state.queued_bytes = 0;
-      pause_ms = state.config.pause_ms_first;
-      state.push(NetConnected{state.connection});
-      asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);
-      co_await read_messages(state);
-      state.push(NetDisconnected{state.connection, state.why_closed});
-    } else {
-      state.push(NetDisconnected{0, std::move(failure)});
-    }
-    if (state.stopping) break;
-    const auto spread =
-        static_cast<std::int64_t>(randombytes_uniform(static_cast<std::uint32_t>(pause_ms / 2 + 1)));
-    state.pause.expires_after(milliseconds(pause_ms * 3 / 4 + spread));
-    co_await state.pause.async_wait(kTuple);
-    pause_ms = std::min(pause_ms * 2, state.config.pause_ms_max);
-  }
-}
-
-}  // namespace
-
 NetClient::NetClient(NetConfig config, std::function<void()> wake)
     : state_(std::make_unique<State>(std::move(config), std::move(wake))) {
-  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
-  asio::co_spawn(state_->io, keep_connected(*state_), asio::detached);
+  state_->link.start();
   state_->thread = std::thread([raw = state_.get()] { raw->io.run(); });
 }
 
@@ -243,35 +52,19 @@ std::vector<NetEvent> NetClient::take_events() {
 }
 
 void NetClient::send(ConnectionNumber connection, const EncodedMessage& message) {
-  asio::post(state_->io, [raw = state_.get(), connection, message] { raw->enqueue(connection, message); });
+  asio::post(state_->io, [raw = state_.get(), connection, message] { raw->link.send(connection, message); });
 }
 
 void NetClient::close(ConnectionNumber connection) {
-  asio::post(state_->io, [raw = state_.get(), connection] {
-    if (connection != raw->connection) return;
-    raw->closing = true;
-    raw->work_to_send.cancel();
-  });
+  asio::post(state_->io, [raw = state_.get(), connection] { raw->link.close(connection); });
 }
 
 void NetClient::stop(std::int64_t wait_ms) {
   if (!state_->thread.joinable()) return;
-  asio::post(state_->io, [raw = state_.get(), wait_ms] {
-    raw->stopping = true;
-    raw->closing = true;
-    raw->resolver.cancel();
-    raw->pause.cancel();
-    raw->work_to_send.cancel();
-    if (!raw->up) return raw->close_socket();
-    // The pause is free now that stopping is set: it bounds the wait for what is still being sent.
-    raw->pause.expires_after(milliseconds(wait_ms));
-    raw->pause.async_wait([raw](const std::error_code& cancelled) {
-      if (!cancelled && raw->up) raw->close_socket();
-    });
-  });
+  asio::post(state_->io, [raw = state_.get(), wait_ms] { raw->link.stop(wait_ms); });
   state_->thread.join();
 }
 
-const NetStats& NetClient::stats() const { return state_->stats; }
+const NetStats& NetClient::stats() const { return state_->link.stats(); }
 
 }  // namespace runstone

@@ -1,0 +1,53 @@
+// runstone-bot: many players in one process. Exit codes: 0 played to the end, 1 something was lost or drifted,
+// 2 could not start (docs/bots.md).
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "client/app/bot_fleet.hpp"
+#include "client/app/client.hpp"
+#include "client/app/report.hpp"
+
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void request_stop(int) { stop_requested = 1; }
+
+int run(const runstone::BotOptions& options) {
+  using namespace runstone;
+  BotFleet fleet(options);
+  const FleetReport report = fleet.run(stop_requested);
+  std::fputs(to_table(report).c_str(), stdout);
+  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+  if (!options.report.empty() && !write_text(options.report, to_json(report))) {
+    std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
+    return kExitFailed;
+  }
+  if (!report.failure.empty()) return report.counts.due == 0 ? kExitNoStart : kExitFailed;
+  return report.drifted == 0 ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto parsed = runstone::parse_bot_options(argc, argv);
+  if (!parsed.options) return parsed.exit_code;
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("bot"));  // standard output is for the table
+  spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
+  struct sigaction action{};
+  action.sa_handler = request_stop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  int code = runstone::kExitNoStart;
+  try {
+    code = run(*parsed.options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "runstone-bot: %s\n", error.what());
+  }
+  spdlog::shutdown();
+  return code;
+}

@@ -1,0 +1,55 @@
+#include "client/app/bot_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "client/app/host_port.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+
+ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
+  BotOptions out;
+  CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // as the other programs
+  std::string address, role = "build";
+  unsigned view = out.view_radius;
+  std::uint64_t edits = 0;
+  app.add_option("--connect", address, "server, HOST:PORT")->required();
+  app.add_option("--count", out.count, "bots")->check(CLI::Range(1, 10'000));
+  app.add_option("--behaviour", role, "what they do")
+      ->check(CLI::IsMember({"idle", "walk", "build", "brush", "griefer"}));
+  app.add_option("--name", out.name, "name of one bot; of several, NAME-1, NAME-2, ...")
+      ->check([](const std::string& name) {
+        return name.empty() || name.size() + 6 > kPlayerNameBytesMax ? "a bot's name has 1 to 26 bytes" : "";
+      });
+  app.add_option("--key-dir", out.key_dir,
+                 "folder of their keys, made if missing; default: new keys each time")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--rate", out.rate, "edits a second, each bot")->check(CLI::Range(0.001, 100'000.0));
+  app.add_option("--duration", out.seconds, "seconds for which edits are due")->check(CLI::NonNegativeNumber);
+  app.add_option("--edits", edits, "edits at most, each bot");
+  app.add_option("--sites", out.sites,
+                 "building sites of the whole crowd, where several fleets share a world; default: --count");
+  app.add_option("--seed", out.seed, "draws everything the bots do");
+  app.add_option("--view", view, "view radius in chunks, both ways")
+      ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_option("--patience", out.load_seconds,
+                 "seconds to wait for the world at the start and for the disk at the end")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--report", out.report, "write counts and latencies as JSON at the end");
+  app.add_flag("--verbose", out.verbose, "log every step");
+  try {
+    app.parse(argc, argv);
+    const std::string wrong = parse_host_port(address, out.host, out.port);
+    if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
+  } catch (const CLI::ParseError& e) {
+    return {std::nullopt, app.exit(e) == 0 ? 0 : 2};
+  }
+  out.role = *bot_role(role);
+  if (app.count("--edits") != 0) out.edits = edits;
+  if (out.sites == 0) out.sites = out.count;
+  out.view_radius = out.view_radius_v = static_cast<std::uint8_t>(view);
+  return {out, 0};
+}
+
+}  // namespace runstone

@@ -1,0 +1,234 @@
+#include "client/bots/behaviour.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "client/bots/house.hpp"
+#include "client/replica/surface.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr double kEyeAbove = 12;  // voxels above the spawn's height: sees ground and roofs
+constexpr double kWalkSpeed = 4;  // voxels a second
+constexpr std::int32_t kPlotsAlong = kSiteSide / kPlotSide;
+constexpr std::int32_t kBuriedMax = 24;  // voxels from a plot's highest ground to its lowest that are filled
+
+std::int32_t down(double v) { return static_cast<std::int32_t>(std::floor(v)); }
+
+WorldPos above_middle(VoxelPos corner) {
+  return {corner.x + kSiteSide / 2.0, corner.y + kEyeAbove, corner.z + kSiteSide / 2.0};
+}
+
+class Idle final : public Behaviour {
+ public:
+  explicit Idle(const BotPlace& place) : at_(above_middle(site_corner(place))) {}
+  WorldPos position(double /*seconds*/) const override { return at_; }
+  std::optional<EditDescriptor> next_edit(const Replica& /*replica*/) override { return std::nullopt; }
+
+ private:
+  WorldPos at_;
+};
+
+class Walk final : public Behaviour {
+ public:
+  explicit Walk(const BotPlace& place) : middle_(above_middle(site_corner(place))) {}
+  WorldPos position(double seconds) const override {
+    const double radius = kSiteSide / 2.0, angle = seconds * kWalkSpeed / radius;
+    return {middle_.x + radius * std::cos(angle), middle_.y, middle_.z + radius * std::sin(angle)};
+  }
+  std::optional<EditDescriptor> next_edit(const Replica& /*replica*/) override { return std::nullopt; }
+
+ private:
+  WorldPos middle_;
+};
+
+class Build final : public Behaviour {
+ public:
+  Build(const BotPlace& place, const MaterialTable& materials, std::uint64_t seed)
+      : corner_(site_corner(place)), materials_(materials), random_(seed) {}
+
+  WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
+
+  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
+    if (ground_.empty() && next_ == plan_.size() && !begin_plot(replica)) return std::nullopt;
+    if (!ground_.empty()) {
+      const EditDescriptor edit = ground_.back();
+      ground_.pop_back();
+      return edit;
+    }
+    const Placement& placement = plan_[next_++];
+    return EditDescriptor{SetVoxel{placement.at}, {}, placement.material};
+  }
+
+ private:
+  // Makes the plot even, with a foundation below, and plans the house. A plot that is built on is begun anew.
+  bool begin_plot(const Replica& replica) {
+    const VoxelPos plot = {corner_.x + plot_ % kPlotsAlong * kPlotSide, 0,
+                           corner_.z + plot_ / kPlotsAlong % kPlotsAlong * kPlotSide};
+    auto& level = levels_[static_cast<std::size_t>(plot_ % (kPlotsAlong * kPlotsAlong))];
+    std::int32_t lowest = 0;
+    if (!level) {
+      std::optional<std::int32_t> highest;
+      for (const std::int32_t dx : {0, kPlotSide / 2, kPlotSide - 1}) {
+        for (const std::int32_t dz : {0, kPlotSide / 2, kPlotSide - 1}) {
+          const auto ground = surface_of(replica, plot.x + dx, plot.z + dz);
+          if (!ground) return false;
+          lowest = highest ? std::min(lowest, *ground) : *ground;
+          highest = std::max(highest.value_or(*ground), *ground);
+        }
+      }
+      level = *highest + 1;
+    }
+    const VoxelPos floor = {plot.x, *level, plot.z};
+    const HouseMaterials materials = draw_house_materials(materials_, random_);
+    const VoxelBox above = {floor, {plot.x + kPlotSide, *level + kHouseHeight, plot.z + kPlotSide}};
+    const VoxelBox below = {{plot.x, std::max(lowest, *level - kBuriedMax), plot.z},
+                            {plot.x + kPlotSide, *level, plot.z + kPlotSide}};
+    ground_.push_back({FillBox{above}, {MaskKind::only_solid, kEmpty}, kEmpty});
+    if (plot_ < kPlotsAlong * kPlotsAlong) {
+      ground_.push_back({FillBox{below}, {MaskKind::only_empty, kEmpty}, materials.foundation});
+    }
+    plan_ = plan_house(floor, materials, random_);
+    next_ = 0;
+    ++plot_;
+    return true;
+  }
+
+  VoxelPos corner_;
+  const MaterialTable& materials_;
+  SplitMix64 random_;
+  std::int32_t plot_ = 0;  // goes round the site again and again
+  std::array<std::optional<std::int32_t>, static_cast<std::size_t>(kPlotsAlong) * kPlotsAlong> levels_;
+  std::vector<EditDescriptor> ground_;  // last one first
+  std::vector<Placement> plan_;
+  std::size_t next_ = 0;
+};
+
+class Brush final : public Behaviour {
+ public:
+  Brush(const BotPlace& place, const MaterialTable& materials, std::uint64_t seed)
+      : corner_(site_corner(place)), materials_(materials), random_(seed) {}
+
+  WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
+
+  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
+    const auto from = on_ground(replica), to = on_ground(replica);
+    if (!from || !to) return std::nullopt;
+    const auto radius = static_cast<std::uint16_t>(random_.between(2, 5));
+    const auto material = static_cast<Material>(random_.below(static_cast<std::uint32_t>(materials_.size())));
+    if (random_.below(2) == 0 || *from == *to) return EditDescriptor{FillSphere{*from, radius}, {}, material};
+    return EditDescriptor{FillStroke{{*from, *to}, radius}, {}, material};
+  }
+
+ private:
+  std::optional<VoxelPos> on_ground(const Replica& replica) {
+    const std::int32_t x = corner_.x + random_.between(6, kSiteSide - 7);
+    const std::int32_t z = corner_.z + random_.between(6, kSiteSide - 7);
+    const auto y = surface_of(replica, x, z);
+    if (!y) return std::nullopt;
+    return VoxelPos{x, *y, z};
+  }
+
+  VoxelPos corner_;
+  const MaterialTable& materials_;
+  SplitMix64 random_;
+};
+
+class Grief final : public Behaviour {
+ public:
+  Grief(const BotPlace& place, const MaterialTable& materials, std::uint64_t seed)
+      : place_(place), materials_(materials), random_(seed) {
+    visit_next();
+  }
+
+  WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
+
+  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
+    if (left_ == 0) visit_next();
+    const std::int32_t x = corner_.x + random_.between(0, kSiteSide - 1);
+    const std::int32_t z = corner_.z + random_.between(0, kSiteSide - 1);
+    const auto y = surface_of(replica, x, z);
+    if (!y) return std::nullopt;
+    --left_;
+    const VoxelPos at = {x, *y, z};
+    switch (random_.below(3)) {
+      case 0:  // a crater
+        return EditDescriptor{FillSphere{at, static_cast<std::uint16_t>(random_.between(2, 6))}, {}, kEmpty};
+      case 1: {  // a pillar through whatever stands there
+        const VoxelBox box = {{x - 1, *y - 2, z - 1}, {x + 1, *y + 12, z + 1}};
+        return EditDescriptor{FillBox{box}, {}, paint()};
+      }
+      default: {  // a smear across the roofs
+        const VoxelPos end = {x + random_.between(1, 16), *y + random_.between(0, 3),
+                              z + random_.between(1, 16)};
+        return EditDescriptor{FillStroke{{at, end}, 1}, {}, paint()};
+      }
+    }
+  }
+
+ private:
+  // A few edits here, a few there: the bot goes from site to site, and its view with it.
+  void visit_next() {
+    BotPlace victim = place_;
+    victim.index = random_.below(static_cast<std::uint32_t>(place_.count));
+    corner_ = site_corner(victim);
+    left_ = 8;
+  }
+  Material paint() const {
+    for (const std::string_view name : {"wool_black", "wool_pink"}) {
+      if (const auto found = materials_.find(name)) return *found;
+    }
+    return static_cast<Material>(materials_.size() - 1);
+  }
+
+  BotPlace place_;
+  const MaterialTable& materials_;
+  SplitMix64 random_;
+  VoxelPos corner_;
+  int left_ = 0;
+};
+
+}  // namespace
+
+std::optional<BotRole> bot_role(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, BotRole>, 5> kRoles = {{{"idle", BotRole::idle},
+                                                                           {"walk", BotRole::walk},
+                                                                           {"build", BotRole::build},
+                                                                           {"brush", BotRole::brush},
+                                                                           {"griefer", BotRole::grief}}};
+  for (const auto& [known, role] : kRoles) {
+    if (known == name) return role;
+  }
+  return std::nullopt;
+}
+
+VoxelPos site_corner(const BotPlace& place) {
+  const auto along = static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(place.count))));
+  const auto index = static_cast<std::int32_t>(place.index);
+  return {down(place.spawn.x) + (index % along) * kSiteSide - along * kSiteSide / 2, down(place.spawn.y),
+          down(place.spawn.z) + (index / along) * kSiteSide - along * kSiteSide / 2};
+}
+
+std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place, const MaterialTable& materials,
+                                          std::uint64_t seed) {
+  switch (role) {
+    case BotRole::idle:
+      return std::make_unique<Idle>(place);
+    case BotRole::walk:
+      return std::make_unique<Walk>(place);
+    case BotRole::build:
+      return std::make_unique<Build>(place, materials, seed);
+    case BotRole::brush:
+      return std::make_unique<Brush>(place, materials, seed);
+    case BotRole::grief:
+      return std::make_unique<Grief>(place, materials, seed);
+  }
+  return nullptr;
+}
+
+}  // namespace runstone

@@ -1,0 +1,245 @@
+#include "client/net/link.hpp"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <asio.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <chrono>
+#include <deque>
+#include <stdexcept>
+#include <utility>
+
+#include "client/net/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kWriteBytes = 64 * 1024;
+using std::chrono::milliseconds;
+
+}  // namespace
+
+struct Link::State {
+  State(asio::io_context& context, NetConfig net_config, LinkEvents& link_events)
+      : io(context), config(std::move(net_config)), events(link_events) {}
+
+  // One connection.
+  Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
+  void enqueue(ConnectionNumber to, const EncodedMessage& message);
+  void close_socket();
+
+  asio::io_context& io;
+  const NetConfig config;
+  LinkEvents& events;
+  NetStats stats;
+
+  asio::ip::tcp::resolver resolver{io};
+  asio::ip::tcp::socket socket{io};
+  asio::steady_timer pause{io};         // between attempts; for the connect timeout; while events are full
+  asio::steady_timer work_to_send{io};  // never expires: cancelled when there is something to send
+  bool stopping = false;
+
+  ConnectionNumber connection = 0;  // the last one made
+  bool up = false;
+  bool closing = false;  // close once everything is sent
+  std::string why_closed;
+  std::uint16_t chunk_edge = 0;  // of this connection's world; 0 before welcome
+  std::deque<EncodedMessage> edits, others;
+  std::size_t queued_bytes = 0;
+};
+
+Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
+  return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+    const std::int64_t start_ns = steady_now_ns();
+    auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
+    if (!message) return Unexpected<Error>{message.error()};
+    const std::int64_t end_ns = steady_now_ns();
+    if (const auto* welcome = std::get_if<Welcome>(&*message)) chunk_edge = welcome->chunk_edge;
+    stats.messages_received.fetch_add(1, std::memory_order_relaxed);
+    stats.message_bytes_received[static_cast<std::size_t>(frame_class)].fetch_add(body.size(),
+                                                                                  std::memory_order_relaxed);
+    NetReceived received;
+    received.connection = connection;
+    received.message = std::move(*message);
+    received.bytes = body.size();
+    received.received_us = received_us;
+    received.unpacked_us = end_ns / 1000;
+    received.unpack_ns = end_ns - start_ns;
+    events.on_received(std::move(received));
+    return {};
+  });
+}
+
+void Link::State::enqueue(ConnectionNumber to, const EncodedMessage& message) {
+  if (!up || to != connection) return;
+  queued_bytes += message.bytes->size();
+  if (queued_bytes > kSendBytesMax) {
+    why_closed = "send queue full";
+    close_socket();
+    return;
+  }
+  (message.frame_class == FrameClass::edits ? edits : others).push_back(message);
+  work_to_send.cancel();
+}
+
+void Link::State::close_socket() {
+  std::error_code ignored;
+  socket.shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  socket.close(ignored);
+  work_to_send.cancel();
+}
+
+// Coroutines: named functions over the state, results as tuples, no temporaries with destructors beside a
+// co_await.
+namespace {
+
+template <class State>
+asio::awaitable<void> read_messages(State& state) {
+  FrameReader reader(Sender::server);
+  std::vector<std::uint8_t> buffer(kReadBytes);
+  while (true) {
+    const auto [error, count] = co_await state.socket.async_read_some(asio::buffer(buffer), kTuple);
+    if (error) {
+      if (state.why_closed.empty()) state.why_closed = error.message();
+      break;
+    }
+    state.stats.bytes_received.fetch_add(count, std::memory_order_relaxed);
+    const auto fed = state.take_message(reader, ByteView(buffer.data(), count), steady_now_us());
+    if (!fed) {
+      state.why_closed = std::string("bad bytes from the server: ") + fed.error().what;
+      break;
+    }
+    while (!state.stopping && state.events.is_full()) {
+      state.pause.expires_after(milliseconds(1));
+      co_await state.pause.async_wait(kTuple);
+    }
+  }
+  state.up = false;
+  state.close_socket();
+  if (state.stopping) state.pause.cancel();  // stop() need not wait any longer
+}
+
+template <class State>
+asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
+  FrameWriter writer;
+  Bytes out;
+  while (state.up && state.connection == mine) {
+    out.clear();
+    while (out.size() < kWriteBytes && (!state.edits.empty() || !state.others.empty())) {
+      auto& queue = state.edits.empty() ? state.others : state.edits;
+      writer.append(queue.front(), out);
+      state.queued_bytes -= queue.front().bytes->size();
+      queue.pop_front();
+    }
+    if (out.empty()) {
+      if (state.closing) {
+        if (state.why_closed.empty()) state.why_closed = "closed by this client";
+        state.close_socket();
+        break;
+      }
+      state.work_to_send.expires_at(asio::steady_timer::time_point::max());
+      co_await state.work_to_send.async_wait(kTuple);
+      continue;
+    }
+    const auto [error, count] = co_await asio::async_write(state.socket, asio::buffer(out), kTuple);
+    if (error) break;  // the reader sees it too and says why
+    state.stats.bytes_sent.fetch_add(count, std::memory_order_relaxed);
+  }
+}
+
+/// Resolves and connects; the socket is open afterwards iff the result is empty.
+template <class State>
+asio::awaitable<std::string> connect(State& state) {
+  const std::string port = std::to_string(state.config.port);
+  const auto [resolve_error, endpoints] =
+      co_await state.resolver.async_resolve(state.config.host, port, kTuple);
+  if (resolve_error) co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
+  state.socket = asio::ip::tcp::socket(state.io);
+  state.pause.expires_after(milliseconds(state.config.connect_ms_max));
+  State* const raw = &state;
+  state.pause.async_wait([raw](const std::error_code& cancelled) {
+    if (!cancelled) raw->close_socket();
+  });
+  const auto [error, endpoint] = co_await asio::async_connect(state.socket, endpoints, kTuple);
+  state.pause.cancel();
+  if (error) co_return "cannot connect: " + error.message();
+  std::error_code ignored;
+  state.socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+  co_return std::string();
+}
+
+template <class State>
+asio::awaitable<void> keep_connected(State& state) {
+  std::int64_t pause_ms = state.config.pause_ms_first;
+  while (!state.stopping) {
+    std::string failure = co_await connect(state);
+    if (state.stopping) break;
+    if (failure.empty()) {
+      ++state.connection;
+      state.stats.connections.fetch_add(1, std::memory_order_relaxed);
+      state.up = true;
+      state.closing = false;
+      state.why_closed.clear();
+      state.chunk_edge = 0;
+      state.edits.clear();
+      state.others.clear();
+      state.queued_bytes = 0;
+      pause_ms = state.config.pause_ms_first;
+      state.events.on_connected(state.connection);
+      asio::co_spawn(state.io, write_messages(state, state.connection), asio::detached);
+      co_await read_messages(state);
+      state.events.on_disconnected(state.connection, state.why_closed);
+    } else {
+      state.events.on_disconnected(0, std::move(failure));
+    }
+    if (state.stopping) break;
+    const auto spread =
+        static_cast<std::int64_t>(randombytes_uniform(static_cast<std::uint32_t>(pause_ms / 2 + 1)));
+    state.pause.expires_after(milliseconds(pause_ms * 3 / 4 + spread));
+    co_await state.pause.async_wait(kTuple);
+    pause_ms = std::min(pause_ms * 2, state.config.pause_ms_max);
+  }
+}
+
+}  // namespace
+
+Link::Link(asio::io_context& io, NetConfig config, LinkEvents& events)
+    : state_(std::make_unique<State>(io, std::move(config), events)) {
+  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot start");
+}
+
+Link::~Link() = default;
+
+void Link::start() { asio::co_spawn(state_->io, keep_connected(*state_), asio::detached); }
+
+void Link::send(ConnectionNumber connection, const EncodedMessage& message) {
+  state_->enqueue(connection, message);
+}
+
+void Link::close(ConnectionNumber connection) {
+  if (connection != state_->connection) return;
+  state_->closing = true;
+  state_->work_to_send.cancel();
+}
+
+void Link::stop(std::int64_t wait_ms) {
+  State& state = *state_;
+  state.stopping = true;
+  state.closing = true;
+  state.resolver.cancel();
+  state.pause.cancel();
+  state.work_to_send.cancel();
+  if (!state.up) return state.close_socket();
+  // The pause is free now that stopping is set: it bounds the wait for what is still being sent.
+  state.pause.expires_after(milliseconds(wait_ms));
+  state.pause.async_wait([raw = &state](const std::error_code& cancelled) {
+    if (!cancelled && raw->up) raw->close_socket();
+  });
+}
+
+const NetStats& Link::stats() const { return state_->stats; }
+
+}  // namespace runstone

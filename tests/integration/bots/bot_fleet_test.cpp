@@ -1,0 +1,90 @@
+// Fleets of bots against a real server on loopback.
+#include "client/app/bot_fleet.hpp"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <thread>
+
+#include "tests/integration/server/server_bench.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+volatile std::sig_atomic_t never = 0;
+
+BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
+  BotOptions options;
+  options.port = server.port();
+  options.count = options.sites = count;
+  options.role = role;
+  options.rate = 200;
+  options.edits = 100;
+  options.seconds = 60;
+  options.view_radius = options.view_radius_v = 3;  // chunks of edge 16
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing", "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  const FleetReport report = BotFleet(options_for(*server, BotRole::build, 5)).run(never);
+  INFO(report.failure);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.due == 500);
+  CHECK(report.counts.submitted == 500);
+  CHECK(report.counts.confirmed == 500);
+  CHECK(report.counts.durable == 500);
+  CHECK(report.counts.rejected == 0);
+  CHECK(report.standing.held > 400);
+  CHECK(report.standing.intact == report.standing.held);
+  CHECK(report.drifted == 0);
+  CHECK(server->stop().digests.seq == 500);
+}
+
+TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  for (const BotRole role : {BotRole::brush, BotRole::grief}) {
+    const FleetReport report = BotFleet(options_for(*server, role, 2)).run(never);
+    CHECK(report.failure.empty());
+    CHECK(report.counts.confirmed > 50);
+    CHECK(report.counts.confirmed == report.counts.submitted);
+  }
+  BotOptions options = options_for(*server, BotRole::walk, 2);
+  options.seconds = 0.3;
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.submitted == 0);
+  CHECK(report.counts.not_ready > 0);
+}
+
+TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 1);
+  server->stop();
+  options.load_seconds = 0.5;
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.find("bot does not see the world around it: cannot connect") == 0);
+  CHECK(report.counts.due == 0);
+}
+
+TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 2);
+  options.edits.reset();
+  static volatile std::sig_atomic_t stop = 0;
+  std::thread stopper([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    stop = 1;
+  });
+  const FleetReport report = BotFleet(options).run(stop);
+  stopper.join();
+  CHECK(report.seconds < 30);
+  CHECK(report.counts.rejected == 0);
+}

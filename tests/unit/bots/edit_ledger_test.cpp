@@ -1,0 +1,57 @@
+#include "client/bots/edit_ledger.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+namespace {
+
+// One chunk of edge 32, empty, at the origin.
+Replica empty_replica() {
+  Replica replica;
+  replica.set_view({{0, 0, 0}, 0, 0});
+  replica.open({.chunk_edge = 32, .author = 1, .instance = 1, .epoch = 1});
+  ChunkSnapshot snapshot;
+  snapshot.key = {0, {0, 0, 0}};
+  snapshot.chunk.voxels = uniform_chunk(Extent::cube(32), kEmpty);
+  replica.receive(std::move(snapshot), {});
+  return replica;
+}
+
+EditDescriptor voxel(std::int32_t x, Material material) { return {SetVoxel{{x, 1, 1}}, {}, material}; }
+
+}  // namespace
+
+TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
+  Replica replica = empty_replica();
+  EditLedger ledger;
+  const auto set = [&](const EditDescriptor& edit) {
+    REQUIRE(replica.submit(edit, 0, 0).has_value());
+    ledger.add(edit);
+  };
+  set(voxel(1, 5));
+  set(voxel(2, 5));
+  set(voxel(2, 6));                                        // again: the last one counts
+  set(voxel(40, 7));                                       // in a chunk that is not here
+  REQUIRE(replica.submit(voxel(1, 9), 0, 0).has_value());  // somebody else
+  const auto standing = ledger.compare(replica);
+  CHECK(standing.held == 3);
+  CHECK(standing.intact == 1);
+  CHECK(standing.changed == 1);
+  CHECK(standing.unseen == 1);
+}
+
+TEST_CASE("a ledger forgets what a larger or a masked edit may have covered, and what was refused",
+          "[bots]") {
+  const Replica replica = empty_replica();
+  EditLedger ledger;
+  ledger.add(voxel(1, 5));
+  ledger.add(voxel(2, 5));
+  ledger.add(voxel(9, 5));
+  ledger.add({FillBox{{{0, 0, 0}, {2, 4, 4}}}, {}, 3});
+  CHECK(ledger.compare(replica).held == 2);
+  ledger.add({SetVoxel{{2, 1, 1}}, {MaskKind::only_empty, kEmpty}, 3});
+  CHECK(ledger.compare(replica).held == 1);
+  ledger.forget(voxel(9, 5));
+  CHECK(ledger.compare(replica).held == 0);
+}
