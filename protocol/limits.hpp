@@ -20,7 +20,7 @@ inline constexpr std::size_t kFragmentBytesMax = 16 * 1024;
 
 // Whole messages, by what their class may carry: bounds the memory a peer can make us hold per session.
 inline constexpr std::size_t kClientControlBytesMax = 4 * 1024;         // hello, view, ping: all small
-inline constexpr std::size_t kClientEditBytesMax = 4 * 1024;            // one descriptor
+inline constexpr std::size_t kClientEditBytesMax = 64 * 1024;           // one descriptor
 inline constexpr std::size_t kServerControlBytesMax = 8 * 1024 * 1024;  // the material table in welcome
 inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;         // one commit
 inline constexpr std::size_t kServerChunkBytesMax = 16 * 1024 * 1024;

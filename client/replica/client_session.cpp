@@ -182,7 +182,8 @@ void ClientSession::tick(TimeUs now_us) {
 }
 
 Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us) {
-  if (welcome_ && !welcome_->materials.knows(edit.material)) {
+  if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
+  if (welcome_ && !welcome_->materials.knows(material_max(edit))) {
     return fail(ErrorCode::not_found, "material is not in the world's table");
   }
   const auto seq = replica_.submit(edit, submitted_us, now_us);

@@ -1,4 +1,5 @@
-// ApplyScratch: what apply_stack() keeps between calls, so that a steady state allocates nothing. Callers
+// ApplyScratch: what apply_stack() keeps between calls, so that a steady state allocates nothing (but for a
+// paste, whose part in the chunk is cut out anew). Callers
 // make one per thread and hand it in; what lies in it concerns common/edits alone.
 #pragma once
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace runstone {
 
-/// One edit of a stack, or one segment of a stroke, clipped to the chunk at hand.
+/// One edit of a stack, one segment of a stroke or one box of a paste, clipped to the chunk at hand.
 struct StackedEdit {
   OrderedShape shape;
   Mask mask;

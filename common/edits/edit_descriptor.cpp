@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "common/edits/placed_clipboard.hpp"
+
 namespace runstone {
 namespace {
 
@@ -64,6 +66,19 @@ Result<void> validate_shape(const FillStroke& shape) {
   return {};
 }
 
+Result<void> validate_shape(const Paste& shape) {
+  if (shape.clipboard == nullptr) return fail(ErrorCode::bad_value, "paste without a clipboard");
+  if (!shape.orientation.valid()) return fail(ErrorCode::bad_value, "unknown orientation");
+  // First where it lies, so that what reaches from there can be added up.
+  if (!validate_shape(SetVoxel{shape.at})) return fail(ErrorCode::bad_value, "paste lies outside the world");
+  const VoxelBox box = box_of(shape);
+  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
+  if (!validate_shape(SetVoxel{box.min}) || !validate_shape(SetVoxel{last})) {
+    return fail(ErrorCode::bad_value, "paste reaches outside the world");
+  }
+  return {};
+}
+
 void write_position(ByteWriter& w, VoxelPos p) {
   w.svarint(p.x);
   w.svarint(p.y);
@@ -93,6 +108,12 @@ void write_shape(ByteWriter& w, const FillStroke& shape) {
     const VoxelPos &a = shape.points[i - 1], &b = shape.points[i];
     write_position(w, {b.x - a.x, b.y - a.y, b.z - a.z});
   }
+}
+
+void write_shape(ByteWriter& w, const Paste& shape) {
+  write_position(w, shape.at);
+  w.u8(shape.orientation.to_byte());
+  write_clipboard(w, *shape.clipboard);
 }
 
 std::int32_t read_coordinate(ByteReader& r) {
@@ -133,8 +154,33 @@ FillStroke read_stroke(ByteReader& r) {
   return shape;
 }
 
+Paste read_paste(ByteReader& r) {
+  Paste shape;
+  shape.at = read_position(r);
+  const auto orientation = Orientation::of_byte(r.u8());
+  if (!orientation) {
+    r.reject(ErrorCode::bad_value, "unknown orientation");
+    return shape;
+  }
+  shape.orientation = *orientation;
+  shape.clipboard = read_clipboard(r);
+  return shape;
+}
+
 Material read_material(ByteReader& r) {
   return static_cast<Material>(r.varint_max(0xffff, "material id exceeds 16 bits"));
+}
+
+bool is_kind(std::uint8_t tag) {
+  switch (static_cast<EditKind>(tag)) {
+    case EditKind::set_voxel:
+    case EditKind::fill_box:
+    case EditKind::fill_sphere:
+    case EditKind::fill_stroke:
+    case EditKind::paste:
+      return true;
+  }
+  return false;
 }
 
 EditShape read_shape(ByteReader& r, std::uint8_t tag) {
@@ -157,13 +203,19 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
     }
     case EditKind::fill_stroke:
       return read_stroke(r);
+    case EditKind::paste:
+      return read_paste(r);
   }
   return SetVoxel{};  // unknown tags were rejected before
 }
 
 }  // namespace
 
-EditKind kind_of(const EditDescriptor& edit) { return static_cast<EditKind>(edit.shape.index() + 1); }
+EditKind kind_of(const EditDescriptor& edit) {
+  constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke, EditKind::paste};
+  return kKinds[edit.shape.index()];
+}
 
 Result<void> validate(const EditDescriptor& edit) {
   if (static_cast<std::uint8_t>(edit.mask.kind) > static_cast<std::uint8_t>(MaskKind::only_material)) {
@@ -172,7 +224,16 @@ Result<void> validate(const EditDescriptor& edit) {
   if (edit.mask.kind != MaskKind::only_material && edit.mask.material != kEmpty) {
     return fail(ErrorCode::bad_value, "mask material without an only_material mask");
   }
+  if (std::holds_alternative<Paste>(edit.shape) && edit.material != kEmpty) {
+    return fail(ErrorCode::bad_value, "paste with a material of its own");
+  }
   return std::visit([](const auto& shape) { return validate_shape(shape); }, edit.shape);
+}
+
+Material material_max(const EditDescriptor& edit) {
+  const Material own = std::max(edit.material, edit.mask.material);
+  const auto* paste = std::get_if<Paste>(&edit.shape);
+  return paste == nullptr ? own : std::max(own, paste->clipboard->palette().back());
 }
 
 void encode(const EditDescriptor& edit, Bytes& out) {
@@ -195,8 +256,7 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
   ByteReader r(in);
   EditDescriptor edit;
   const std::uint8_t tag = r.u8();
-  if (tag < static_cast<std::uint8_t>(EditKind::set_voxel) ||
-      tag > static_cast<std::uint8_t>(EditKind::fill_stroke)) {
+  if (!is_kind(tag)) {
     r.reject(ErrorCode::unknown_kind, "unknown edit kind");
   }
   // The kind's bound; a record has room for more. Before anything else of it is read.

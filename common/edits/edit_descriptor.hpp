@@ -1,9 +1,10 @@
-// EditDescriptor: what an edit does, as geometry, a mask and a material. One record for a whole brush stroke.
-// Its effect on a chunk depends only on the descriptor and that chunk's voxels.
+// EditDescriptor: what an edit does, as geometry, a mask and a material. One record for a whole brush stroke
+// or pasted clipboard. Its effect on a chunk depends only on the descriptor and that chunk's voxels.
 // The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire, in the log and in exports.
 // A kind's meaning is frozen; a change is a new kind.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -11,12 +12,19 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
+#include "common/edits/clipboard.hpp"
+#include "common/edits/orientation.hpp"
 
 namespace runstone {
 
-/// Tags, stored. 6 (paste) is reserved. 5 is unused: to replace a material in a box is fill_box with the mask
-/// only_material.
-enum class EditKind : std::uint8_t { set_voxel = 1, fill_box = 2, fill_sphere = 3, fill_stroke = 4 };
+/// Tags, stored. 5 is unused: to replace a material in a box is fill_box with the mask only_material.
+enum class EditKind : std::uint8_t {
+  set_voxel = 1,
+  fill_box = 2,
+  fill_sphere = 3,
+  fill_stroke = 4,
+  paste = 6
+};
 
 /// Which voxels of the geometry an edit may write. Stored.
 enum class MaskKind : std::uint8_t { everything = 0, only_empty = 1, only_solid = 2, only_material = 3 };
@@ -65,12 +73,24 @@ struct FillStroke {
   friend bool operator==(const FillStroke&, const FillStroke&) = default;
 };
 
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke>;  // order follows EditKind
+/// The touched cells of a clipboard, each with its own material.
+struct Paste {
+  VoxelPos at;  // smallest corner in the world of the whole clipboard as it is turned, touched there or not
+  std::shared_ptr<const Clipboard> clipboard;
+  Orientation orientation;
+  friend bool operator==(const Paste& a, const Paste& b) {
+    const bool same = a.clipboard == b.clipboard ||
+                      (a.clipboard != nullptr && b.clipboard != nullptr && *a.clipboard == *b.clipboard);
+    return same && a.at == b.at && a.orientation == b.orientation;
+  }
+};
+
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;  // order follows EditKind
 
 struct EditDescriptor {
   EditShape shape;
   Mask mask;
-  Material material = kEmpty;  // kEmpty removes
+  Material material = kEmpty;  // kEmpty removes; kEmpty for a paste, whose cells have theirs
   friend bool operator==(const EditDescriptor&, const EditDescriptor&) = default;
 };
 
@@ -84,13 +104,18 @@ EditKind kind_of(const EditDescriptor& edit);
 
 /// Bytes that a descriptor of this kind may have.
 constexpr std::size_t descriptor_bytes_max(EditKind kind) {
+  if (kind == EditKind::paste) return 64 + kClipboardBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
-inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::fill_stroke);  // of all
+inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);  // of all
 
 /// Names the first field outside its range (position beyond the world, empty or oversized box, radius, a
-/// stroke's points).
+/// stroke's points, a paste without a clipboard). A clipboard is valid in itself. O(1); stroke: O(points).
 Result<void> validate(const EditDescriptor& edit);
+
+/// Largest id among the materials that the edit writes and asks for in its mask: a table that knows it knows
+/// all of them. Requires a valid descriptor. O(1).
+Material material_max(const EditDescriptor& edit);
 
 /// Appends the canonical bytes. Requires a valid descriptor.
 void encode(const EditDescriptor& edit, Bytes& out);

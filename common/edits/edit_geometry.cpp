@@ -6,6 +6,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/edits/ordered_shape.hpp"
+#include "common/edits/placed_clipboard.hpp"
 
 namespace runstone {
 namespace {
@@ -29,6 +30,7 @@ VoxelBox box_of_shape(const FillStroke& shape) {
   return {{box.min.x - r, box.min.y - r, box.min.z - r},
           {box.max.x + r + 1, box.max.y + r + 1, box.max.z + r + 1}};
 }
+VoxelBox box_of_shape(const Paste& shape) { return box_of(shape); }
 
 std::uint64_t volume_of(const VoxelBox& b) {
   return static_cast<std::uint64_t>(b.max.x - b.min.x) * static_cast<std::uint64_t>(b.max.y - b.min.y) *
@@ -127,6 +129,7 @@ std::uint64_t counted_voxels(const EditDescriptor& edit) {
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) count += counted_segment(*stroke, i);
     return count;
   }
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) return paste->clipboard->touched();
   return volume_of(bounding_box(edit));
 }
 
@@ -138,6 +141,7 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box) {
     }
     return false;
   }
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) return touches(*paste, box);
   const auto* sphere = std::get_if<FillSphere>(&edit.shape);
   if (sphere == nullptr) return !intersect(bounding_box(edit), box).empty();
   // The voxel of the box nearest to the centre decides: distances are taken between voxel positions.
@@ -165,6 +169,7 @@ std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t 
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) return touched_chunks(*paste, edge);
   append_chunks(chunk_range(bounding_box(edit), edge), out,
                 [&](ChunkCoord c) { return touches(edit, box_of(c, edge)); });
   return out;
@@ -185,7 +190,7 @@ void append_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent, Ax
                   std::vector<IndexSpan>& out) {
   const std::size_t start = out.size();
   std::size_t parts = 0;
-  for_each_part(edit, origin, extent, order, [&](const OrderedShape& shape) {
+  for_each_part(edit, origin, extent, order, [&](const OrderedShape& shape, Material) {
     append_spans(shape, ordered(extent, order), out);
     ++parts;
   });

@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-/// Smallest box that holds the geometry (mask ignored).
+/// Smallest box that holds the geometry (mask ignored). O(1); stroke: O(points).
 VoxelBox bounding_box(const EditDescriptor& edit);
 
 /// Smallest box that holds the capsule from point `i` of the stroke to the next one.
@@ -18,11 +18,11 @@ VoxelBox segment_box(const FillStroke& stroke, std::size_t i);
 
 /// Voxels that the geometry counts for where edits are limited, mask ignored: never fewer than it has. Exact
 /// but for strokes, whose segments are counted each for itself, from above (docs/edit-log.md), so that the
-/// count bounds their work too. Sphere: O(r^2). Stroke: O(points).
+/// count bounds their work too. Of a paste the touched cells. Sphere: O(r^2). Stroke: O(points).
 std::uint64_t counted_voxels(const EditDescriptor& edit);
 
 /// Whether the geometry has a voxel in this box. Exact. O(1); stroke: O(points), and O(lines of the box that
-/// a segment meets) where one comes close.
+/// a segment meets) where one comes close; paste: O(lines of the clipboard in the box * log runs).
 bool touches(const EditDescriptor& edit, const VoxelBox& box);
 
 /// Chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z. This order is part of
@@ -41,7 +41,8 @@ struct IndexSpan {
 };
 
 /// Appends the stretches of the chunk at `origin` that the geometry covers: ascending, disjoint, not adjacent
-/// (whole lines and layers join into one). O(lines covered); stroke: O(n log n) of the rows of its segments.
+/// (whole lines and layers join into one). O(lines covered); stroke and paste: O(n log n) of the rows of their
+/// parts.
 void append_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order,
                   std::vector<IndexSpan>& out);
 

@@ -17,8 +17,9 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
   for (const EditDescriptor& edit : edits) {
     RUNSTONE_DASSERT(validate(edit).has_value());
     const std::size_t before = stack.size();
-    for_each_part(edit, origin, chunk.extent, chunk.order,
-                  [&](const OrderedShape& shape) { stack.push_back({shape, edit.mask, edit.material}); });
+    for_each_part(edit, origin, chunk.extent, chunk.order, [&](const OrderedShape& shape, Material material) {
+      stack.push_back({shape, edit.mask, material});
+    });
     count += stack.size() != before ? 1 : 0;
   }
   return count;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -243,6 +244,24 @@ class Sweep {
   LineBuffer before_, after_;
 };
 
+// The spans become what `edit` makes of them. Requires ascending spans, none before the cursor.
+template <class Runs>
+void walk_spans(RunCursor<Runs>& cursor, const StackedEdit& edit, std::span<const IndexSpan> spans,
+                ChangeTally& tally) {
+  for (const IndexSpan& span : spans) {
+    cursor.seek(span.first);
+    for (VoxelIndex at = span.first; at < span.last;) {
+      const VoxelIndex end = std::min(cursor.end(), span.last);
+      const Material before = cursor.material();
+      if (before != edit.material && edit.mask.admits(before)) {
+        tally.stretch(at, end, before, edit.material);
+      }
+      at = end;
+      if (at < span.last) cursor.next();
+    }
+  }
+}
+
 }  // namespace
 
 void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally) {
@@ -253,25 +272,22 @@ void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& ta
 
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally) {
   RUNSTONE_ASSERT(!scratch.stack.empty());
-  const StackedEdit& edit = scratch.stack.front();  // its parts differ in shape alone
+  const OrderedExtent extent = ordered(chunk.extent, chunk.order);
   scratch.spans.clear();
-  for (const StackedEdit& part : scratch.stack) {
-    append_spans(part.shape, ordered(chunk.extent, chunk.order), scratch.spans);
-  }
-  if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     RunCursor<Runs> cursor(runs);
-    for (const IndexSpan& span : scratch.spans) {
-      cursor.seek(span.first);
-      for (VoxelIndex at = span.first; at < span.last;) {
-        const VoxelIndex end = std::min(cursor.end(), span.last);
-        const Material before = cursor.material();
-        if (before != edit.material && edit.mask.admits(before)) {
-          tally.stretch(at, end, before, edit.material);
-        }
-        at = end;
-        if (at < span.last) cursor.next();
-      }
+    if (scratch.stack.front().shape.form == OrderedShape::Form::capsule) {
+      // The segments of a stroke overlap, and differ in shape alone.
+      for (const StackedEdit& part : scratch.stack) append_spans(part.shape, extent, scratch.spans);
+      if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
+      walk_spans(cursor, scratch.stack.front(), scratch.spans, tally);
+      return;
+    }
+    // The boxes of a paste come in index order, none overlapping, each with its material.
+    for (const StackedEdit& part : scratch.stack) {
+      scratch.spans.clear();
+      append_spans(part.shape, extent, scratch.spans);
+      walk_spans(cursor, part, scratch.spans, tally);
     }
   });
 }

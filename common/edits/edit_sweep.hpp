@@ -16,7 +16,7 @@ namespace runstone {
 void sweep_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
 
 /// The same for a stack that is one edit, be it in several parts: walks the runs inside each span. O(spans *
-/// log(runs between) + runs crossed); in several parts, also O(n log n) of their spans.
+/// log(runs between) + runs crossed); for a stroke, also O(n log n) of the spans of its segments.
 void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tally);
 
 }  // namespace runstone

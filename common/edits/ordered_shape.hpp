@@ -2,7 +2,8 @@
 // axis) and clipped to it. Boxes, spheres and the segments of a stroke are convex, so each line of the chunk
 // meets them in at most one row of voxels; whoever needs the geometry asks for these rows. A stroke is as
 // many shapes as it has segments here: to apply a mask and a material twice to a voxel is to apply them once,
-// since what the first one wrote the second one leaves or writes again. Internal to edits. Integers only.
+// since what the first one wrote the second one leaves or writes again. A paste is as many boxes as its runs
+// have here, none of which overlap. Internal to edits. Integers only.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,7 +14,9 @@
 
 #include "common/edits/capsule_row.hpp"
 #include "common/edits/edit_geometry.hpp"
+#include "common/edits/placed_clipboard.hpp"
 #include "common/runs/axis_order.hpp"
+#include "common/runs/span_boxes.hpp"
 
 namespace runstone {
 
@@ -41,7 +44,7 @@ struct OrderedShape {
 };
 
 /// Nothing when the bounding box misses the chunk. O(1). A sphere may still have no voxel inside. Not for
-/// strokes: their segments are clipped one by one.
+/// strokes and pastes: their parts are clipped one by one.
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order);
 
 /// The segment from point `i` of the stroke to the next one, clipped to a box of voxels, relative to the
@@ -53,16 +56,46 @@ std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i
 /// Whether the capsule has a voxel inside its clipped box. Exact. O(lines it meets until one is found).
 bool has_voxel(const OrderedShape& capsule);
 
-/// Calls part(shape) for each shape of the edit that may have a voxel in the chunk: one, or one per segment.
+/// Calls part(box, material) for the boxes of the paste's runs in the chunk, in index order. Takes scratch of
+/// its own. O(runs inside + lines inside * log runs).
+template <class F>
+void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder order, F&& part) {
+  const auto placed = placed_cells(paste, chunk, order);
+  if (!placed) return;
+  const VoxelPos& low = placed->box.min;
+  const auto axes = axes_of(order);
+  const std::array<std::int32_t, 3> offset = {low.x - chunk.min.x, low.y - chunk.min.y, low.z - chunk.min.z};
+  placed->cells.runs.visit([&](const auto& runs) {
+    std::uint32_t begin = 0;
+    for (std::size_t i = 0; i < runs.size(); begin = runs.end(i++)) {
+      if (runs.material(i) == 0) continue;
+      const Material material = paste.clipboard->material(runs.material(i));
+      for_each_box(ordered(placed->cells.extent, order), begin, runs.end(i), [&](const OrderedBox& box) {
+        OrderedShape shape;
+        for (std::size_t rank = 0; rank < 3; ++rank) {
+          const auto by = static_cast<std::uint32_t>(offset[static_cast<std::size_t>(axes[rank])]);
+          shape.first[rank] = box.first[rank] + by;
+          shape.last[rank] = box.last[rank] + by;
+        }
+        part(shape, material);
+      });
+    }
+  });
+}
+
+/// Calls part(shape, material) for each shape of the edit that may have a voxel in the chunk: one, or one per
+/// segment of a stroke or box of a paste.
 template <class F>
 void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order, F&& part) {
+  const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
-    const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
     for (std::size_t i = 0; i + 1 < stroke->points.size(); ++i) {
-      if (const auto shape = clip_segment(*stroke, i, chunk, order)) part(*shape);
+      if (const auto shape = clip_segment(*stroke, i, chunk, order)) part(*shape, edit.material);
     }
+  } else if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    for_each_pasted_box(*paste, chunk, order, part);
   } else if (const auto shape = clip(edit, origin, extent, order)) {
-    part(*shape);
+    part(*shape, edit.material);
   }
 }
 

@@ -13,22 +13,28 @@ inline constexpr unsigned kSideMax = 128;
 using VoxelIndex = std::uint32_t;
 
 struct Extent {
-  std::uint8_t x = 32, y = 32, z = 32;  // voxels, each kSideMin .. kSideMax
+  std::uint8_t x = 32, y = 32, z = 32;  // voxels; of a chunk kSideMin .. kSideMax each
   friend auto operator<=>(const Extent&, const Extent&) = default;
 
   constexpr std::uint32_t volume() const {
     return static_cast<std::uint32_t>(x) * static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(z);
   }
   constexpr std::array<std::uint8_t, 3> sides() const { return {x, y, z}; }
-  constexpr bool valid() const {
-    for (const unsigned side : sides()) {
-      if (side < kSideMin || side > kSideMax) return false;
-    }
-    return true;
-  }
+  /// Of a chunk.
+  constexpr bool valid() const { return sides_from(kSideMin); }
+  /// Of a cuboid that is no chunk of its own: a part of one, a clipboard. Sides 1 .. kSideMax.
+  constexpr bool valid_part() const { return sides_from(1); }
   static constexpr Extent cube(unsigned edge) {
     const auto side = static_cast<std::uint8_t>(edge);
     return {side, side, side};
+  }
+
+ private:
+  constexpr bool sides_from(unsigned least) const {
+    for (const unsigned side : sides()) {
+      if (side < least || side > kSideMax) return false;
+    }
+    return true;
   }
 };
 

@@ -5,7 +5,7 @@
 namespace runstone {
 
 RunBuilder::RunBuilder(Extent extent, AxisOrder order) : chunk_{extent, order, RunList{extent.volume()}} {
-  RUNSTONE_ASSERT(extent.valid());
+  RUNSTONE_ASSERT(extent.valid_part());
 }
 
 void RunBuilder::append(std::uint32_t count, Material material) {

@@ -83,6 +83,11 @@ bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material mater
 
 Result<void> validate(const RunChunk& chunk) {
   if (!chunk.extent.valid()) return fail(ErrorCode::bad_value, "chunk side outside 8..128");
+  return validate_runs(chunk);
+}
+
+Result<void> validate_runs(const RunChunk& chunk) {
+  RUNSTONE_ASSERT(chunk.extent.valid_part());
   if (static_cast<std::uint8_t>(chunk.order) >= kAxisOrderCount)
     return fail(ErrorCode::bad_value, "unknown axis order");
   if (chunk.runs.is_narrow() != (chunk.volume() <= kNarrowVolumeMax)) {

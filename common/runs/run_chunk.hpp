@@ -51,6 +51,8 @@ bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material mater
 
 /// Names the first broken invariant; the offset is the run index. Bytes from outside pass here before use.
 Result<void> validate(const RunChunk& chunk);
+/// The same but for the extent, which may be that of a part: for runs that are no chunk (a clipboard's cells).
+Result<void> validate_runs(const RunChunk& chunk);
 
 /// Digest from scratch. A run is at most five boxes, or the difference of two prefix sums over whole layers,
 /// whole lines and part of a line, as it is computed here: O(runs).

@@ -68,8 +68,7 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
       ordered.previous.push_back(chunks_.push(key, version, offer.edit));
       batch.touched.push_back(key);
     }
-    bytes += kOrderedEditBytesMax + descriptor_bytes_max(kind_of(offer.edit)) +
-             kPreviousBytesMax * ordered.previous.size();
+    bytes += kOrderedEditBytesMax + encode(offer.edit).size() + kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
     batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
   }

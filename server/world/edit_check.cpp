@@ -8,9 +8,7 @@ namespace runstone {
 
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits) {
   if (!validate(edit)) return RejectReason::bad_edit;
-  const bool knows_mask =
-      edit.mask.kind != MaskKind::only_material || edit.mask.material < limits.material_count;
-  if (edit.material >= limits.material_count || !knows_mask) return RejectReason::unknown_material;
+  if (material_max(edit) >= limits.material_count) return RejectReason::unknown_material;
   if (!within(edit, limits.heights)) return RejectReason::outside_world;
   if (touched_chunks_bound(edit, limits.chunk_edge) > limits.touched_chunks_max)
     return RejectReason::too_large;

@@ -18,8 +18,8 @@ struct EditLimits {
   std::uint64_t touched_chunks_max = kTouchedChunksMax;
 };
 
-/// Nothing if the edit is allowed; else why not: bad_edit, unknown_material (the mask's too), outside_world
-/// or too_large.
+/// Nothing if the edit is allowed; else why not: bad_edit, unknown_material (the mask's and a clipboard's
+/// too), outside_world or too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
 
 /// Whether the geometry's bounding box comes within `reach` voxels of `from`.

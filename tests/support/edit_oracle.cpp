@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <ostream>
 
+#include "common/edits/clipboard_builder.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/support/random_chunk.hpp"
+
 namespace runstone {
 
 std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit) {
@@ -26,6 +30,14 @@ std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit) {
       print(p);
     }
     out << " r " << stroke->radius;
+  } else if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    const Clipboard& clipboard = *paste->clipboard;
+    out << "paste ";
+    print(paste->at);
+    out << " orientation " << static_cast<int>(paste->orientation.to_byte()) << " order "
+        << static_cast<int>(clipboard.cells().order);
+    for (const unsigned side : clipboard.extent().sides()) out << ' ' << side;
+    out << " touched " << clipboard.touched();
   }
   out << " := " << edit.material;
   switch (edit.mask.kind) {
@@ -82,9 +94,54 @@ bool near_segment(VoxelPos a, VoxelPos b, VoxelPos at, std::int64_t reach) {
   return squared <= reach * whole * whole;
 }
 
+// Cell numbers voxel by voxel. The last one is kept, since the oracle asks for cell after cell.
+const DenseChunk& dense_cells(const std::shared_ptr<const Clipboard>& clipboard) {
+  thread_local std::vector<std::pair<std::shared_ptr<const Clipboard>, DenseChunk>> kept;
+  for (const auto& [key, cells] : kept) {
+    if (key == clipboard) return cells;
+  }
+  if (kept.size() == 64) kept.clear();
+  const RunChunk& runs = clipboard->cells();
+  DenseChunk cells(runs.extent);
+  std::size_t run = 0;
+  for (std::uint32_t i = 0; i < runs.volume(); ++i) {
+    if (i == runs.runs.end(run)) ++run;
+    const VoxelPos p = dense_pos(runs.extent, runs.order, i);
+    cells.set(p.x, p.y, p.z, runs.runs.material(run));
+  }
+  return kept.emplace_back(clipboard, std::move(cells)).second;
+}
+
+std::optional<Material> pasted(const Paste& paste, VoxelPos at, bool turned) {
+  const char* const names[6] = {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
+  const int byte = turned ? paste.orientation.to_byte() : 0;
+  const DenseChunk& cells = dense_cells(paste.clipboard);
+  const std::array<int, 3> off = {at.x - paste.at.x, at.y - paste.at.y, at.z - paste.at.z};
+  const std::array<int, 3> sides = {cells.side_x(), cells.side_y(), cells.side_z()};
+  std::array<int, 3> cell{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(names[byte / 8][i] - 'x');
+    const bool backwards = (byte % 8 & (1 << i)) != 0;
+    cell[axis] = backwards ? sides[axis] - 1 - off[i] : off[i];
+  }
+  if (!cells.inside(cell[0], cell[1], cell[2])) return std::nullopt;
+  const Material number = cells.at(cell[0], cell[1], cell[2]);
+  if (number == 0) return std::nullopt;
+  return paste.clipboard->palette().at(number - 1U);
+}
+
 }  // namespace
 
+std::optional<Material> oracle_writes(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    return pasted(*paste, at, fault != OracleFault::unturned_paste);
+  }
+  if (!oracle_covers(edit, at, fault)) return std::nullopt;
+  return edit.material;
+}
+
 bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
+  if (std::holds_alternative<Paste>(edit.shape)) return oracle_writes(edit, at, fault).has_value();
   if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {
     return voxel->at.x == at.x && voxel->at.y == at.y && voxel->at.z == at.z;
   }
@@ -124,9 +181,9 @@ OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const E
         const Material before = chunk.at(x, y, z);
         Material now = before;
         for (const EditDescriptor& edit : edits) {
-          const bool inside = oracle_covers(edit, {origin.x + x, origin.y + y, origin.z + z}, fault);
+          const auto written = oracle_writes(edit, {origin.x + x, origin.y + y, origin.z + z}, fault);
           const Material judged = fault == OracleFault::early_mask ? before : now;
-          if (inside && is_admitted(edit.mask, judged)) now = edit.material;
+          if (written && is_admitted(edit.mask, judged)) now = *written;
         }
         if (now == before) continue;
         chunk.set(x, y, z, now);
@@ -224,6 +281,37 @@ FillStroke random_stroke(SplitMix64& rng, VoxelPos at) {
   return stroke;
 }
 
+std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side_max,
+                                                  unsigned material_count) {
+  const auto side = [&] {
+    const bool long_one = rng.below(4) == 0;
+    return static_cast<std::uint8_t>(1 + rng.below(long_one ? side_max : std::min(side_max, 7U)));
+  };
+  const Extent extent{side(), side(), side()};
+  const AxisOrder order = random_order(rng);
+  // From a stretch per cell to few long ones, from all touched to hardly any.
+  const std::uint32_t stretch_max = rng.below(3) == 0 ? 1 : rng.below(2) == 0 ? 9 : extent.volume();
+  const std::uint32_t untouched_of_8 = rng.below(8);
+  ClipboardBuilder builder(extent, order);
+  builder.append(1, static_cast<Material>(rng.below(material_count)));  // something is touched
+  while (builder.filled() < extent.volume()) {
+    const std::uint32_t count = std::min(1 + rng.below(stretch_max), extent.volume() - builder.filled());
+    if (rng.below(8) < untouched_of_8) {
+      builder.append(count, std::nullopt);
+    } else {
+      builder.append(count, static_cast<Material>(rng.below(material_count)));
+    }
+  }
+  const auto cheapest = *builder.finish();
+  // Any order may stand in a descriptor.
+  if (rng.below(2) == 0) return cheapest;
+  return *Clipboard::of(cheapest->palette(), reorder(cheapest->cells(), random_order(rng)));
+}
+
+Orientation random_orientation(SplitMix64& rng) {
+  return *Orientation::of_byte(static_cast<std::uint8_t>(rng.below(kOrientationCount)));
+}
+
 EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent) {
   EditDescriptor edit;
   const std::array<std::int32_t, 3> sides = {extent.x, extent.y, extent.z};
@@ -242,10 +330,18 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
     at[i] += low[i];
     end[i] += low[i];
   }
-  switch (rng.below(4)) {
+  switch (rng.below(5)) {
     case 0:
       edit.shape = SetVoxel{{at[0], at[1], at[2]}};
       break;
+    case 3: {
+      Paste paste{{at[0], at[1], at[2]}, random_clipboard(rng, 30, 8), random_orientation(rng)};
+      // Often reaching into the chunk from below, too.
+      if (rng.below(2) == 0) paste.at.x -= paste.clipboard->extent().y / 2;
+      if (rng.below(2) == 0) paste.at.z -= paste.clipboard->extent().x / 2;
+      edit.shape = paste;
+      break;
+    }
     case 1:
       edit.shape = FillBox{{{at[0], at[1], at[2]}, {end[0], end[1], end[2]}}};
       break;
@@ -259,6 +355,7 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
     }
   }
   edit.material = static_cast<Material>(rng.below(3) == 0 ? 0 : rng.below(8));
+  if (std::holds_alternative<Paste>(edit.shape)) edit.material = kEmpty;
   if (rng.below(2) == 0) {
     edit.mask.kind = static_cast<MaskKind>(rng.below(4));
     if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.below(8));
@@ -276,7 +373,14 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
                        : pick(rng, low, high);
   };
   const auto id = [&rng] { return static_cast<Material>(rng.below(4) == 0 ? 65535 : rng.below(65536)); };
-  switch (rng.below(4)) {
+  switch (rng.below(5)) {
+    case 3: {
+      const auto inside = [&] { return span(-kWorldLimit, kWorldLimit - 20); };
+      edit.shape = Paste{{inside(), inside(), inside()},
+                         random_clipboard(rng, 20, rng.below(4) == 0 ? 65536 : 5),
+                         random_orientation(rng)};
+      break;
+    }
     case 0:
       edit.shape = SetVoxel{{span(-kWorldLimit, kWorldLimit - 1), span(-kWorldLimit, kWorldLimit - 1),
                              span(-kWorldLimit, kWorldLimit - 1)}};
@@ -323,7 +427,7 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
       edit.shape = sphere;
     }
   }
-  edit.material = id();
+  if (!std::holds_alternative<Paste>(edit.shape)) edit.material = id();
   edit.mask.kind = static_cast<MaskKind>(rng.below(4));
   if (edit.mask.kind == MaskKind::only_material) edit.mask.material = id();
   return edit;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <iosfwd>
+#include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <tuple>
@@ -30,10 +32,15 @@ enum class OracleFault {
   none,
   thin_sphere,       // |d| <= r instead of |d| < r + 1/2
   thin_stroke,       // distance <= r likewise
+  unturned_paste,    // a paste's cells lie as in the clipboard
   early_mask,        // masks look at the chunk before the stack
   lost_voxel,        // the last changed voxel is left as it was
   miscounted_voxel,  // one changed voxel too many is reported
 };
+
+/// What the geometry writes at this voxel, mask ignored; nothing where it does not hold it.
+std::optional<Material> oracle_writes(const EditDescriptor& edit, VoxelPos at,
+                                      OracleFault fault = OracleFault::none);
 
 /// Whether the geometry holds this voxel.
 bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault = OracleFault::none);
@@ -57,6 +64,13 @@ std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_area
 /// The spans of an edit's geometry in a chunk, maximal and ascending, found voxel by voxel.
 std::vector<IndexSpan> oracle_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                     AxisOrder order);
+
+/// Sides 1 .. side_max, mostly small; materials below `material_count`; any axis order.
+std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side_max,
+                                                  unsigned material_count);
+
+/// One of all 48.
+Orientation random_orientation(SplitMix64& rng);
 
 /// A stroke of few points that starts at `at` and stays within 33 voxels of it.
 FillStroke random_stroke(SplitMix64& rng, VoxelPos at);

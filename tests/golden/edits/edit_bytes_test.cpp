@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "common/edits/clipboard_builder.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "common/edits/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
@@ -50,6 +51,32 @@ TEST_CASE("descriptor bytes of a stroke are pinned", "[edits][golden]") {
                0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
                0x01, 0x00, 0x80, 0x10,    // -1, 0, +1024
                0x02, 0x01, 0xff, 0x0f});  // +1, -1, -1024
+}
+
+TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
+  ClipboardBuilder cells({3, 1, 2}, AxisOrder::xyz);
+  cells.append(2, Material{7});
+  cells.append(2, std::nullopt);
+  cells.append(1, kEmpty);
+  cells.append(1, Material{7});
+  const Paste paste{{0, 64, -64}, *cells.finish(), Orientation{}.rotated_about_y(1)};
+  check_bytes(
+      {paste, {MaskKind::only_empty, 0}, kEmpty},
+      {0x06, 0x01, 0x00,          // paste, only_empty, no material of its own
+       0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
+       0x2c,                      // z, y, x of the clipboard along x, y, z; backwards along z
+       0x00, 0x02, 0x00, 0x01,    // order x, y, z; sides less one
+       0x01, 0x00, 0x06,          // palette of 2: 0, then 0 + 1 + 6
+       0x05, 0x02, 0x00, 0x01});  // 2 of number 2; 2 of 0 (0 of 0, 1); 1 of 1 (0 of 1, 2); 1 of 2 (1 of 0, 2)
+  ClipboardBuilder whole(Extent::cube(128), AxisOrder::xyz);
+  whole.append(Extent::cube(128).volume(), Material{65535});
+  check_bytes({Paste{{-kWorldLimit, 0, 0}, *whole.finish(), *Orientation::of_byte(47)}, {}, kEmpty},
+              {0x06, 0x00, 0x00,                          // paste everywhere
+               0xff, 0xff, 0xff, 0xff, 0x03, 0x00, 0x00,  // zigzag(-2^29) = 2^30 - 1, 0, 0
+               0x2f,                                      // z, y, x, all backwards
+               0x00, 0x7f, 0x7f, 0x7f,                    // order x, y, z; sides of 128
+               0x00, 0xff, 0xff, 0x03,                    // palette of 1: 65,535
+               0xff, 0xff, 0xff, 0x01});                  // (2^21 - 1) * 2 + 1
 }
 
 TEST_CASE("record bytes and their checksum are pinned", "[edits][golden]") {

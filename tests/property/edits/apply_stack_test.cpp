@@ -206,6 +206,7 @@ TEST_CASE("a broken edit oracle is caught", "[edits][property]") {
   CHECK(caught_by(OracleFault::none).empty());
   CHECK(caught_by(OracleFault::thin_sphere)["voxels"] > 20);
   CHECK(caught_by(OracleFault::thin_stroke)["voxels"] > 20);
+  CHECK(caught_by(OracleFault::unturned_paste)["voxels"] > 20);
   CHECK(caught_by(OracleFault::early_mask)["voxels"] > 20);
   CHECK(caught_by(OracleFault::lost_voxel)["voxels"] > 60);
   CHECK(caught_by(OracleFault::miscounted_voxel)["voxels_changed"] > 60);
