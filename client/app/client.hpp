@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/app/exit_code.hpp"
 #include "client/app/options.hpp"
 #include "client/app/picture.hpp"
 #include "client/app/player.hpp"
@@ -23,11 +24,6 @@
 #include "client/schedule/view_pace.hpp"
 
 namespace runstone {
-
-/// Exit codes of the program.
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;   // an expectation of the script failed, or drift was found
-inline constexpr int kExitNoStart = 2;  // bad arguments, no OpenGL or no more, no server
 
 class Client final : private ScriptHost {
  public:

@@ -1,5 +1,6 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "client/app/client.hpp"
+#include "client/app/draw_program.hpp"
 
 namespace {
 
@@ -54,6 +56,10 @@ int run(runstone::ClientOptions options) {
 int main(int argc, char** argv) {
   auto parsed = runstone::parse_options(argc, argv);
   if (!parsed.options) return parsed.exit_code;
+  if (parsed.options->draw) {
+    return runstone::draw_program(STDIN_FILENO, STDOUT_FILENO, parsed.options->workers,
+                                  runstone::make_headless_screen);
+  }
   // Standard output is for the table.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("client"));
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);

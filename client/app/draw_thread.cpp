@@ -1,30 +1,16 @@
 #include "client/app/draw_thread.hpp"
 
-#ifdef __linux__
-#include <sys/resource.h>
-#include <unistd.h>
-#endif
-
 #include <algorithm>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 
+#include "client/app/low_priority.hpp"
 #include "client/net/steady_clock.hpp"
 #include "common/core/assert.hpp"
 
 namespace runstone {
 namespace {
-
-/// Threads that the driver starts from here on inherit it: llvmpipe's would else take the cores from the
-/// threads that apply and mesh. Not SCHED_IDLE: on a busy machine that starves frames for seconds. Where it
-/// cannot be had the client works as well, only later.
-void lower_priority() {
-#ifdef __linux__
-  constexpr int kNice = 10;
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice));
-#endif
-}
 
 FrameDone draw_frame(Screen& screen, const FrameOrder& order) {
   FrameDone done;

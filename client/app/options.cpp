@@ -33,7 +33,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   std::string address, size, encoding = "auto";
   unsigned view = out.view_radius, view_v = 0;
   bool no_render = false;
-  app.add_option("--connect", address, "server, HOST:PORT")->required();
+  app.add_option("--connect", address, "server, HOST:PORT");
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
         return name.empty() || name.size() > kPlayerNameBytesMax ? "a name has 1 to 32 bytes" : "";
@@ -60,9 +60,12 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_flag("--verbose", out.verbose, "log every step");
+  app.add_flag("--draw", out.draw, "draw what standard input orders, off screen; for other programs")
+      ->excludes("--connect");
   try {
     app.parse(argc, argv);
-    std::string wrong = parse_host_port(address, out.host, out.port);
+    if (address.empty() && !out.draw) throw CLI::RequiredError("--connect");
+    std::string wrong = out.draw ? "" : parse_host_port(address, out.host, out.port);
     if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
     if (!size.empty()) wrong = parse_size(size, out);
     if (!wrong.empty()) throw CLI::ValidationError("--size", wrong);

@@ -25,6 +25,7 @@ struct ClientOptions {
   double reconnect_seconds = 30;  // without a session for this long: give up
   unsigned workers = 0;           // mesh threads; 0: one fewer than cores, at least one
   bool verbose = false;
+  bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)
 };
 
 /// The options, or the exit code of a program that has nothing more to do (help, or a mistake that was

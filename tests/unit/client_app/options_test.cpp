@@ -37,6 +37,13 @@ TEST_CASE("the address is host and port, also in v6 form", "[client_app]") {
   CHECK(refused({}) == 2);
 }
 
+TEST_CASE("a program that draws for others needs no server, and takes none", "[client_app]") {
+  CHECK(accepted({"--draw"}).draw);
+  CHECK(accepted({"--draw", "--workers", "3"}).workers == 3);
+  CHECK_FALSE(accepted({"--connect", "a:1"}).draw);
+  CHECK(refused({"--draw", "--connect", "a:1"}) == 2);
+}
+
 TEST_CASE("of two equal flags the last one counts", "[client_app]") {
   CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).host == "b");
 }

@@ -1,0 +1,108 @@
+// Draw orders: the stream with which a program without OpenGL has pictures of a world drawn by
+// `runstone-client --draw`, a child process, on whose standard input it lies (docs/client.md). Little-endian:
+//   frame   u32 body bytes | u8 kind | body
+//   world   1: u8 version (1) | u8 chunk edge | material table as TOML, without generation. First, and once
+//   chunk   2: u8 lod (0) | i32 x, y, z | chunk bytes in either encoding (chunk_codec.hpp). Held from now on
+//   forget  3: u8 lod (0) | i32 x, y, z. Nothing is known of the chunk any more
+//   picture 4: f64 x, y, z, yaw, pitch, fov_y, near, far | u16 width, height | file name, UTF-8
+//   end     5: empty. Nothing follows
+// A chunk that is not held counts as empty. Each picture is answered (draw_answer.hpp); the others are not.
+// Both sides are programs of one build, yet the reader trusts no length, number or name.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "common/core/bytes.hpp"
+#include "common/core/coords.hpp"
+#include "common/core/result.hpp"
+#include "common/materials/material_table.hpp"
+#include "common/runs/run_chunk.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+
+inline constexpr std::uint8_t kDrawVersion = 1;
+inline constexpr std::size_t kDrawHeaderBytes = 5;
+inline constexpr std::size_t kDrawBodyBytesMax = kServerChunkBytesMax;
+inline constexpr std::size_t kDrawFileBytesMax = 4096;
+inline constexpr std::uint16_t kDrawSideMin = 16, kDrawSideMax = 8192;    // pixels
+inline constexpr double kDrawDistanceMin = 0.01, kDrawDistanceMax = 1e6;  // voxels, of near and far
+inline constexpr double kDrawAngleMax = 628;  // radians either way: a hundred turns
+
+/// Where a picture is taken from. Right-handed, y up; yaw 0 looks along +z and grows towards +x; pitch is
+/// positive upward. Angles in radians, lengths in voxels.
+struct DrawCamera {
+  double x = 0, y = 0, z = 0;  // eye, within +-2 kWorldLimit
+  double yaw = 0, pitch = 0;
+  double fov_y = 1.2;             // 0.01 .. 3.1
+  double near = 0.1, far = 1000;  // what is nearer is cut away; towards `far` all fades into the sky
+  friend bool operator==(const DrawCamera&, const DrawCamera&) = default;
+};
+
+struct PictureSize {
+  std::uint16_t width = 1280, height = 720;  // pixels, kDrawSideMin .. kDrawSideMax
+  friend bool operator==(const PictureSize&, const PictureSize&) = default;
+};
+
+struct DrawWorld {
+  std::int32_t edge = 32;   // 16, 32, 64 or 128
+  MaterialTable materials;  // names, colours and visibility; how to generate from them is not sent
+};
+struct DrawChunk {
+  ChunkKey key;
+  RunChunk voxels;  // a cube of the world's edge
+};
+struct DrawForget {
+  ChunkKey key;
+};
+struct DrawPicture {
+  DrawCamera camera;
+  PictureSize size;
+  std::string file;  // a PNG; from the folder in which both programs run
+};
+struct DrawEnd {};
+using DrawOrder = std::variant<DrawWorld, DrawChunk, DrawForget, DrawPicture, DrawEnd>;
+
+/// Names the first field that is outside its range.
+Result<void> validate(const DrawPicture& picture);
+
+// Each appends one whole frame. The values must be such as the reader takes.
+void append_draw_world(std::int32_t edge, const MaterialTable& materials, Bytes& out);
+/// O(runs). Packed: an edit's chunk is some hundred bytes.
+void append_draw_chunk(const ChunkKey& key, const RunChunk& voxels, Bytes& out);
+void append_draw_forget(const ChunkKey& key, Bytes& out);
+void append_draw_picture(const DrawPicture& picture, Bytes& out);
+void append_draw_end(Bytes& out);
+
+/// Reads the stream in pieces of any size and hands out one order after another. Holds at most one body. One
+/// thread. After an error, its own or one that on_order returned, every call returns that error. Offsets of
+/// errors count bytes since the stream began and name the frame's first byte.
+class DrawOrderReader {
+ public:
+  using OnOrder = std::function<Result<void>(DrawOrder)>;
+  Result<void> feed(ByteView bytes, const OnOrder& on_order);
+  /// The stream has ended: an error (truncated) unless its last order was `end`.
+  Result<void> finish();
+  bool ended() const { return ended_; }
+
+ private:
+  Result<void> advance(ByteView bytes, const OnOrder& on_order);
+  Result<void> open_frame();
+  Result<DrawOrder> decode() const;
+
+  std::array<std::uint8_t, kDrawHeaderBytes> header_{};
+  std::size_t header_have_ = 0;
+  std::size_t body_bytes_ = 0;
+  Bytes body_;
+  std::uint64_t offset_ = 0, frame_at_ = 0;
+  std::int32_t edge_ = 0;  // 0: no world yet
+  bool ended_ = false;
+  std::optional<Error> broken_;
+};
+
+}  // namespace runstone
