@@ -31,10 +31,10 @@ struct CapsuleRow {
   friend bool operator==(const CapsuleRow&, const CapsuleRow&) = default;
 };
 
-/// Largest w with w * w <= v. Requires v < 2^62. The processor's square root, which IEEE 754 defines to the last
-/// bit, is off by one at most there; what is returned is checked in integers.
-inline std::uint64_t isqrt_wide(std::uint64_t v) {
-  auto root = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(v)));
+/// Largest w with w * w <= v. Requires 0 <= v < 2^62. The processor's square root, which IEEE 754 defines to the
+/// last bit, is off by one at most there; what is returned is checked in integers.
+inline std::int64_t isqrt_wide(std::int64_t v) {
+  auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(v)));
   root -= root * root > v ? 1 : 0;
   root += (root + 1) * (root + 1) <= v ? 1 : 0;
   return root;
@@ -46,10 +46,6 @@ constexpr std::int64_t floor_of(std::int64_t a, std::int64_t b) {  // b > 0
   return a / b - static_cast<std::int64_t>(a % b < 0);
 }
 constexpr std::int64_t ceil_of(std::int64_t a, std::int64_t b) { return -floor_of(-a, b); }
-
-inline std::int64_t root_of(std::int64_t v) {
-  return static_cast<std::int64_t>(isqrt_wide(static_cast<std::uint64_t>(v)));
-}
 
 constexpr void join(CapsuleRow& row, std::int64_t first, std::int64_t last) {
   if (last < first) return;
@@ -69,13 +65,13 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   const std::int64_t start_left = reach - n;
   if (across == 0) {  // the line runs along the segment
     if (start_left < 0) return {};
-    const std::int64_t half = detail::root_of(start_left);
+    const std::int64_t half = isqrt_wide(start_left);
     return {-half, df + half};
   }
   const std::int64_t length = df * df + across;
   const std::int64_t e = c * c + across * start_left;
   if (e < 0) return {};
-  const std::int64_t root = detail::root_of(length * e);
+  const std::int64_t root = isqrt_wide(length * e);
   CapsuleRow body{detail::ceil_of(df * c - root, across), detail::floor_of(df * c + root, across)};
   if (body.empty()) return {};  // no voxel within reach of the endless line, and so none of the segment
   if (body.first * df + c >= 0 && body.last * df + c <= length) return body;
@@ -87,12 +83,12 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   }
   CapsuleRow row = body.empty() ? CapsuleRow{} : body;
   if (start_left >= 0) {
-    const std::int64_t half = detail::root_of(start_left);
+    const std::int64_t half = isqrt_wide(start_left);
     detail::join(row, -half, half);
   }
   const std::int64_t end_left = start_left + 2 * c - across;
   if (end_left >= 0) {
-    const std::int64_t half = detail::root_of(end_left);
+    const std::int64_t half = isqrt_wide(end_left);
     detail::join(row, df - half, df + half);
   }
   return row;

@@ -33,9 +33,9 @@ void measure_stacks(EditBenchResult& result, unsigned repetitions) {
     for (const std::size_t edits : {1U, 10U, 100U, 1'000U}) {
       const StackTiming timing = time_stack(ground, mixed_edits(mix, edits, edits), repetitions);
       result.rows.push_back(
-          row_of(fmt::format("mixed edits {}, as a stack", name), 1, edits, timing.stacked_us));
+          row_of(fmt::format("mixed edits {} as a stack", name), 1, edits, timing.stacked_us));
       result.rows.push_back(
-          row_of(fmt::format("mixed edits {}, one by one", name), 1, edits, timing.one_by_one_us));
+          row_of(fmt::format("mixed edits {} one by one", name), 1, edits, timing.one_by_one_us));
       if (edits != 1'000) continue;
       const double stacked = median(timing.stacked_us);
       Bar bar =
@@ -57,13 +57,13 @@ void measure_spreads(EditBenchResult& result, unsigned repetitions) {
     result.rows.push_back(row_of(what, timing.chunks, 1, timing.us));
     return timing;
   };
-  const SpreadTiming sphere = measure("sphere of radius 50, emptied", dig);
+  const SpreadTiming sphere = measure("sphere of radius 50 emptied", dig);
   result.bars.push_back(
       at_most(fmt::format("sphere of radius 50 over terrain, {} chunks: apply", sphere.chunks),
               median(sphere.us), 1'000));
-  measure("sphere of radius 50, filled where empty", fill);
-  measure("stroke of radius 3, 3 points, 150 voxels", path);
-  measure("stroke of radius 8, 150 voxels, emptied", tunnel);
+  measure("sphere of radius 50 filled where empty", fill);
+  measure("stroke of radius 3 over 150 voxels", path);
+  measure("stroke of radius 8 over 150 voxels emptied", tunnel);
 }
 
 Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t edits, unsigned repetitions) {
@@ -75,9 +75,9 @@ Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t ed
     for (const double rate : rates) us.push_back(static_cast<double>(edits) / rate * 1e6);
     result.rows.push_back(row_of(what, timing->chunks, edits, us));
   };
-  row("replay of single voxels: log read, verified, applied, compared", timing->from_log);
+  row("replay of single voxels: log read and verified and applied and digests compared", timing->from_log);
   row("single voxels one after another: applied", timing->apply);
-  row("single voxels one after another: applied, dirty layers meshed", timing->remesh);
+  row("single voxels one after another: applied and dirty layers meshed", timing->remesh);
   result.bars.push_back(at_least("replay of single voxels from the log, edge 32, all of it",
                                  median(timing->from_log), 500'000));
   result.bars.push_back(at_least("the same from memory, apply only", median(timing->apply), 500'000));
@@ -116,8 +116,7 @@ void write_table(const EditBenchResult& result, std::ostream& out) {
 void write_csv(const EditBenchResult& result, std::ostream& out) {
   fmt::print(out, "case,chunks,edits,median_us,p90_us\n");
   for (const EditRow& row : result.rows) {
-    fmt::print(out, "\"{}\",{},{},{:.3f},{:.3f}\n", row.what, row.chunks, row.edits, row.median_us,
-               row.p90_us);
+    fmt::print(out, "{},{},{},{:.3f},{:.3f}\n", row.what, row.chunks, row.edits, row.median_us, row.p90_us);
   }
 }
 
