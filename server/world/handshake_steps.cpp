@@ -63,6 +63,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.instance = hello.instance;
   mine.name = hello.name;
   mine.proof_transcript = client_transcript(hello, welcome);
+  mine.durable_told = welcome.durable;
   mine.state = SessionState::awaits_proof;
   world.ports.set_encoding(session, welcome.encoding);
   send_or_close(world, session, welcome);
@@ -98,6 +99,8 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
                                            std::to_string(mine.author) + " name=\"" + mine.name + "\"");
   world.roster_changed = true;
   const Ready ready{mine.author, world.authority.decided().of(mine.author, mine.instance)};
+  // It may have risen since the welcome, and the world may rest from now on.
+  mine.owes_durable = world.durable != mine.durable_told;
   if (send_or_close(world, session, ready)) send_all_poses_to(world, session);
 }
 

@@ -27,7 +27,8 @@ struct WorldSession {
   AuthorId author = 0;     // from open on
   Pose pose;
   bool pose_changed = false;  // since the last poses
-  bool owes_durable = false;  // the watermark did not fit its queue: again on the next tick
+  Sequence durable_told = 0;  // the watermark in its welcome; later ones go to open sessions
+  bool owes_durable = false;  // the watermark did not reach it: again on the next tick
   std::vector<Reject> owed;   // answers that did not fit its queue, in order: again when it drains
   TokenBucket edits{0, 0};
   // Views (view_turns.hpp).

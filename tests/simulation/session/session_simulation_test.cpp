@@ -286,7 +286,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
 
 TEST_CASE("commits that vanish between server and replica are noticed and repaired", "[simulation]") {
   Simulation simulation(11);
-  simulation.server().drop_commits = 20;
+  simulation.server().drop_commits = 40;
   simulation.run(1500, 0);
   const Reckoning r = simulation.reckon();
   INFO(joined(r.faults));

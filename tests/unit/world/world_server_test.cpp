@@ -271,6 +271,28 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.ports.records.size() == 2);
 }
 
+TEST_CASE("what became durable while a session opened is told to it, though the world rests", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.edit(1, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  const Hello hello = bench.hello(2);
+  bench.server.connected(2, bench.now());
+  bench.server.received(2, hello, bench.now());
+  const auto welcome = bench.ports.messages<Welcome>(2, 0);
+  REQUIRE(welcome.size() == 1);
+  CHECK(welcome[0].durable == 0);
+  bench.server.durable(1, bench.now());
+  bench.server.received(2, bench.proof(2, hello, welcome[0]), bench.now());
+  bench.tick();
+  const auto told = bench.ports.messages<Durable>(2, kEdge);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].seq == 1);
+  bench.join(3, 3);  // whose welcome says it
+  bench.tick();
+  CHECK(bench.ports.messages<Durable>(3, kEdge).empty());
+}
+
 TEST_CASE("a session that edits too fast is told so, and goes on later", "[world]") {
   WorldConfig c = config();
   c.edits_per_second = 10;
