@@ -60,6 +60,8 @@ const std::vector<Field>& fields() {
       number("memory_mib", &C::memory_mib, 16, 1'048'576, "MiB of chunks before unused ones leave memory"),
       number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000, "edits between two rounds of snapshots"),
       number("snapshot_s", &C::snapshot_s, 1, 86'400, "seconds between two rounds of snapshots"),
+      number("keyframe_edits", &C::keyframe_edits, 0, 1'000'000'000,
+             "edits between two keyframes, at least, 0: none"),
       number("log_queue_records", &C::log_queue_records, 1, 10'000'000,
              "records until edits are rejected busy"),
       number("audit_ms", &C::audit_ms, 10, 3'600'000, "milliseconds between two audits of a session"),

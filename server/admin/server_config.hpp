@@ -45,6 +45,7 @@ struct ServerConfig {
   std::uint64_t memory_mib = 512;            // of chunks nobody sees, MiB, 16..1048576
   std::uint64_t snapshot_edits = 20'000;     // ordered between two rounds of snapshots, 1..10^9
   std::uint64_t snapshot_s = 30;             // seconds between two rounds, 1..86400
+  std::uint64_t keyframe_edits = 32'768;     // at least, between two keyframes, 0: none .. 10^9
   std::uint64_t log_queue_records = 65'536;  // then edits are rejected busy, 1..10^7
   std::uint64_t audit_ms = 1'000;            // between two audits of a session, 10..3600000
   std::uint64_t audit_chunks = 8;            // digests per audit, 0: none .. 1024

@@ -22,11 +22,17 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
          "--import", options.import_from,
          "append this .rlog file to the world's log instead; makes the world if the folder holds none")
       ->excludes(to);
-  for (const char* other : {"--verify", "--json", "--against"}) {
-    to->excludes(other);
-    app.get_option("--import")->excludes(other);
+  app.add_flag("--keyframes", options.keyframes,
+               "make the keyframes that the world lacks instead; no server may run it");
+  app.add_option("--keyframe-edits", options.keyframe_edits, "edits between two keyframes, at least")
+      ->check(CLI::Range(1, 1'000'000'000))
+      ->needs("--keyframes");
+  app.add_flag("--progress", options.progress, "tell how far it is also where stderr is no terminal");
+  for (const char* mode : {"--export", "--import", "--keyframes"}) {
+    for (const char* other : {"--verify", "--json", "--against"}) app.get_option(mode)->excludes(other);
   }
   app.get_option("--import")->excludes("--at");
+  for (const char* other : {"--at", "--export", "--import"}) app.get_option("--keyframes")->excludes(other);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

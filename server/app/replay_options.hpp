@@ -17,6 +17,9 @@ struct ReplayOptions {
   std::string json;                    // file; empty: none
   std::vector<std::string> against;    // files
   std::string export_to, import_from;  // .rlog files; at most one is not empty
+  bool keyframes = false;              // make those that are missing
+  std::uint64_t keyframe_edits = 32'768;
+  bool progress = false;  // also where stderr is no terminal
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

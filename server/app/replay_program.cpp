@@ -1,9 +1,6 @@
 #include "server/app/replay_program.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
-#include <cstdio>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -11,6 +8,8 @@
 
 #include "common/core/hex.hpp"
 #include "server/app/digest_list.hpp"
+#include "server/app/keyframes_program.hpp"
+#include "server/app/progress_line.hpp"
 #include "server/app/replay.hpp"
 #include "server/app/replay_options.hpp"
 #include "server/app/rlog_file.hpp"
@@ -23,30 +22,6 @@ namespace {
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-/// A line that rewrites itself twice a second while somebody watches.
-class ProgressLine {
- public:
-  ProgressLine() : watched_(::isatty(STDERR_FILENO) == 1) {}
-  ~ProgressLine() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  void show(Sequence done, Sequence last) {
-    if (!watched_ || seconds_since(shown_at_) < 0.5) return;
-    shown_at_ = std::chrono::steady_clock::now();
-    shown_ = true;
-    std::fprintf(stderr, "\rreplayed %llu of %llu edits", static_cast<unsigned long long>(done),
-                 static_cast<unsigned long long>(last));
-    std::fflush(stderr);
-  }
-
- private:
-  bool watched_;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point shown_at_ = std::chrono::steady_clock::now();
-};
 
 double rate_of(const ReplayReport& report, double seconds) {
   return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;
@@ -149,7 +124,7 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
 
   const auto start = std::chrono::steady_clock::now();
   StoreResult<ReplayReport> report = [&] {
-    ProgressLine line;
+    ProgressLine line("edits replayed", options.progress);
     return replayer.run(options.at, [&](Sequence done, Sequence last) { line.show(done, last); });
   }();
   const double seconds = seconds_since(start);
@@ -169,6 +144,10 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
   if (!options) return exit_code;
   if (!options->export_to.empty()) return export_log(*options, out, err);
   if (!options->import_from.empty()) return import_log(*options, out, err);
+  if (options->keyframes) {
+    const auto made = make_keyframes({options->world, {options->keyframe_edits}, options->progress}, out);
+    return made ? static_cast<int>(ReplayExit::equal) : cannot_read(err, made.error());
+  }
   return run(*options, out, err);
 }
 

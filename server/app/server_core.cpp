@@ -128,17 +128,18 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
   if (!read) return Unexpected<std::string>{read.error().message()};
   durable_.store(start->log.last);
   chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
-  start_writer();
+  start_writer(folder);
   logger("world").info("world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder,
                        *epoch, start->log.last, start->checkpoint, restacked, start->players.size(),
                        start->snapshots.size());
   return {};
 }
 
-void ServerCore::start_writer() {
+void ServerCore::start_writer(const std::string& folder) {
   LogWriter::Callbacks callbacks;
   callbacks.on_durable = [this](Sequence seq) {
     durable_.store(seq);
+    if (keyframes_) keyframes_->durable(seq);
     // One post at a time: under load several group commits become one watermark.
     if (durable_posted_.exchange(true)) return;
     asio::post(strand_, [this] {
@@ -166,6 +167,11 @@ void ServerCore::start_writer() {
   LogWriter::Limits limits;
   limits.queued_records_max = config_.log_queue_records;
   writer_ = std::make_unique<LogWriter>(store_, std::move(callbacks), limits);
+  // Before anybody can append: the writer's callbacks see it.
+  if (config_.keyframe_edits > 0) {
+    const KeyframePolicy policy{config_.keyframe_edits};
+    keyframes_ = std::make_unique<KeyframeThread>(folder, generator_, policy, *writer_);
+  }
 }
 
 void ServerCore::start() {
@@ -210,15 +216,17 @@ void ServerCore::log_counters() {
     logger("app").info(
         "counters sessions={} opened={} closed={} malformed={} edits_ordered={} edits_rejected={} commits={} "
         "seq={} "
-        "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} chunks_resident={} "
+        "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} keyframes={} "
+        "chunks_resident={} "
         "resident_bytes={} chunks_failed={} snapshots_sent={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
         "audit_mismatches={} bytes_in={} bytes_out={} dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
-        l.queued_records, l.commits, l.snapshots, world_->resident_chunks(), world_->resident_bytes(),
-        w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent,
-        w.audit_mismatches, n.bytes_in.load(), n.bytes_out.load(), dense_expansions());
+        l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
+        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale,
+        w.queue_full, w.audits_sent, w.audit_mismatches, n.bytes_in.load(), n.bytes_out.load(),
+        dense_expansions());
   });
 }
 
@@ -247,7 +255,10 @@ void ServerCore::check_settled() {
   stopped_.reset();
 }
 
-void ServerCore::stop_writer() { writer_->stop(); }
+void ServerCore::stop_writer() {
+  if (keyframes_) keyframes_->stop();
+  writer_->stop();
+}
 
 // ---- NetEvents
 // ---------------------------------------------------------------------------------------------------

@@ -18,6 +18,7 @@
 
 #include "server/admin/server_config.hpp"
 #include "server/app/chunk_source.hpp"
+#include "server/app/keyframe_thread.hpp"
 #include "server/app/world_folder.hpp"
 #include "server/net/listener.hpp"
 #include "server/store/log_writer.hpp"
@@ -46,7 +47,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   /// Ends in this order: no new connections, goodbyes, what was accepted is ordered and durable, changed
   /// chunks are snapshots. Ready with true when all of it is on disk, with false if the log failed.
   std::future<bool> begin_stop();
-  /// After begin_stop()'s answer: writes what is queued and ends the writer's thread.
+  /// After begin_stop()'s answer: ends the making of keyframes, writes what is queued and ends the writer's thread.
   void stop_writer();
   /// Edited chunks in memory, ascending. Once no thread runs the strand any more.
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const { return world_->edited_chunks(); }
@@ -86,7 +87,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   };
   WorldConfig world_config(const ServerConfig& config) const;
   Result<WorldStart, std::string> read_start();
-  void start_writer();
+  void start_writer(const std::string& folder);
   void schedule_commit();
   void schedule_tick();
   void check_settled();
@@ -104,6 +105,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   std::unique_ptr<ChunkSource> chunks_;
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<LogWriter> writer_;
+  std::unique_ptr<KeyframeThread> keyframes_;  // none if the configuration wants none
 
   std::atomic<Sequence> durable_{0};
   std::atomic<bool> durable_posted_{false};

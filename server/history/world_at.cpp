@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kSliceEdits = 64;  // applied in one sweep; more gain little
 constexpr Sequence kProgressEdits = 1024;
+constexpr const char* kCompacted = "was compacted while it was read; open the moment again";
 
 }  // namespace
 
@@ -26,35 +27,22 @@ Unexpected<StoreError> WorldAt::refuse(std::string what) const {
 StoreResult<WorldAt> WorldAt::open(Store& reader, const Generator& generator, Sequence at,
                                    const Progress& progress) {
   WorldAt world(reader, generator);
-  const auto head = reader.log_head();
-  if (!head) return Unexpected<StoreError>{head.error()};
-  world.at_ = head->version.seq;
-  if (at < world.at_) {
-    return world.refuse("begins at seq=" + std::to_string(world.at_ + 1) +
-                        ": the world at seq=" + std::to_string(at) +
-                        " was compacted away; the earliest left is that at seq=" + std::to_string(world.at_));
-  }
-  if (world.at_ > 0) {
-    if (const auto read = world.read_completed(world.at_); !read) return Unexpected<StoreError>{read.error()};
+  const auto moment = reader.stored_moment(at);
+  if (!moment) return Unexpected<StoreError>{moment.error()};
+  world.end_ = moment->at;
+  world.stored_at_ = moment->at.version.seq;
+  for (const StoredChunk& chunk : moment->chunks) {
+    world.chunks_.emplace_hint(world.chunks_.end(), chunk.key, Edited{chunk, {}});
   }
   if (const auto advanced = world.advance(at, progress); !advanced)
     return Unexpected<StoreError>{advanced.error()};
   return world;
 }
 
-StoreResult<void> WorldAt::read_completed(Sequence head) {
-  const auto keys = reader_->base_keys();
-  if (!keys) return Unexpected<StoreError>{keys.error()};
-  for (const auto& [key, version] : *keys) {
-    if (version.seq > head) return refuse("was compacted while it was read; open the moment again");
-    if (version != Version{}) chunks_[key].start = version;
-  }
-  return {};
-}
-
 StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
-  if (at < at_) {
-    return refuse("cannot be followed back from seq=" + std::to_string(at_) +
+  const Sequence from = end_.version.seq;
+  if (at < from) {
+    return refuse("cannot be followed back from seq=" + std::to_string(from) +
                   " to seq=" + std::to_string(at));
   }
   const auto last = reader_->last_sequence();
@@ -62,12 +50,13 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
   if (at > *last) {
     return refuse("ends at seq=" + std::to_string(*last) + ", before seq=" + std::to_string(at));
   }
-  const Sequence first = at_ + 1;
   const std::size_t known = edits_.size();
+  LogEnd end = end_;
   bool is_cancelled = false;
-  const auto read = reader_->read_log(first, at, [&](const EditRecord& record) {
+  const auto read = reader_->read_log(from + 1, at, [&](const EditRecord& record) {
     edits_.push_back(record.edit);
     versions_.push_back(record.version);
+    end = {record.version, record.time_us};
     if (progress && record.version.seq % kProgressEdits == 0)
       is_cancelled = !progress(record.version.seq, at);
     return !is_cancelled;
@@ -78,8 +67,8 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
   } else if (is_cancelled) {
     outcome = Unexpected<StoreError>{
         {StoreError::Kind::cancelled, reader_->file(), "edit_log", "was not read to the end"}};
-  } else if (edits_.size() - known != at - at_) {
-    outcome = refuse("was compacted while it was read; open the moment again");
+  } else if (edits_.size() - known != at - from) {
+    outcome = refuse(kCompacted);
   }
   if (!outcome) {
     edits_.resize(known);
@@ -91,7 +80,7 @@ StoreResult<void> WorldAt::advance(Sequence at, const Progress& progress) {
       chunks_[{0, coord}].edits.push_back(static_cast<std::uint32_t>(i));
     }
   }
-  at_ = at;
+  end_ = end;
   return {};
 }
 
@@ -99,7 +88,7 @@ Version WorldAt::version(const ChunkKey& key) const {
   const auto found = chunks_.find(key);
   if (found == chunks_.end()) return {};
   const Edited& edited = found->second;
-  return edited.edits.empty() ? edited.start : versions_[edited.edits.back()];
+  return edited.edits.empty() ? edited.stored->version : versions_[edited.edits.back()];
 }
 
 std::vector<ChunkKey> WorldAt::edited() const {
@@ -109,16 +98,43 @@ std::vector<ChunkKey> WorldAt::edited() const {
   return keys;
 }
 
-StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
-  auto chunk = base_chunk(*reader_, *generator_, key);
-  if (!chunk) return chunk;
-  const auto found = chunks_.find(key);
-  if (chunk->version != (found == chunks_.end() ? Version{} : found->second.start)) {
-    return refuse("was compacted while it was read; open the moment again");
+std::vector<ChunkKey> WorldAt::touched() const {
+  std::vector<ChunkKey> keys;
+  for (const auto& [key, edited] : chunks_) {
+    if (!edited.edits.empty()) keys.push_back(key);
   }
-  if (found == chunks_.end() || found->second.edits.empty()) return chunk;
-  const std::vector<std::uint32_t>& edits = found->second.edits;
+  return keys;
+}
+
+Keyframe WorldAt::untouched() const {
+  Keyframe keyframe{end_, 0, {}};
+  for (const auto& [key, edited] : chunks_) {
+    if (!edited.edits.empty()) continue;
+    ++keyframe.chunks;
+    keyframe.world_digest = keyframe.world_digest + world_digest_term(key, edited.stored->digest);
+  }
+  return keyframe;
+}
+
+StoreResult<Chunk> WorldAt::start_of(const ChunkKey& key, const Edited* edited) {
+  if (edited == nullptr || !edited->stored) {
+    auto chunk = base_chunk(*reader_, *generator_, key);
+    if (chunk && chunk->version != Version{}) return refuse(kCompacted);
+    return chunk;
+  }
+  auto stored = reader_->load_stored(*edited->stored);
+  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored->has_value()) return refuse(kCompacted);
+  return **std::move(stored);
+}
+
+StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
+  const auto found = chunks_.find(key);
+  const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
+  auto chunk = start_of(key, edited);
+  if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
   const VoxelPos origin = origin_of(key.at, edge_);
+  const std::vector<std::uint32_t>& edits = edited->edits;
   for (std::size_t first = 0; first < edits.size(); first += kSliceEdits) {
     slice_.clear();
     for (std::size_t i = first; i < std::min(edits.size(), first + kSliceEdits); ++i) {

@@ -18,8 +18,8 @@ class ChunkTable {
   static StoreResult<ChunkTable> open(sql::Database& database, Kind kind);
 
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge);
-  /// Keys and versions of all rows, ascending. Fails if their fold is not `expected`.
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys(const RowFold& expected);
+  /// All rows without their voxels, ascending. Fails if their fold is not `expected`.
+  StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);
   /// Inserts or replaces one row in the caller's transaction and moves the fold with it. Refuses
   /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, a version older than
   /// the stored one, and in `base` also the stored one again.
@@ -30,21 +30,21 @@ class ChunkTable {
   const std::string& fold_key() const { return fold_key_; }
 
  private:
-  ChunkTable(std::string file, Kind kind, std::string table, sql::Statement load, sql::Statement keys,
+  ChunkTable(std::string file, Kind kind, std::string table, sql::Statement load, sql::Statement rows,
              sql::Statement version, sql::Statement save)
       : kind_(kind),
         file_(std::move(file)),
         table_(std::move(table)),
         fold_key_(table_ + "_fold"),
         load_(std::move(load)),
-        keys_(std::move(keys)),
+        rows_(std::move(rows)),
         version_(std::move(version)),
         save_(std::move(save)) {}
   Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key, std::string what) const;
 
   Kind kind_;
   std::string file_, table_, fold_key_;
-  sql::Statement load_, keys_, version_, save_;
+  sql::Statement load_, rows_, version_, save_;
 };
 
 }  // namespace runstone

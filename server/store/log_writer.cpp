@@ -31,11 +31,19 @@ void LogWriter::append(std::vector<PlayerRow> players, std::vector<EditRecord> r
 }
 
 bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint) {
+  return queue({std::move(chunks), checkpoint, 0, std::nullopt, {}});
+}
+
+bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done) {
+  return queue({std::move(chunks), std::nullopt, 0, keyframe, std::move(done)});
+}
+
+bool LogWriter::queue(Job job) {
   {
     const std::lock_guard guard(mutex_);
     const std::size_t jobs = jobs_.size() + (job_in_hand_ ? 1 : 0);
-    if (failed_ || stopping_ || jobs >= limits_.snapshot_jobs_max) return false;
-    jobs_.push_back({std::move(chunks), checkpoint, 0});
+    if (failed_ || stopping_ || jobs >= limits_.jobs_max) return false;
+    jobs_.push_back(std::move(job));
   }
   work_.notify_one();
   return true;
@@ -86,27 +94,26 @@ void LogWriter::run() {
       }
       if (group.room == 0 && !job) return;  // stopping, and nothing is left
     }
-    if (!write(group)) return;
+    if (const auto written = write(group); !written) return fail(written.error(), job ? &*job : nullptr);
     // After every slice the records that came meanwhile get their turn.
-    if (job && !write_slice(*job)) return;
-    if (job && job->written == job->chunks.size()) {
+    if (job) {
+      if (const auto written = write_slice(*job); !written) return fail(written.error(), nullptr);
+    }
+    if (job && job->is_over()) {
       {
         const std::lock_guard guard(mutex_);
         job_in_hand_ = false;
       }
-      if (callbacks_.on_snapshots_saved)
+      if (!job->done && callbacks_.on_snapshots_saved)
         callbacks_.on_snapshots_saved(std::move(job->chunks), job->checkpoint);
       job.reset();
     }
   }
 }
 
-bool LogWriter::write(const Batch& group) {
-  if (group.room == 0) return true;
-  if (const auto appended = store_.append(group.players, group.records); !appended) {
-    fail(appended.error());
-    return false;
-  }
+StoreResult<void> LogWriter::write(const Batch& group) {
+  if (group.room == 0) return {};
+  if (auto appended = store_.append(group.players, group.records); !appended) return appended;
   {
     const std::lock_guard guard(mutex_);
     room_taken_ -= group.room;
@@ -115,29 +122,41 @@ bool LogWriter::write(const Batch& group) {
   }
   if (!group.records.empty() && callbacks_.on_durable)
     callbacks_.on_durable(group.records.back().version.seq);
-  return true;
+  return {};
 }
 
-bool LogWriter::write_slice(Job& job) {
+StoreResult<void> LogWriter::write_slice(Job& job) {
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
   const std::span<const std::pair<ChunkKey, ChunkPtr>> slice(job.chunks.data() + job.written, count);
   const bool last = job.written + count == job.chunks.size();
-  if (const auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved) {
-    fail(saved.error());
-    return false;
+  if (job.done) {
+    const auto saved = store_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
+    job.written = saved ? job.written + count : job.chunks.size();  // an error ends the job
+    if (saved && last && job.keyframe) {
+      const std::lock_guard guard(mutex_);
+      ++counters_.keyframes;
+    }
+    if (job.is_over()) job.done(saved);
+    return {};
   }
+  if (auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved) return saved;
   job.written += count;
   const std::lock_guard guard(mutex_);
   counters_.snapshots += count;
-  return true;
+  return {};
 }
 
-void LogWriter::fail(const StoreError& error) {
+void LogWriter::fail(const StoreError& error, Job* job) {
+  std::deque<Job> dropped;
   {
     const std::lock_guard guard(mutex_);
     failed_ = true;
     batches_.clear();
-    jobs_.clear();
+    dropped.swap(jobs_);
+  }
+  if (job != nullptr) dropped.push_back(std::move(*job));
+  for (const Job& one : dropped) {
+    if (one.done) one.done(Unexpected<StoreError>{error});
   }
   if (callbacks_.on_failed) callbacks_.on_failed(error);
 }

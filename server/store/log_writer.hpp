@@ -1,11 +1,11 @@
-// LogWriter: the one thread that writes a world. It takes batches of records and snapshot jobs from bounded
+// LogWriter: the one thread that writes a world. It takes batches of records, snapshot and keyframe jobs from bounded
 // queues, commits everything that queued while the last fsync ran as one transaction (group commit), and
 // tells when it is durable. Needs no clock: a slow disk makes larger groups, a fast one smaller groups. Full:
 // has_room() turns false, and the world rejects edits as busy; a snapshot job that finds no room is refused,
 // and the world offers its chunks again later. Records go before snapshots, and a job is written in slices,
 // so that durability never waits behind many chunks. Failure: after the first error nothing more is written,
 // on_failed is called once, and what was queued is dropped: it was never acknowledged. The program has to end
-// and recover from the log. Threads: append(), save_snapshots() and has_room() from any thread; callbacks
+// and recover from the log. A keyframe that cannot be written ends nothing: the log says all that it would have. Threads: append(), save_snapshots(), save_keyframe() and has_room() from any thread; callbacks
 // come from the writer thread and must return soon. The mutex inside is a leaf: no callback and no disk
 // access happens while it is held.
 #pragma once
@@ -28,7 +28,7 @@ class LogWriter {
   struct Limits {
     std::size_t queued_records_max = 65536;  // counted until they are durable
     std::size_t commit_records_max = 4096;  // per transaction; a single larger batch is still one transaction
-    std::size_t snapshot_jobs_max = 4;
+    std::size_t jobs_max = 4;
     std::size_t slice_chunks_max = 32;  // chunks per transaction
   };
   using SnapshotChunks = std::vector<std::pair<ChunkKey, ChunkPtr>>;
@@ -39,8 +39,8 @@ class LogWriter {
     std::function<void(StoreError)> on_failed;
   };
   struct Counters {
-    std::uint64_t commits = 0, records = 0, snapshots = 0;  // since the start
-    std::size_t queued_records = 0;                         // now
+    std::uint64_t commits = 0, records = 0, snapshots = 0, keyframes = 0;  // since the start
+    std::size_t queued_records = 0;                                        // now
   };
 
   /// Starts the thread, which alone uses `store` from now until stop() has returned.
@@ -61,6 +61,10 @@ class LogWriter {
   /// Queues a job. False if the queue of jobs is full (or the writer has failed or stopped): nothing was
   /// taken.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
+  using KeyframeDone = std::function<void(StoreResult<void>)>;
+  /// Queues a job that calls Store::save_keyframe(), in slices, the keyframe with the last one. `done` is called from the
+  /// writer thread when it is on disk or cannot be. False as above; `done` is not called then.
+  bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done);
   /// Writes everything that is queued, with all its callbacks, then ends the thread. May be called again. Not
   /// from a callback.
   void stop();
@@ -77,15 +81,21 @@ class LogWriter {
     SnapshotChunks chunks;
     std::optional<Sequence> checkpoint;
     std::size_t written = 0;  // chunks of the slices that are on disk
+    // Of a keyframe's job, which has `done`.
+    std::optional<Keyframe> keyframe;
+    KeyframeDone done;
+    bool is_over() const { return written == chunks.size(); }
   };
 
+  bool queue(Job job);
   void run();
   /// Moves batches from the queue into one. Requires the mutex.
   Batch take_group();
-  bool write(const Batch& group);
-  /// Writes the next slice of a job; the last one moves the checkpoint.
-  bool write_slice(Job& job);
-  void fail(const StoreError& error);
+  StoreResult<void> write(const Batch& group);
+  /// Writes the next slice of a job; the last one moves the checkpoint, or writes the keyframe.
+  StoreResult<void> write_slice(Job& job);
+  /// `job`: the one in hand, if any.
+  void fail(const StoreError& error, Job* job);
 
   Store& store_;
   const Callbacks callbacks_;

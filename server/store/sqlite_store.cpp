@@ -52,18 +52,6 @@ StoreResult<Epoch> SqliteStore::raise_epoch() {
   return epoch_;
 }
 
-template <class T>
-StoreResult<T> SqliteStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
-  if (const auto begun = database_->run("SAVEPOINT moment"); !begun) {
-    return Unexpected<StoreError>{begun.error()};
-  }
-  auto result = body();
-  if (const auto ended = database_->run("RELEASE moment"); !ended && result) {
-    return Unexpected<StoreError>{ended.error()};
-  }
-  return result;
-}
-
 StoreResult<LogRange> SqliteStore::log_range() {
   return at_one_moment<LogRange>([&]() -> StoreResult<LogRange> {
     const auto head = meta_table_.log_head();
@@ -251,36 +239,41 @@ StoreResult<void> SqliteStore::query_log(const LogQuery& query,
 StoreResult<void> SqliteStore::upgrade() {
   const auto version = database_->integer("PRAGMA user_version");
   if (!version) return Unexpected<StoreError>{version.error()};
-  if (*version >= kIndexedFormat) return {};
+  if (*version >= kStoreFormatVersion) return {};
   const auto upgraded = write([&]() -> StoreResult<void> {
-    if (auto made = create_indexes(*database_); !made) return made;
-    StoreResult<void> added;
-    auto read = read_log(1, kSequenceMax, [&](const EditRecord& record) {
-      added = segments_.add(record);
-      return added.has_value();
-    });
-    if (!read) return read;
-    if (!added) return added;
-    return segments_.flush();
+    if (*version < kIndexedFormat) {
+      if (auto made = create_indexes(*database_); !made) return made;
+      StoreResult<void> added;
+      auto read = read_log(1, kSequenceMax, [&](const EditRecord& record) {
+        added = segments_.add(record);
+        return added.has_value();
+      });
+      if (!read) return read;
+      if (!added) return added;
+      if (auto flushed = segments_.flush(); !flushed) return flushed;
+    }
+    return create_keyframes(*database_);
   });
   if (!upgraded) return upgraded;
   // The mark must stand in the main file, where check_marks() of older programs looks.
   return database_->run("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::keys_of(ChunkTable& table) {
-  using Keys = std::vector<std::pair<ChunkKey, Version>>;
-  return at_one_moment<Keys>([&]() -> StoreResult<Keys> {
+StoreResult<std::vector<StoredChunk>> SqliteStore::rows_of(ChunkTable& table) {
+  return at_one_moment<std::vector<StoredChunk>>([&]() -> StoreResult<std::vector<StoredChunk>> {
     const auto fold = meta_table_.fold(table.fold_key());
     if (!fold) return Unexpected<StoreError>{fold.error()};
-    return table.keys(*fold);
+    return table.rows(*fold);
   });
 }
 
-StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::base_keys() { return keys_of(base_); }
-
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {
-  return keys_of(snapshots_);
+  const auto rows = rows_of(snapshots_);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  std::vector<std::pair<ChunkKey, Version>> keys;
+  keys.reserve(rows->size());
+  for (const StoredChunk& row : *rows) keys.emplace_back(row.key, row.version);
+  return keys;
 }
 
 }  // namespace runstone

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/store/chunk_table.hpp"
+#include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
@@ -48,10 +49,14 @@ class SqliteStore final : public Store {
                                    std::span<const EditRecord> records) override;
   StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                    std::optional<Sequence> checkpoint) override;
+  StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                  const std::optional<Keyframe>& keyframe) override;
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() override;
+  StoreResult<std::vector<Keyframe>> keyframes() override;
+  StoreResult<StoredMoment> stored_moment(Sequence at) override;
+  StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) override;
   StoreResult<void> read_log(Sequence first, Sequence last,
                              const std::function<bool(const EditRecord&)>& each) override;
   StoreResult<void> query_log(const LogQuery& query,
@@ -69,7 +74,12 @@ class SqliteStore final : public Store {
   /// Calls `body` while another process's commits stay out of sight: what it reads belongs together.
   template <class T>
   StoreResult<T> at_one_moment(const std::function<StoreResult<T>()>& body);
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> keys_of(ChunkTable& table);
+  StoreResult<std::vector<StoredChunk>> rows_of(ChunkTable& table);
+  /// Of base chunks, those that a compaction completed; read only if there was one.
+  StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
+  /// Null in a world of an older format.
+  StoreResult<KeyframeTable*> keyframe_table();
+  StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
   StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
   /// Also that they are of the epoch of now or, for history, that epochs do not fall.
   StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
@@ -78,7 +88,8 @@ class SqliteStore final : public Store {
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
   StoreResult<void> check_segments_cover_log();
-  /// A world of format 1 gets its indexes and becomes one of format 2, in one transaction.
+  StoreResult<void> check_keyframes();
+  /// A world of an older format gets what it lacks (format 1: indexes, 2: tables of keyframes), in one transaction.
   StoreResult<void> upgrade();
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
@@ -91,10 +102,23 @@ class SqliteStore final : public Store {
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;
+  std::optional<KeyframeTable> keyframes_;  // opened when first needed: older formats lack the tables
   StoreAccess access_;
   WorldMeta meta_;
   Epoch epoch_ = 0;
   bool broken_ = false;
 };
+
+template <class T>
+StoreResult<T> SqliteStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
+  if (const auto begun = database_->run("SAVEPOINT moment"); !begun) {
+    return Unexpected<StoreError>{begun.error()};
+  }
+  auto result = body();
+  if (const auto ended = database_->run("RELEASE moment"); !ended && result) {
+    return Unexpected<StoreError>{ended.error()};
+  }
+  return result;
+}
 
 }  // namespace runstone

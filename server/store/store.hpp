@@ -1,4 +1,4 @@
-// Store: the world on disk: base, one edit log, snapshots, players, meta (docs/edit-log.md gives the schema).
+// Store: the world on disk: base, one edit log, snapshots, keyframes, players, meta (docs/edit-log.md gives the schema).
 // The interface is what the log writer, the loader, replay and import need; SQLite implements it, another
 // database may later. It blocks on the disk, so the world strand never calls it: one writer thread owns a
 // Store, and readers open their own. Rules that keep a world safe:
@@ -30,7 +30,7 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kStoreFormatVersion = 2;
+inline constexpr std::uint32_t kStoreFormatVersion = 3;
 
 struct StoreError {
   enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked, cancelled };
@@ -66,6 +66,29 @@ struct LogRange {
   Sequence first = 1;
   LogEnd last;  // the last edit ever ordered, compacted or not
   friend bool operator==(const LogRange&, const LogRange&) = default;
+};
+
+/// A moment of which all chunks are kept, so that no edit before it need be read to know the world there.
+struct Keyframe {
+  LogEnd at;                 // the last edit in it
+  std::uint64_t chunks = 0;  // edited up to there
+  Digest world_digest;       // over them
+  friend bool operator==(const Keyframe&, const Keyframe&) = default;
+};
+
+/// A chunk that is kept as an edit left it, without its voxels.
+struct StoredChunk {
+  ChunkKey key;
+  Version version;
+  Digest digest;
+  bool is_base = false;  // in the base: completed by a compaction; else a keyframe's
+  friend bool operator==(const StoredChunk&, const StoredChunk&) = default;
+};
+
+/// A moment that needs no edits to be known: a keyframe, or the head of the log.
+struct StoredMoment {
+  LogEnd at;
+  std::vector<StoredChunk> chunks;  // all that were edited up to there, ascending by key
 };
 
 class Store {
@@ -108,6 +131,10 @@ class Store {
   /// Replaces the snapshots of these chunks and, if given, moves the checkpoint, in one transaction.
   virtual StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                            std::optional<Sequence> checkpoint) = 0;
+  /// Adds chunks as edits of the log left them and, if given, the keyframe that they complete, in one transaction. Refuses
+  /// (bad_request) a keyframe that the chunks of base and keyframes do not prove. A chunk that is there already stays.
+  virtual StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                          const std::optional<Keyframe>& keyframe) = 0;
   /// Import only, while nothing was ever logged: base chunks at version (0, 0).
   virtual StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) = 0;
 
@@ -115,8 +142,12 @@ class Store {
   // -----------------------------------------------------------------------------------------------
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
-  /// Keys and versions of all base chunks, ascending.
-  virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() = 0;
+  /// All keyframes, ascending. None in a world of an older format that is open for reading only.
+  virtual StoreResult<std::vector<Keyframe>> keyframes() = 0;
+  /// The newest stored moment at or before `at`, proved by its digest. Fails (bad_request) if the log begins behind `at`.
+  virtual StoreResult<StoredMoment> stored_moment(Sequence at) = 0;
+  /// The voxels of a chunk of a stored moment; nothing if a compaction has taken them away since.
+  virtual StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) = 0;
   /// Calls `each` for records first..last (both included) in order; stops early when it returns false. What
   /// lies outside log_range() is left out.
   /// Each record's checksum is verified and the sequence checked to be without gaps.

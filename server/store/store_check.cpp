@@ -10,9 +10,9 @@
 namespace runstone {
 
 StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
-  const auto keys = keys_of(table);
-  if (!keys) return Unexpected<StoreError>{keys.error()};
-  // Both after the keys: a server that runs meanwhile only moves them on.
+  const auto rows = rows_of(table);
+  if (!rows) return Unexpected<StoreError>{rows.error()};
+  // Both after the rows: a server that runs meanwhile only moves them on.
   const auto range = log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
   const auto head = meta_table_.log_head();
@@ -20,7 +20,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   // A base that held an edit of the log would have it applied twice.
   const bool is_base = &table == &base_;
   const Version newest = is_base ? head->version : range->last.version;
-  for (const auto& [key, version] : *keys) {
+  for (const auto& [key, version, digest, completed] : *rows) {
     const auto chunk = table.load(key, meta_.chunk_edge);
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (version > newest) {
@@ -84,6 +84,40 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
       {StoreError::Kind::corrupt, file(), "log_box", "lacks edit_log seq=" + std::to_string(uncovered)}};
 }
 
+StoreResult<void> SqliteStore::check_keyframes() {
+  // All at one moment: a server that runs meanwhile adds rows and keyframes.
+  return at_one_moment<void>([&]() -> StoreResult<void> {
+    const auto table = keyframe_table();
+    if (!table) return Unexpected<StoreError>{table.error()};
+    if (*table == nullptr) return {};
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    const auto range = log_.range(*head);
+    if (!range) return Unexpected<StoreError>{range.error()};
+    const auto keyframes = (*table)->all();
+    if (!keyframes) return Unexpected<StoreError>{keyframes.error()};
+    const auto start = completed(*head);
+    if (!start) return Unexpected<StoreError>{start.error()};
+    const auto rows = (*table)->rows(kSequenceMax);
+    if (!rows) return Unexpected<StoreError>{rows.error()};
+    for (const StoredChunk& row : *rows) {
+      const auto loaded = load_stored(row);
+      if (!loaded) return Unexpected<StoreError>{loaded.error()};
+      if (!loaded->has_value() || row.version <= head->version || row.version > range->last.version) {
+        return Unexpected<StoreError>{
+            {StoreError::Kind::corrupt, file(),
+             "keyframe_chunk chunk=" + text_of(row.key) + " seq=" + std::to_string(row.version.seq),
+             "has a version that is not within the log"}};
+      }
+    }
+    if (auto proved = (*table)->prove(*keyframes, *start, *rows); !proved) return proved;
+    for (const Keyframe& keyframe : *keyframes) {
+      if (auto fits = check_keyframe(keyframe, *range); !fits) return fits;
+    }
+    return {};
+  });
+}
+
 StoreResult<void> SqliteStore::check() {
   const auto verdict = database_->text("PRAGMA integrity_check(1)");
   if (!verdict) return Unexpected<StoreError>{verdict.error()};
@@ -95,7 +129,8 @@ StoreResult<void> SqliteStore::check() {
   if (auto marks = check_marks_cover_log(); !marks) return marks;
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;
-  return check_chunks(snapshots_);
+  if (auto chunks = check_chunks(snapshots_); !chunks) return chunks;
+  return check_keyframes();
 }
 
 }  // namespace runstone

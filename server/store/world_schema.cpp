@@ -69,7 +69,27 @@ CREATE VIRTUAL TABLE log_box USING rtree_i32(
 );
 PRAGMA user_version=2;
 )sql";
-static_assert(kIndexedFormat == 2 && kStoreFormatVersion == 2);
+
+// The index holds all of a row but its voxels: to know which chunks a moment has, no page of voxels is read.
+constexpr const char* kKeyframes = R"sql(
+CREATE TABLE keyframe(
+  seq INTEGER NOT NULL PRIMARY KEY,
+  epoch INTEGER NOT NULL, time_us INTEGER NOT NULL, chunks INTEGER NOT NULL,
+  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE keyframe_chunk(
+  lod INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL, z INTEGER NOT NULL,
+  seq INTEGER NOT NULL, epoch INTEGER NOT NULL,
+  digest0 INTEGER NOT NULL, digest1 INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY(lod, x, y, z, seq)
+) STRICT;
+CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
+PRAGMA user_version=3;
+)sql";
+static_assert(kIndexedFormat == 2 && kKeyframeFormat == 3 && kStoreFormatVersion == 3);
 
 }  // namespace
 
@@ -77,10 +97,13 @@ StoreResult<void> create_schema(sql::Database& database) {
   const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
   if (auto set = database.run(mark.c_str()); !set) return set;
   if (auto made = database.run(kTables); !made) return made;
-  return create_indexes(database);
+  if (auto made = create_indexes(database); !made) return made;
+  return create_keyframes(database);
 }
 
 StoreResult<void> create_indexes(sql::Database& database) { return database.run(kIndexes); }
+
+StoreResult<void> create_keyframes(sql::Database& database) { return database.run(kKeyframes); }
 
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {

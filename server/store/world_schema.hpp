@@ -20,6 +20,11 @@ inline constexpr std::int64_t kIndexedFormat = 2;
 /// What format 2 has more than format 1, the mark included; the segments are empty. In the caller's transaction.
 StoreResult<void> create_indexes(sql::Database& database);
 
+/// Since this format worlds have keyframes.
+inline constexpr std::int64_t kKeyframeFormat = 3;
+/// What format 3 has more than format 2, the mark included; the tables are empty. In the caller's transaction.
+StoreResult<void> create_keyframes(sql::Database& database);
+
 /// Reads the marks from the main file alone, so that a file which is refused stays untouched. `vfs` as in
 /// sql::Database::open. Fails with not_a_world, newer_version or corrupt.
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs);

@@ -1,4 +1,4 @@
-// The bytes of world format 2: columns, row checksums and marks. A change here means a new
+// The bytes of world format 3: columns, row checksums and marks. A change here means a new
 // kStoreFormatVersion and a way to open the old one.
 #include <catch2/catch.hpp>
 #include <string>
@@ -36,6 +36,10 @@ std::string make_world(const TempFolder& folder) {
   REQUIRE(store->append({&player, 1}, records).has_value());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {{{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
   REQUIRE(store->save_snapshots(snapshots, 1).has_value());
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> kept = {{{0, {-1, 2, -3}}, golden_chunk(3, {1, 2})}};
+  const Keyframe keyframe{
+      {{1, 2}, 1'700'000'000'000'001}, 1, world_digest_term(kept.front().first, kept.front().second->digest)};
+  REQUIRE(store->save_keyframe(kept, keyframe).has_value());
   return store->file();
 }
 
@@ -46,15 +50,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 2 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 3 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "2");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 2", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 3", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -69,19 +73,27 @@ TEST_CASE("the tables have the columns of format 2", "[store][golden]") {
   CHECK(columns(file, "snapshot") ==
         "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
         "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+  CHECK(
+      columns(file, "keyframe") ==
+      "seq INTEGER1, epoch INTEGER0, time_us INTEGER0, chunks INTEGER0, digest0 INTEGER0, digest1 INTEGER0, "
+      "checksum INTEGER0");
+  CHECK(columns(file, "keyframe_chunk") ==
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, digest0 INTEGER0, "
+        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
   CHECK(columns(file, "player_instance") ==
         "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
-  CHECK(
-      raw_sql(file,
-              "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
-              "ORDER BY name)") ==
-      "base edit_log log_box log_box_node log_box_parent log_box_rowid meta player player_instance snapshot");
+  CHECK(raw_sql(file,
+                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
+                "ORDER BY name)") ==
+        "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid meta player "
+        "player_instance snapshot");
   CHECK(raw_sql(file,
                 "SELECT group_concat(name || ' ' || sql, '; ') FROM (SELECT name, sql FROM sqlite_master "
                 "WHERE type = 'index' AND sql IS NOT NULL ORDER BY name)") ==
         "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); edit_log_cause CREATE INDEX "
-        "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0");
+        "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0; keyframe_chunk_digest CREATE INDEX "
+        "keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1)");
   CHECK(raw_sql(
             file,
             "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || min_y || ' ' || "
@@ -92,7 +104,7 @@ TEST_CASE("the tables have the columns of format 2", "[store][golden]") {
         "seed server_key_seed snapshot_fold spawn world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 2", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 3", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {
@@ -112,6 +124,13 @@ TEST_CASE("rows have the bytes and checksums of format 2", "[store][golden]") {
   CHECK(value("checksum", "base") == "2279636502801835223");
   CHECK(value("hex(data)", "snapshot") == "0201011010100101020100");
   CHECK(value("checksum", "snapshot") == "526761025094432557");
+  CHECK(value("hex(data)", "keyframe_chunk") == "0201011010100101030100");
+  CHECK(value("seq || ' ' || epoch || ' ' || digest0 || ' ' || digest1", "keyframe_chunk") ==
+        "2 1 86466051881807956 2019403095640583695");
+  CHECK(value("checksum", "keyframe_chunk") == "-5574597237841816912");
+  CHECK(value("seq || ' ' || epoch || ' ' || time_us || ' ' || chunks || ' ' || digest0 || ' ' || digest1",
+              "keyframe") == "2 1 1700000000000001 1 1657188782348826176 737397801681045469");
+  CHECK(value("checksum", "keyframe") == "-6012113385911227469");
   CHECK(value("checksum", "player") == "-8523557106004048105");
   CHECK(value("epoch || ' ' || seq", "base") == "0 0");
   CHECK(value("epoch || ' ' || seq", "snapshot") == "1 1");
@@ -127,7 +146,7 @@ TEST_CASE("rows have the bytes and checksums of format 2", "[store][golden]") {
   CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") == "0100000000000000D2455B47B79BD394");
 }
 
-TEST_CASE("the head of a compacted log has the bytes of format 2", "[store][golden]") {
+TEST_CASE("the head of a compacted log has the bytes of format 3", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   compact_by_hand(file, {{1, 2}, 1'700'000'000'000'001}, {});

@@ -20,6 +20,7 @@ class FakeStore final : public Store {
     std::vector<EditRecord> records;
     std::size_t chunks = 0;
     std::optional<Sequence> checkpoint;
+    std::optional<Keyframe> keyframe = {};
   };
 
   StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override {
@@ -59,11 +60,19 @@ class FakeStore final : public Store {
   StoreResult<Sequence> checkpoint() override { return Sequence{0}; }
   StoreResult<std::vector<PlayerRow>> players() override { return std::vector<PlayerRow>(); }
   StoreResult<std::vector<HighWater>> high_waters() override { return std::vector<HighWater>(); }
+  StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                  const std::optional<Keyframe>& keyframe) override {
+    if (refuse_keyframes)
+      return Unexpected<StoreError>{{StoreError::Kind::full, "w", "keyframe", "disk full"}};
+    return commit({{}, {}, chunks.size(), {}, keyframe});
+  }
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> base_keys() override {
-    return std::vector<std::pair<ChunkKey, Version>>();
+  StoreResult<std::vector<Keyframe>> keyframes() override { return std::vector<Keyframe>(); }
+  StoreResult<StoredMoment> stored_moment(Sequence) override { return StoredMoment(); }
+  StoreResult<std::optional<Chunk>> load_stored(const StoredChunk&) override {
+    return std::optional<Chunk>();
   }
   StoreResult<void> read_log(Sequence, Sequence, const std::function<bool(const EditRecord&)>&) override {
     return {};
@@ -78,6 +87,7 @@ class FakeStore final : public Store {
 
   std::counting_semaphore<> entered{0}, gate{0};
   std::size_t fail_at = ~std::size_t{0};
+  bool refuse_keyframes = false;
   std::vector<Commit> commits;  // read it after stop(), or while the writer waits at the gate
 
  private:
@@ -224,7 +234,7 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
 TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing", "[store][log-writer]") {
   FakeStore store;
   LogWriter::Limits limits;
-  limits.snapshot_jobs_max = 2;
+  limits.jobs_max = 2;
   std::vector<std::size_t> saved;
   LogWriter writer(store, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
                    limits);
@@ -265,6 +275,75 @@ TEST_CASE("after a failure nothing more is written or acknowledged", "[store][lo
   CHECK(store.commits.size() == 1);
   CHECK(durable == std::vector<Sequence>{2});
   CHECK(failures == std::vector<std::string>{"w: disk full"});
+}
+
+TEST_CASE("a keyframe comes with the last slice of its chunks, behind records", "[store][log-writer]") {
+  FakeStore store;
+  SplitMix64 rng(7);
+  LogWriter::Limits limits;
+  limits.slice_chunks_max = 4;
+  LogWriter writer(store, {}, limits);
+  std::vector<bool> done;
+  const Keyframe keyframe{{{1, 2}, 3}, 10, {}};
+  REQUIRE(writer.save_keyframe(chunks(6), keyframe,
+                               [&](StoreResult<void> result) { done.push_back(result.has_value()); }));
+  store.entered.acquire();
+  writer.append({}, sample_records(rng, 1, 1, 2));
+  CHECK(done.empty());
+  store.open_gate();
+  writer.stop();
+  REQUIRE(store.commits.size() == 3);
+  CHECK(store.commits[0].chunks == 4);
+  CHECK_FALSE(store.commits[0].keyframe.has_value());
+  CHECK(store.commits[1].records.size() == 2);
+  CHECK(store.commits[2].chunks == 2);
+  CHECK(store.commits[2].keyframe == keyframe);
+  CHECK(done == std::vector<bool>{true});
+  CHECK(writer.counters().keyframes == 1);
+  CHECK(writer.counters().snapshots == 0);
+}
+
+TEST_CASE("a keyframe that cannot be written ends its job and nothing else", "[store][log-writer]") {
+  FakeStore store;
+  store.refuse_keyframes = true;
+  store.open_gate();
+  SplitMix64 rng(8);
+  LogWriter::Limits limits;
+  limits.slice_chunks_max = 1;
+  bool failed = false;
+  std::vector<std::string> done;
+  LogWriter writer(store, {{}, {}, [&](StoreError) { failed = true; }}, limits);
+  REQUIRE(writer.save_keyframe(chunks(3), Keyframe{},
+                               [&](StoreResult<void> result) { done.push_back(result.error().message()); }));
+  writer.append({}, sample_records(rng, 1, 1, 2));
+  REQUIRE(writer.save_snapshots(chunks(1), {}));
+  writer.stop();
+  CHECK(done == std::vector<std::string>{"w: keyframe: disk full"});
+  CHECK_FALSE(failed);
+  CHECK(store.last() == 2);
+  CHECK(writer.counters().snapshots == 1);
+  CHECK(writer.counters().keyframes == 0);
+}
+
+TEST_CASE("who waits for a keyframe is told when the writer fails", "[store][log-writer]") {
+  FakeStore store;
+  store.fail_at = 1;
+  SplitMix64 rng(9);
+  LogWriter::Limits limits;
+  limits.slice_chunks_max = 1;
+  std::vector<std::string> done;
+  const auto tell = [&](StoreResult<void> result) {
+    done.push_back(result ? "fine" : result.error().message());
+  };
+  LogWriter writer(store, {}, limits);
+  REQUIRE(writer.save_keyframe(chunks(3), Keyframe{}, tell));
+  store.entered.acquire();  // in its first slice, which succeeds
+  REQUIRE(writer.save_keyframe(chunks(1), Keyframe{}, tell));
+  writer.append({}, sample_records(rng, 1, 1, 2));  // fails
+  store.open_gate();
+  writer.stop();
+  CHECK(done == std::vector<std::string>{"w: disk full", "w: disk full"});
+  CHECK_FALSE(writer.save_keyframe(chunks(1), Keyframe{}, tell));
 }
 
 TEST_CASE("batches from another thread arrive on disk in order", "[store][log-writer]") {

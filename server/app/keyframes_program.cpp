@@ -1,0 +1,38 @@
+#include "server/app/keyframes_program.hpp"
+
+#include <ostream>
+
+#include "server/app/progress_line.hpp"
+#include "server/app/world_folder.hpp"
+
+namespace runstone {
+
+Result<void, std::string> make_keyframes(const KeyframesRequest& request, std::ostream& out) {
+  const auto failure = [](const StoreError& error) { return Unexpected<std::string>{error.message()}; };
+  auto store = open_world(request.world, StoreAccess::read_write);
+  if (!store) return failure(store.error());
+  const auto generator = generator_of(**store);
+  if (!generator) return Unexpected<std::string>{generator.error()};
+  const auto before = (*store)->keyframes();
+  if (!before) return failure(before.error());
+  KeyframeMaker maker(**store, **generator, request.policy);
+  std::uint64_t chunks_written = 0;
+  {
+    ProgressLine line("keyframes, edits", request.progress);
+    const auto made = maker.make_due(
+        [&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>& keyframe) {
+          chunks_written += chunks.size();
+          return (*store)->save_keyframe(chunks, keyframe);
+        },
+        [&](Sequence done, Sequence last) {
+          line.show(done, last);
+          return true;
+        });
+    if (!made) return failure(made.error());
+  }
+  out << "keyframes   " << maker.made() << " made of " << chunks_written << " chunks, " << before->size()
+      << " there before\n";
+  return {};
+}
+
+}  // namespace runstone

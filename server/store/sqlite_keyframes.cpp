@@ -1,0 +1,130 @@
+// The part of SqliteStore that keeps moments: keyframes, and the base that a compaction completed.
+#include <utility>
+
+#include "common/core/key_text.hpp"
+#include "server/store/sqlite_store.hpp"
+#include "server/store/world_schema.hpp"
+
+namespace runstone {
+
+StoreResult<KeyframeTable*> SqliteStore::keyframe_table() {
+  if (!keyframes_) {
+    const auto version = database_->integer("PRAGMA user_version");
+    if (!version) return Unexpected<StoreError>{version.error()};
+    if (*version < kKeyframeFormat) return nullptr;
+    auto table = KeyframeTable::open(*database_);
+    if (!table) return Unexpected<StoreError>{table.error()};
+    keyframes_ = *std::move(table);
+  }
+  return &*keyframes_;
+}
+
+StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() {
+  const auto table = keyframe_table();
+  if (!table) return Unexpected<StoreError>{table.error()};
+  return *table == nullptr ? std::vector<Keyframe>() : (*table)->all();
+}
+
+StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head) {
+  // An import may have made very many base chunks, of which none has an edit in it yet.
+  if (head.version.seq == 0) return std::vector<StoredChunk>();
+  auto rows = rows_of(base_);
+  if (rows) std::erase_if(*rows, [](const StoredChunk& row) { return row.version == Version{}; });
+  return rows;
+}
+
+StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
+  return at_one_moment<StoredMoment>([&]() -> StoreResult<StoredMoment> {
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    if (at < head->version.seq) {
+      return refuse("edit_log", "begins at seq=" + std::to_string(head->version.seq + 1) +
+                                    ": the world at seq=" + std::to_string(at) +
+                                    " was compacted away; the earliest left is that at seq=" +
+                                    std::to_string(head->version.seq));
+    }
+    auto start = completed(*head);
+    if (!start) return Unexpected<StoreError>{start.error()};
+    const auto table = keyframe_table();
+    if (!table) return Unexpected<StoreError>{table.error()};
+    auto all = keyframes();
+    if (!all) return Unexpected<StoreError>{all.error()};
+    while (!all->empty() && all->back().at.version.seq > at) all->pop_back();
+    if (all->empty()) return StoredMoment{*head, *std::move(start)};
+    const Keyframe& newest = all->back();
+    const auto rows = (*table)->rows(newest.at.version.seq);
+    if (!rows) return Unexpected<StoreError>{rows.error()};
+    if (auto proved = (*table)->prove({newest}, *start, *rows); !proved)
+      return Unexpected<StoreError>{proved.error()};
+    return StoredMoment{newest.at, newest_of(*std::move(start), *rows)};
+  });
+}
+
+StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& chunk) {
+  KeyframeTable* keyframes = nullptr;
+  if (!chunk.is_base) {
+    const auto table = keyframe_table();
+    if (!table) return Unexpected<StoreError>{table.error()};
+    if (*table == nullptr) return std::optional<Chunk>();
+    keyframes = *table;
+  }
+  auto loaded =
+      chunk.is_base ? load_base(chunk.key) : keyframes->load(chunk.key, chunk.version.seq, meta_.chunk_edge);
+  if (!loaded || !loaded->has_value()) return loaded;
+  if ((*loaded)->version != chunk.version) return std::optional<Chunk>();  // completed anew
+  if ((*loaded)->digest == chunk.digest) return loaded;
+  return Unexpected<StoreError>{
+      {StoreError::Kind::corrupt, file(),
+       std::string(chunk.is_base ? "base" : "keyframe_chunk") + " chunk=" + text_of(chunk.key),
+       "has another digest than its moment"}};
+}
+
+StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {
+  const Sequence seq = keyframe.at.version.seq;
+  std::string what;
+  if (seq < range.first || seq > range.last.version.seq) {
+    what = "is not within the log";
+  } else {
+    auto reader = log_.reader();
+    if (!reader) return Unexpected<StoreError>{reader.error()};
+    const auto record = log_.read_one(*reader, seq);
+    if (!record) return Unexpected<StoreError>{record.error()};
+    if (LogEnd{record->version, record->time_us} != keyframe.at)
+      what = "has another epoch or time than its edit";
+  }
+  if (what.empty()) return {};
+  return Unexpected<StoreError>{
+      {StoreError::Kind::corrupt, file(), "keyframe seq=" + std::to_string(seq), std::move(what)}};
+}
+
+StoreResult<void> SqliteStore::save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+                                             const std::optional<Keyframe>& keyframe) {
+  return write([&]() -> StoreResult<void> {
+    const auto table = keyframe_table();
+    if (!table) return Unexpected<StoreError>{table.error()};
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    const auto range = log_.range(*head);
+    if (!range) return Unexpected<StoreError>{range.error()};
+    for (const auto& [key, chunk] : chunks) {
+      if (chunk->version <= head->version || chunk->version > range->last.version) {
+        return refuse("keyframe_chunk chunk=" + text_of(key), "its version is not within the log");
+      }
+      if (auto saved = (*table)->save(key, *chunk, meta_.chunk_edge); !saved) return saved;
+    }
+    if (!keyframe) return {};
+    if (auto fits = check_keyframe(*keyframe, *range); !fits) {
+      return refuse(fits.error().where, fits.error().what);
+    }
+    const auto start = completed(*head);
+    if (!start) return Unexpected<StoreError>{start.error()};
+    const auto rows = (*table)->rows(keyframe->at.version.seq);
+    if (!rows) return Unexpected<StoreError>{rows.error()};
+    if (auto proved = (*table)->prove({*keyframe}, *start, *rows); !proved) {
+      return refuse(proved.error().where, proved.error().what);
+    }
+    return (*table)->save(*keyframe);
+  });
+}
+
+}  // namespace runstone
