@@ -33,7 +33,8 @@ void Authority::restack(const EditRecord& record) {
 
 std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
   if (decided_.knows(offer.op)) return decided_.answer_to(offer.op);
-  auto refusal = check_edit(offer.edit, limits_);
+  auto refusal =
+      offer.cause == Cause::player ? check_edit(offer.edit, limits_) : check_own_edit(offer.edit, limits_);
   if (!refusal && !log_has_room) refusal = RejectReason::busy;
   if (refusal) {
     decided_.refuse(offer.op, *refusal);

@@ -57,7 +57,7 @@ class Authority {
 
   // ---- edits
   /// Nothing: queued, and its client sequence is decided. Else why not, which decides it too: busy (if
-  /// `log_has_room` is false) or what check_edit() says. An edit decided before is answered as it was then:
+  /// `log_has_room` is false) or what check_edit() says, for another cause than player check_own_edit(). An edit decided before is answered as it was then:
   /// with its refusal, or already_decided.
   std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
   /// Decides a client sequence without an edit: it was refused for a reason outside the authority's sight.

@@ -1,6 +1,7 @@
 #include "server/world/edit_check.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/edits/edit_geometry.hpp"
 
@@ -14,6 +15,13 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
     return RejectReason::too_large;
   if (counted_voxels(edit) > limits.volume_max) return RejectReason::too_large;
   return std::nullopt;
+}
+
+std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const EditLimits& limits) {
+  EditLimits own = limits;
+  own.heights = {};
+  own.volume_max = std::numeric_limits<std::uint64_t>::max();
+  return check_edit(edit, own);
 }
 
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {

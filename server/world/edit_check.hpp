@@ -22,6 +22,10 @@ struct EditLimits {
 /// too), outside_world or too_large.
 std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLimits& limits);
 
+/// The same for the server's own edits, which put back what was there before: neither heights nor volume limit
+/// them, for both may have been wider once. What a commit can carry still does.
+std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const EditLimits& limits);
+
 /// Whether the geometry's bounding box comes within `reach` voxels of `from`.
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach);
 

@@ -118,6 +118,20 @@ void WorldServer::drained(SessionId session, const Now& now) {
 
 void WorldServer::commit(const Now& now) { commit_and_broadcast(*state_, now); }
 
+WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offers, const Now& now) {
+  WorldState& world = *state_;
+  commit(now);
+  if (!world.accepts_edits) return OwnEdits::closed;
+  if (!world.ports.log_has_room(offers.size())) return OwnEdits::busy;
+  for (const EditOffer& offer : offers) {
+    RUNSTONE_ASSERT(offer.cause != Cause::player);
+    const auto refusal = world.authority.submit(offer, true);
+    RUNSTONE_ASSERT(!refusal);
+  }
+  commit(now);
+  return OwnEdits::ordered;
+}
+
 void WorldServer::step_keeper(const Now& now) {
   WorldState& world = *state_;
   world.keeper.step(world.authority, world.durable, now, world.ports,
@@ -205,6 +219,7 @@ bool WorldServer::is_settled() const {
          state_->keeper.is_clean(state_->authority);
 }
 
+bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
 Epoch WorldServer::epoch() const { return state_->authority.epoch(); }
 Sequence WorldServer::head() const { return state_->authority.head(); }
 Sequence WorldServer::durable() const { return state_->durable; }

@@ -45,6 +45,16 @@ class WorldServer {
   /// Timeouts, poses, roster, audits, snapshot rounds, eviction, retries.
   void tick(const Now& now);
 
+  // ---- the server's own edits: rollback, undo, redo
+  enum class OwnEdits {
+    ordered,
+    busy,    // the log has no room now; nothing was taken, try again
+    closed,  // the server stops, or the log cannot be written any more; nothing was taken
+  };
+  /// Orders the offers at once, behind all that is queued. Their edits must pass check_own_edit(), their client
+  /// sequences must be new, and their cause is not player.
+  OwnEdits order_own(const std::vector<EditOffer>& offers, const Now& now);
+
   // ---- answers of the ports
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
   /// `what` names file, table and row. The chunk is quarantined.
@@ -63,6 +73,7 @@ class WorldServer {
   bool is_settled() const;
 
   // ---- looking in
+  bool accepts_edits() const;  // neither stopping nor failed
   Epoch epoch() const;
   Sequence head() const;
   Sequence durable() const;

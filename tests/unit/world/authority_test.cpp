@@ -153,6 +153,23 @@ TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
   CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
 }
 
+TEST_CASE("the server's own edits may be larger and higher than players', but not without end", "[world]") {
+  EditLimits narrow = limits();
+  narrow.heights = {0, 8};
+  Authority authority(narrow, {1, 0, 0});
+  EditOffer large = offer(1, FillBox{{{0, -4, 0}, {64, 60, 64}}}, 2);
+  CHECK(authority.submit(large, true) == RejectReason::outside_world);
+  large.op.seq = 2;
+  large.cause = Cause::rollback;
+  CHECK_FALSE(authority.submit(large, true).has_value());
+  EditOffer endless = offer(3, FillBox{{{0, 0, 0}, {4000, 4000, 4000}}}, 2);
+  endless.cause = Cause::undo;
+  CHECK(authority.submit(endless, true) == RejectReason::too_large);
+  EditOffer unknown = offer(4, box(0, 4), 8);
+  unknown.cause = Cause::redo;
+  CHECK(authority.submit(unknown, true) == RejectReason::unknown_material);
+}
+
 TEST_CASE("an edit that reaches above or below the world is refused whole", "[world]") {
   EditLimits l = limits();
   l.heights = {-8, 8};
