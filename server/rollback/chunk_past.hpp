@@ -1,0 +1,18 @@
+// chunk_past: a chunk as it stood at a sequence, for one chunk at a time: the newest stored form that is not
+// younger (snapshot, else base, else the generator), and the edits that touched the chunk since, by the log's
+// index of places. Blocks on the disk.
+#pragma once
+#include "common/edits/apply_scratch.hpp"
+#include "common/generate/generator.hpp"
+#include "common/runs/chunk.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+/// The chunk with all edits up to `at` and none later, in its cheapest axis order. The version is that of the last
+/// edit up to `at` that touched it. Fails with what the store says, and (bad_request) if the chunk's base is younger
+/// than `at`: the log before it was compacted. Requires lod 0.
+StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
+                              ApplyScratch& scratch);
+
+}  // namespace runstone

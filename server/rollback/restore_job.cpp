@@ -1,0 +1,145 @@
+#include "server/rollback/restore_job.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/assert.hpp"
+#include "server/rollback/restore_paste.hpp"
+#include "server/rollback/restore_plan.hpp"
+
+namespace runstone {
+
+std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
+                                          const RestoreWork& work) {
+  RestorePlanner planner(reader, generator);
+  std::vector<RestoredChunk> out;
+  for (const RestoreWork::Item& item : work.items) {
+    RestoredChunk chunk;
+    chunk.key = item.key;
+    const auto plan =
+        planner.plan(item.key, work.selection->chunks.at(item.key), work.selection->box, work.end);
+    if (plan) {
+      const VoxelPos origin = origin_of(item.key.at, work.selection->chunk_edge);
+      chunk.version = plan->version;
+      chunk.subject = plan->subject;
+      chunk.voxels = plan->voxels;
+      chunk.edits = item.is_careful ? careful_restore_pastes(plan->now, plan->differences, origin)
+                                    : restore_pastes(plan->now, plan->differences, origin);
+    } else {
+      chunk.error = plan.error().message();
+    }
+    out.push_back(std::move(chunk));
+  }
+  return out;
+}
+
+RestoreJob::RestoreJob(RestoreOrder order, RestoreLimits limits) : order_(std::move(order)), limits_(limits) {
+  for (const auto& [key, edits] : order_.selection->chunks) waiting_.push_back(key);
+  progress_.chunks = waiting_.size();
+  end_if_done();
+}
+
+void RestoreJob::end_if_done() {
+  if (state_ != State::applying || is_working_ || !waiting_.empty() || !planned_.empty()) return;
+  state_ = progress_.chunks_failed == 0 ? State::done : State::failed;
+}
+
+bool RestoreJob::is_careful(const ChunkKey& key) const {
+  const auto hits = collisions_.find(key);
+  return hits != collisions_.end() && hits->second >= kCollisionsMax;
+}
+
+std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
+  if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks) return std::nullopt;
+  RestoreWork work;
+  work.selection = order_.selection;
+  work.end = world.durable();
+  // Only the durable log can be read: a chunk whose last edit is not in it yet would surely be planned in vain.
+  for (std::size_t looked = waiting_.size(); looked > 0 && work.items.size() < limits_.work_chunks;
+       --looked) {
+    const ChunkKey key = waiting_.front();
+    waiting_.pop_front();
+    const bool is_settled = world.chunk_version(key).seq <= work.end;
+    if (!is_settled && ++passes_[key] >= kPassesMax) collisions_[key] = kCollisionsMax;
+    if (is_settled || is_careful(key)) {
+      work.items.push_back({key, is_careful(key)});
+    } else {
+      waiting_.push_back(key);
+    }
+  }
+  if (work.items.empty()) return std::nullopt;
+  is_working_ = true;
+  return work;
+}
+
+void RestoreJob::computed(std::vector<RestoredChunk> chunks) {
+  RUNSTONE_ASSERT(is_working_);
+  is_working_ = false;
+  if (state_ != State::applying) return;
+  for (RestoredChunk& chunk : chunks) {
+    if (!chunk.error.empty()) {
+      ++progress_.chunks_failed;
+      if (progress_.error.empty()) progress_.error = chunk.error;
+    } else if (chunk.edits.empty()) {
+      ++progress_.chunks_done;
+    } else {
+      planned_.push_back(std::move(chunk));
+    }
+  }
+  end_if_done();
+}
+
+void RestoreJob::work_failed(std::string what) {
+  is_working_ = false;
+  if (state_ != State::applying) return;
+  state_ = State::failed;
+  progress_.error = std::move(what);
+}
+
+void RestoreJob::cancel() {
+  if (state_ == State::applying) state_ = State::cancelled;
+}
+
+void RestoreJob::step(WorldServer& world, const Now& now) {
+  if (state_ != State::applying) return;
+  if (!world.accepts_edits()) return work_failed("the server stops, or its log cannot be written any more");
+  if (planned_.empty()) return;
+  world.commit(now);  // from here to order_own() no version moves
+  std::vector<EditOffer> offers;
+  std::vector<RestoredChunk> slice;
+  std::uint64_t voxels = 0;
+  ClientSequence seq = next_seq_;
+  while (!planned_.empty() && slice.size() < limits_.slice_chunks &&
+         (slice.empty() || voxels + planned_.front().voxels <= limits_.slice_voxels)) {
+    RestoredChunk chunk = std::move(planned_.front());
+    planned_.pop_front();
+    if (!is_careful(chunk.key) && world.chunk_version(chunk.key).seq != chunk.version.seq) {
+      ++progress_.collisions;
+      ++collisions_[chunk.key];
+      waiting_.push_back(chunk.key);
+      continue;
+    }
+    voxels += chunk.voxels;
+    for (const EditDescriptor& edit : chunk.edits) {
+      const Sequence subject = order_.subject != 0 ? order_.subject : chunk.subject;
+      offers.push_back({{order_.author, order_.instance, seq++}, order_.cause, now.steady_us, edit, subject});
+    }
+    slice.push_back(std::move(chunk));
+  }
+  if (slice.empty()) return;
+  const Sequence before = world.head();
+  const auto answer = world.order_own(offers, now);
+  if (answer != WorldServer::OwnEdits::ordered) {
+    for (auto chunk = slice.rbegin(); chunk != slice.rend(); ++chunk) planned_.push_front(std::move(*chunk));
+    return;  // busy: again on the next step, with the versions of then
+  }
+  next_seq_ = seq;
+  progress_.chunks_done += slice.size();
+  progress_.edits += offers.size();
+  progress_.voxels += voxels;
+  if (progress_.first == 0) progress_.first = before + 1;
+  progress_.last = world.head();
+  end_if_done();
+}
+
+}  // namespace runstone

@@ -1,0 +1,106 @@
+// RollbackDesk: where people ask for undo, redo and rollback. It keeps previews and jobs, has workers read the
+// log, and lets each job write a slice per tick. Answers come as lines, some at once, the last one when the
+// work is done and on disk. It belongs to the world strand and knows no clock, thread or socket.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/rollback/restore_job.hpp"
+#include "server/rollback/restore_plan.hpp"
+#include "server/rollback/selection.hpp"
+#include "server/world/world_config.hpp"
+
+namespace runstone {
+
+/// One answer: text of one or more lines without a final line break. The last one of a request is done.
+struct DeskAnswer {
+  std::string text;
+  bool is_done = true;
+  bool is_ok = true;  // of the last one
+};
+using DeskReply = std::function<void(const DeskAnswer&)>;
+
+class RollbackDesk {
+ public:
+  /// The threads that read the log.
+  class Workers {
+   public:
+    virtual ~Workers() = default;
+    using Work = std::function<void(Store& reader, const Generator& generator)>;
+    /// Runs `work` soon, elsewhere, with a reader of its own; then `then` on the world strand. The text is
+    /// empty, or says why there was no reader, when `work` did not run.
+    virtual void run(Work work, std::function<void(std::string)> then) = 0;
+  };
+  /// Sees the chunks of a preview, on a worker, one after another: now and restored.
+  using Viewer = std::function<void(const RestorePlan&)>;
+
+  /// All must outlive the desk.
+  RollbackDesk(WorldServer& world, Workers& workers, RandomBytes random);
+  ~RollbackDesk();
+  RollbackDesk(const RollbackDesk&) = delete;
+  RollbackDesk& operator=(const RollbackDesk&) = delete;
+
+  /// The author's next undo or redo. One at a time per author.
+  void undo(AuthorId author, const Now& now, DeskReply reply) {
+    change_own(author, Cause::undo, now, std::move(reply));
+  }
+  void redo(AuthorId author, const Now& now, DeskReply reply) {
+    change_own(author, Cause::redo, now, std::move(reply));
+  }
+
+  /// Says what a rollback of these edits would do, and keeps it under an id ("p1"). Changes nothing. `see`, if any,
+  /// gets each chunk that would change; `seen` then adds lines to the answer, also on the worker.
+  void preview(const SelectionFilter& filter, const Now& now, DeskReply reply, Viewer see = {},
+               std::function<std::string()> seen = {});
+  /// Begins to carry out a preview. `author`: who asks; 0 the server.
+  void apply(const std::string& id, AuthorId author, DeskReply reply);
+  /// Stops a rollback that is being applied, or forgets a preview.
+  void cancel(const std::string& id, DeskReply reply);
+  /// Takes a rollback back: `id` is the sequence of its first edit, or that of its preview.
+  void undo_rollback(const std::string& id, AuthorId author, const Now& now, DeskReply reply);
+  /// Previews, running jobs, and the rollbacks in the log.
+  void list(DeskReply reply);
+
+  /// On every tick, and whenever the log became durable or a worker answered: begins what waited for the disk,
+  /// lets jobs write, answers.
+  void tick(const Now& now);
+  /// Jobs that write or are about to.
+  std::size_t running() const { return jobs_.size(); }
+
+ private:
+  struct Preview;
+  struct Job;
+  struct Waiting {
+    Sequence needed = 0;
+    std::function<void()> begin;
+    DeskReply reply;
+  };
+  void change_own(AuthorId author, Cause cause, const Now& now, DeskReply reply);
+  /// Calls `begin` once everything ordered by now is durable; refuses if that cannot be any more.
+  void when_durable(const Now& now, const DeskReply& reply, std::function<void()> begin);
+  Job& start_job(RestoreOrder order, std::string name, DeskReply reply);
+  void step(Job& job, const Now& now);
+  bool answer_if_ended(Job& job);
+  Preview* find_preview(const std::string& id);
+  ClientInstance new_instance();
+
+  WorldServer& world_;
+  Workers& workers_;
+  RandomBytes random_;
+  std::map<std::uint64_t, std::shared_ptr<Preview>> previews_;  // by number
+  std::list<std::shared_ptr<Job>> jobs_;
+  std::vector<Waiting> waiting_;
+  std::set<AuthorId> own_changes_;  // authors with an undo or redo under way
+  std::uint64_t next_preview_ = 1;
+};
+
+}  // namespace runstone
