@@ -10,6 +10,7 @@
 namespace runstone {
 namespace {
 
+constexpr double kFovY = 0.8;         // radians: narrower than a player looks, so that towers do not lean
 constexpr double kMargin = 0.94;      // of the picture's sides that the box may fill
 constexpr double kFogStart = 0.6;     // of `far`: the renderer fades from there on
 constexpr double kNearPerFar = 5e-5;  // the depth buffer cannot tell much more apart
@@ -52,6 +53,7 @@ DrawCamera oblique_camera(const VoxelBox& box, PictureSize size, ViewDirection d
   DrawCamera camera;
   camera.yaw = direction.yaw;
   camera.pitch = direction.pitch;
+  camera.fov_y = kFovY;
   const double sy = std::sin(camera.yaw), cy = std::cos(camera.yaw);
   const double sp = std::sin(camera.pitch), cp = std::cos(camera.pitch);
   const Vec forward{sy * cp, sp, cy * cp};

@@ -33,6 +33,10 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
   }
   app.get_option("--import")->excludes("--at");
   for (const char* other : {"--at", "--export", "--import"}) app.get_option("--keyframes")->excludes(other);
+  add_timelapse_options(app, options.timelapse);
+  for (const char* other : {"--verify", "--against", "--export", "--import", "--keyframes"}) {
+    app.get_option("--timelapse")->excludes(other);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
+#include "server/app/timelapse_options.hpp"
 
 namespace runstone {
 
@@ -19,7 +20,8 @@ struct ReplayOptions {
   std::string export_to, import_from;  // .rlog files; at most one is not empty
   bool keyframes = false;              // make those that are missing
   std::uint64_t keyframe_edits = 32'768;
-  bool progress = false;  // also where stderr is no terminal
+  bool progress = false;       // also where stderr is no terminal
+  TimelapseOptions timelapse;  // instead of comparing, if it has a folder
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

@@ -13,6 +13,7 @@
 #include "server/app/replay.hpp"
 #include "server/app/replay_options.hpp"
 #include "server/app/rlog_file.hpp"
+#include "server/app/timelapse_program.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -146,6 +147,10 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
   if (!options->import_from.empty()) return import_log(*options, out, err);
   if (options->keyframes) {
     const auto made = make_keyframes({options->world, {options->keyframe_edits}, options->progress}, out);
+    return made ? static_cast<int>(ReplayExit::equal) : cannot_read(err, made.error());
+  }
+  if (!options->timelapse.folder.empty()) {
+    const auto made = timelapse_program(*options, out);
     return made ? static_cast<int>(ReplayExit::equal) : cannot_read(err, made.error());
   }
   return run(*options, out, err);
