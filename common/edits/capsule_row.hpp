@@ -19,6 +19,7 @@
 //   L * E < 2^60.7 and |df * c| < 2^31.6: all fit i64.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace runstone {
@@ -30,23 +31,14 @@ struct CapsuleRow {
   friend bool operator==(const CapsuleRow&, const CapsuleRow&) = default;
 };
 
-/// Largest w with w * w <= v, by Newton's steps from any `guess` >= 1: two or three where the guess is near,
-/// as it is from line to line; at most about 35. Requires v < 2^62.
-constexpr std::uint64_t isqrt_near(std::uint64_t v, std::uint64_t guess) {
-  if (v == 0) return 0;
-  // One step from anywhere leads to the root or above it; from there each step goes down until it is reached.
-  std::uint64_t root = (guess + v / guess) / 2;
-  for (;;) {
-    const std::uint64_t next = (root + v / root) / 2;
-    if (next >= root) return root;
-    root = next;
-  }
+/// Largest w with w * w <= v. Requires 0 <= v < 2^62. The processor's square root, which IEEE 754 defines to the
+/// last bit, is off by one at most there; what is returned is checked in integers.
+inline std::int64_t isqrt_wide(std::int64_t v) {
+  auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(v)));
+  root -= root * root > v ? 1 : 0;
+  root += (root + 1) * (root + 1) <= v ? 1 : 0;
+  return root;
 }
-
-/// The square roots of the line before, to begin with.
-struct CapsuleRoots {
-  std::uint64_t body = 1, start = 1, end = 1;
-};
 
 namespace detail {
 
@@ -54,12 +46,6 @@ constexpr std::int64_t floor_of(std::int64_t a, std::int64_t b) {  // b > 0
   return a / b - static_cast<std::int64_t>(a % b < 0);
 }
 constexpr std::int64_t ceil_of(std::int64_t a, std::int64_t b) { return -floor_of(-a, b); }
-
-constexpr std::int64_t root_of(std::int64_t v, std::uint64_t& guess) {
-  const std::uint64_t root = isqrt_near(static_cast<std::uint64_t>(v), guess);
-  guess = std::max<std::uint64_t>(root, 1);
-  return static_cast<std::int64_t>(root);
-}
 
 constexpr void join(CapsuleRow& row, std::int64_t first, std::int64_t last) {
   if (last < first) return;
@@ -71,21 +57,21 @@ constexpr void join(CapsuleRow& row, std::int64_t first, std::int64_t last) {
 
 /// The row of the line with these numbers (file comment), counted from the segment's first point. O(1).
 inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t c, std::int64_t n,
-                              std::int64_t reach, CapsuleRoots& roots) {
+                              std::int64_t reach) {
   if (df < 0) {
-    const CapsuleRow mirrored = capsule_row(-df, across, c, n, reach, roots);
+    const CapsuleRow mirrored = capsule_row(-df, across, c, n, reach);
     return {-mirrored.last, -mirrored.first};
   }
   const std::int64_t start_left = reach - n;
   if (across == 0) {  // the line runs along the segment
     if (start_left < 0) return {};
-    const std::int64_t half = detail::root_of(start_left, roots.start);
+    const std::int64_t half = isqrt_wide(start_left);
     return {-half, df + half};
   }
   const std::int64_t length = df * df + across;
   const std::int64_t e = c * c + across * start_left;
   if (e < 0) return {};
-  const std::int64_t root = detail::root_of(length * e, roots.body);
+  const std::int64_t root = isqrt_wide(length * e);
   CapsuleRow body{detail::ceil_of(df * c - root, across), detail::floor_of(df * c + root, across)};
   if (body.empty()) return {};  // no voxel within reach of the endless line, and so none of the segment
   if (body.first * df + c >= 0 && body.last * df + c <= length) return body;
@@ -97,12 +83,12 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   }
   CapsuleRow row = body.empty() ? CapsuleRow{} : body;
   if (start_left >= 0) {
-    const std::int64_t half = detail::root_of(start_left, roots.start);
+    const std::int64_t half = isqrt_wide(start_left);
     detail::join(row, -half, half);
   }
   const std::int64_t end_left = start_left + 2 * c - across;
   if (end_left >= 0) {
-    const std::int64_t half = detail::root_of(end_left, roots.end);
+    const std::int64_t half = isqrt_wide(end_left);
     detail::join(row, df - half, df + half);
   }
   return row;

@@ -113,15 +113,13 @@ bool visit_capsule_rows(const OrderedShape& shape, std::uint32_t s, F&& row) {
   const std::int64_t qs = static_cast<std::int64_t>(s) - shape.centre[2];
   const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
   // The lines that the capsule meets at all are the row of its shadow on the plane across them.
-  CapsuleRoots roots;
-  const CapsuleRow lines = capsule_row(dm, ds * ds, qs * ds, qs * qs, shape.reach, roots);
+  const CapsuleRow lines = capsule_row(dm, ds * ds, qs * ds, qs * qs, shape.reach);
   const std::int64_t m_first = std::max<std::int64_t>(shape.first[1], lines.first + shape.centre[1]);
   const std::int64_t m_last = std::min<std::int64_t>(shape.last[1], lines.last + shape.centre[1] + 1);
-  roots = {};
   for (std::int64_t m = m_first; m < m_last; ++m) {
     const std::int64_t qm = m - shape.centre[1];
     const CapsuleRow inside =
-        capsule_row(df, dm * dm + ds * ds, qm * dm + qs * ds, qm * qm + qs * qs, shape.reach, roots);
+        capsule_row(df, dm * dm + ds * ds, qm * dm + qs * ds, qm * qm + qs * qs, shape.reach);
     const std::int64_t f_first = std::max<std::int64_t>(shape.first[0], inside.first + shape.centre[0]);
     const std::int64_t f_last = std::min<std::int64_t>(shape.last[0], inside.last + shape.centre[0] + 1);
     if (f_first >= f_last) continue;

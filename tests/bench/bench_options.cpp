@@ -23,7 +23,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   BenchOptions options;
   options.luanti = kSmallLuanti;
   bool quick = false;
-  CLI::App app("Measures meshing, on one core, and prints tables of Markdown.", "runstone-bench");
+  CLI::App app("Measures meshing and edits, on one core, and prints tables of Markdown.", "runstone-bench");
   app.require_subcommand(1);
   const auto common = [&](CLI::App* command, const std::set<std::string>& worlds) {
     command->add_option("--worlds", options.worlds, "worlds to measure; all by default")
@@ -60,6 +60,16 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   common(chunk_edge, landscape_names());
   files(chunk_edge);
 
+  CLI::App* edits =
+      app.add_subcommand("edits", "what edits cost: stacks, spheres, strokes, and the replay of a log");
+  files(edits);
+  edits->add_option("--min-runs", options.repetitions, "repetitions; a tenth of them of the replay")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  edits->add_option("--edits", options.edits, "length of the log that is replayed")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 10'000'000));
+
   CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
   common(mesh_once, measured_world_names());
   unsigned times = 1;
@@ -74,6 +84,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     return {std::nullopt, app.exit(error, out, err) == 0 ? 0 : 2};
   }
   if (chunk_edge->parsed()) options.command = BenchOptions::Command::chunk_edge;
+  if (edits->parsed()) options.command = BenchOptions::Command::edits;
   if (mesh_once->parsed()) {
     options.command = BenchOptions::Command::mesh_once;
     options.meshers = {mesher};

@@ -7,6 +7,7 @@
 
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/chunk_edge.hpp"
+#include "tests/bench/edit_bench.hpp"
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/mesh_once.hpp"
 
@@ -56,6 +57,19 @@ int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err
   return csv && json ? 0 : 1;
 }
 
+int edits(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_edit_bench(options, err);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_machine(result->machine, out);
+  write_table(*result, out);
+  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
+  return csv && json ? 0 : 1;
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -67,11 +81,17 @@ int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err)
 int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   const ParsedBenchOptions parsed = parse_bench_options(argc, argv, out, err);
   if (!parsed.options) return parsed.exit_code;
-  if (parsed.options->command == BenchOptions::Command::mesh) return mesh(*parsed.options, out, err);
-  if (parsed.options->command == BenchOptions::Command::mesh_once) {
-    return mesh_once(*parsed.options, out, err);
+  switch (parsed.options->command) {
+    case BenchOptions::Command::mesh:
+      return mesh(*parsed.options, out, err);
+    case BenchOptions::Command::mesh_once:
+      return mesh_once(*parsed.options, out, err);
+    case BenchOptions::Command::chunk_edge:
+      return chunk_edge(*parsed.options, out, err);
+    case BenchOptions::Command::edits:
+      return edits(*parsed.options, out, err);
   }
-  return chunk_edge(*parsed.options, out, err);
+  return 2;
 }
 
 }  // namespace runstone::bench

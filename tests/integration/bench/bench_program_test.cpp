@@ -204,3 +204,23 @@ TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
   const std::string nowhere = folder / "no/such.csv";
   CHECK(run({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
 }
+
+TEST_CASE("runstone-bench edits has a row for every case and judges every bar", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "edits.csv", json = folder / "edits.json";
+  const Output output = run({"edits", "--min-runs", "1", "--edits", "300", "--csv", csv, "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  std::map<std::string, std::size_t> edits;
+  for (const CsvRow& row : read_csv(csv)) {
+    CAPTURE(row.at("case"));
+    CHECK(std::stod(row.at("median_us")) > 0);
+    CHECK(std::stoul(row.at("chunks")) > 0);
+    edits[row.at("case")] += std::stoul(row.at("edits"));
+  }
+  CHECK(edits.size() == 11);
+  CHECK(edits["mixed edits by hand as a stack"] == 1111);
+  const auto bars = nlohmann::json::parse(text_of(json)).at("bars");
+  CHECK(bars.size() == 6);
+  for (const auto& bar : bars) CHECK(bar.at("verdict") != "not measured");
+}

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/edits/capsule_row.hpp"
 #include "common/edits/edit_geometry.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -26,6 +27,23 @@ std::int32_t long_step(SplitMix64& rng) {
 }
 
 }  // namespace
+
+TEST_CASE("whole square roots are exact, also where doubles are not", "[edits][property]") {
+  SplitMix64 rng{5 + Catch::rngSeed()};
+  const auto check = [](std::int64_t v) {
+    if (v < 0 || v >= std::int64_t{1} << 62) return;
+    const std::int64_t root = isqrt_wide(v);
+    REQUIRE(root * root <= v);
+    REQUIRE((root + 1) * (root + 1) > v);
+  };
+  for (std::int64_t v = 0; v < 1000; ++v) check(v);
+  check((std::int64_t{1} << 62) - 1);
+  for (int round = 0; round < 100'000; ++round) {
+    const auto root = static_cast<std::int64_t>(rng.next() >> (33 + rng.below(30)));
+    for (const std::int64_t off : {-1, 0, 1}) check(root * root + off);
+    check(static_cast<std::int64_t>(rng.next() >> 2));
+  }
+}
 
 TEST_CASE("rows of the longest and widest strokes equal the oracle in any order", "[edits][property]") {
   SplitMix64 rng{31 + Catch::rngSeed()};
