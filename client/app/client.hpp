@@ -21,6 +21,7 @@
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
 #include "client/replica/client_session.hpp"
+#include "client/replica/copy_box.hpp"
 #include "client/schedule/view_pace.hpp"
 
 namespace runstone {
@@ -71,6 +72,9 @@ class Client final : private ScriptHost {
   void look(double yaw, double pitch) override;
   std::optional<Material> material(std::string_view name) const override;
   std::optional<Material> shown_at(VoxelPos at) const override { return session_.replica().shown_at(at); }
+  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+    return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
+  }
   std::optional<RayHit> pick() const override;
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;

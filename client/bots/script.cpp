@@ -118,6 +118,45 @@ script::Step stroke_step(Words& words) {
   return stroke;
 }
 
+script::Step copy_step(Words& words) {
+  script::Copy copy;
+  copy.name = words.word("NAME");
+  copy.from = position(words);
+  copy.to = position(words);
+  if (words.peek() == "solid") {
+    words.word("solid");
+    copy.solid = true;
+  }
+  return copy;
+}
+
+Axis axis(Words& words) {
+  const std::string_view text = words.word("AXIS");
+  if (text == "x") return Axis::x;
+  if (text == "y") return Axis::y;
+  if (text == "z") return Axis::z;
+  throw LineError{"AXIS: \"" + std::string(text) + "\" is none of x, y, z"};
+}
+
+script::Step paste_step(Words& words) {
+  script::Paste paste;
+  paste.name = words.word("NAME");
+  paste.at = position(words);
+  for (;;) {
+    if (words.peek() == "rotate") {
+      words.word("rotate");
+      paste.orientation = paste.orientation.rotated_about_y(number<int>(words, "QUARTERS", -3, 3));
+    } else if (words.peek() == "mirror") {
+      words.word("mirror");
+      paste.orientation = paste.orientation.mirrored(axis(words));
+    } else {
+      break;
+    }
+  }
+  paste.mask = mask(words);
+  return paste;
+}
+
 script::Step wait_step(Words& words) {
   const std::string_view what = words.word("SECONDS, loaded, durable or synced");
   std::optional<script::Until> until;
@@ -173,6 +212,8 @@ script::Step step_of(std::string_view verb, Words& words) {
     return sphere;
   }
   if (verb == "stroke") return stroke_step(words);
+  if (verb == "copy") return copy_step(words);
+  if (verb == "paste") return paste_step(words);
   if (verb == "dig") return script::Dig{};
   if (verb == "place") return script::Place{material(words)};
   if (verb == "wait") return wait_step(words);

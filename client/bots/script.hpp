@@ -64,6 +64,17 @@ struct Stroke {
   std::vector<ScriptPosition> points;  // two or more
   ScriptMask mask;
 };
+struct Copy {
+  std::string name;
+  ScriptPosition from, to;
+  bool solid = false;  // empty voxels become untouched
+};  // corner voxels, both included
+struct Paste {
+  std::string name;
+  ScriptPosition at;  // smallest corner of what is copied, as it is turned
+  Orientation orientation;
+  ScriptMask mask;
+};
 struct Dig {};
 struct Place {
   std::string material;
@@ -103,8 +114,8 @@ struct Digests {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Dig, Place, Wait, WaitUntil,
-                          Screenshot, Expect, Repeat, End, Burst, Digests, Quit>;
+using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
+                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Quit>;
 
 }  // namespace script
 

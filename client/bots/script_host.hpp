@@ -1,6 +1,7 @@
 // ScriptHost: what a script can do to a client. The client program implements it; tests do with a few lines.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "client/replica/ray_pick.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
+#include "common/core/result.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -27,6 +29,8 @@ class ScriptHost {
   /// By name or number; none if the world has no such material.
   virtual std::optional<Material> material(std::string_view name) const = 0;
   virtual std::optional<Material> shown_at(VoxelPos at) const = 0;
+  /// The shown voxels of a box; with `solid` the empty ones become untouched. Errors as of copy_box().
+  virtual Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const = 0;
   /// What the player looks at, within reach.
   virtual std::optional<RayHit> pick() const = 0;
   /// y of the highest shown voxel of the column that is not empty.

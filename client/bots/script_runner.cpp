@@ -19,6 +19,11 @@ VoxelPos voxel_of(const WorldPos& at) {
   return {down(at.x), down(at.y), down(at.z)};
 }
 
+VoxelBox box_between(VoxelPos a, VoxelPos b) {  // both included
+  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+          {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
+}
+
 TimeUs after(TimeUs start_us, double seconds) {
   return start_us + static_cast<TimeUs>(std::llround(seconds * kUsPerSecond));
 }
@@ -179,9 +184,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
   const auto material = resolve_material(c.material);
   const auto mask = resolve_mask(c.mask);
   if (!a || !b || !material || !mask) return Progress::stop;
-  const VoxelBox box{{std::min(a->x, b->x), std::min(a->y, b->y), std::min(a->z, b->z)},
-                     {std::max(a->x, b->x) + 1, std::max(a->y, b->y) + 1, std::max(a->z, b->z) + 1}};
-  return submit({FillBox{box}, *mask, *material});
+  return submit({FillBox{box_between(*a, *b)}, *mask, *material});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
@@ -204,6 +207,25 @@ ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
   const auto mask = resolve_mask(c.mask);
   if (!material || !mask) return Progress::stop;
   return submit({std::move(stroke), *mask, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
+  const auto a = resolve_voxel(c.from);
+  const auto b = resolve_voxel(c.to);
+  if (!a || !b) return Progress::stop;
+  auto copied = host_.copy(box_between(*a, *b), c.solid);
+  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + copied.error().what);
+  clipboards_[c.name] = *std::move(copied);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
+  const auto held = clipboards_.find(c.name);
+  if (held == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
+  const auto at = resolve_voxel(c.at);
+  const auto mask = resolve_mask(c.mask);
+  if (!at || !mask) return Progress::stop;
+  return submit({runstone::Paste{*at, held->second, c.orientation}, *mask, kEmpty});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {

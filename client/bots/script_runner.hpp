@@ -1,6 +1,8 @@
 // ScriptRunner: runs a script against a host, a step at a time, on the clock that it is told. One thread.
 #pragma once
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +48,8 @@ class ScriptRunner {
   Progress run(const script::Box& c);
   Progress run(const script::Sphere& c);
   Progress run(const script::Stroke& c);
+  Progress run(const script::Copy& c);
+  Progress run(const script::Paste& c);
   Progress run(const script::Dig& c);
   Progress run(const script::Place& c);
   Progress run(const script::Wait& c);
@@ -75,6 +79,7 @@ class ScriptRunner {
   bool started_ = false;
   Started state_;
   std::vector<std::uint32_t> turns_left_;  // of the open repeats, innermost last
+  std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
   TimeUs now_us_ = 0;
   std::optional<TimeUs> due_us_;
   bool finished_ = false;

@@ -24,6 +24,12 @@ std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const Edi
   return check_edit(edit, own);
 }
 
+std::uint64_t edit_tokens(const EditDescriptor& edit) {
+  constexpr std::size_t kTokenBytes = 1024;
+  const auto* paste = std::get_if<Paste>(&edit.shape);
+  return paste == nullptr ? 1 : 1 + (paste->clipboard->byte_size() + kTokenBytes - 1) / kTokenBytes;
+}
+
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {
   const VoxelBox box = bounding_box(edit);
   const auto outside = [](double at, std::int32_t low, std::int32_t high) {

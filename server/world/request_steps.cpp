@@ -1,6 +1,7 @@
 #include "server/world/request_steps.hpp"
 
 #include "server/world/delivery.hpp"
+#include "server/world/edit_check.hpp"
 
 namespace runstone {
 
@@ -22,7 +23,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   std::optional<RejectReason> refusal;
   if (world.authority.decided().knows(op)) {
     refusal = world.authority.decided().answer_to(op);
-  } else if (!mine.edits.take(1, now.steady_us)) {
+  } else if (!mine.edits.take(edit_tokens(request.edit), now.steady_us)) {
     refusal = RejectReason::rate_limited;
     world.authority.refuse(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {

@@ -1,6 +1,7 @@
 // Bytes read as a chunk and a script of edit stacks, applied to runs and to the dense oracle side by side.
 //   chunk:  side x, y, z (8 + byte % 17), axis order, shape, seed (u16)
-//   stack:  depth (1 + byte % 8), then per edit: kind, mask, mask material, material, x, y, z, three sizes
+//   stack:  depth (1 + byte % 8), then per edit: kind, mask, mask material, material, x, y, z, three sizes; from
+//           kind 192 on a paste in orientation (kind - 192) % 48, then the seed (u16) of its clipboard
 // A script that ends early reads zeros for what is missing.
 #include <algorithm>
 #include <cstdint>
@@ -33,6 +34,13 @@ EditDescriptor read_edit(ByteReader& in) {
   const std::int32_t x = in.u8() % 40;
   const std::int32_t y = in.u8() % 40;
   const std::int32_t z = in.u8() % 40;
+  if (kind >= 192) {
+    SplitMix64 rng{in.u16()};
+    edit.shape = Paste{at, random_clipboard(rng, 1 + static_cast<unsigned>(x), 4),
+                       *Orientation::of_byte(static_cast<std::uint8_t>(kind - 192) % kOrientationCount)};
+    edit.material = kEmpty;
+    return edit;
+  }
   if (kind % 4 == 0) edit.shape = SetVoxel{at};
   if (kind % 4 == 1) edit.shape = FillBox{{at, {at.x + 1 + x, at.y + 1 + y, at.z + 1 + z}}};
   if (kind % 4 == 2) edit.shape = FillSphere{at, static_cast<std::uint16_t>(x)};

@@ -58,7 +58,11 @@ Pose any_pose(SplitMix64& rng) {
 EditDescriptor any_edit(SplitMix64& rng) {
   const VoxelPos at{rng.between(-1'000'000, 1'000'000), rng.between(-300, 300), rng.between(-1'000, 1'000)};
   EditDescriptor edit;
-  switch (rng.below(4)) {
+  switch (rng.below(5)) {
+    case 3:
+      edit.shape =
+          Paste{at, random_clipboard(rng, 9, rng.below(2) == 0 ? 3 : 65536), random_orientation(rng)};
+      break;
     case 0:
       edit.shape = SetVoxel{at};
       break;
@@ -74,7 +78,7 @@ EditDescriptor any_edit(SplitMix64& rng) {
   }
   edit.mask.kind = static_cast<MaskKind>(rng.below(4));
   if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.next());
-  edit.material = static_cast<Material>(rng.next());
+  if (!std::holds_alternative<Paste>(edit.shape)) edit.material = static_cast<Material>(rng.next());
   return edit;
 }
 

@@ -38,14 +38,17 @@ inline PlayerRow sample_player(AuthorId author) {
   return row;
 }
 
-/// An edit near the origin: voxels, boxes, strokes and spheres, some masked, so that edits overlap and depend
+/// An edit near the origin: voxels, boxes, strokes, spheres and pastes, some masked, so that edits overlap and depend
 /// on order.
 inline EditDescriptor sample_edit(SplitMix64& rng) {
   EditDescriptor edit;
   const VoxelPos at{rng.between(-40, 40), rng.between(-20, 40), rng.between(-40, 40)};
-  switch (rng.below(4)) {
+  switch (rng.below(5)) {
     case 0:
       edit.shape = SetVoxel{at};
+      break;
+    case 3:
+      edit.shape = Paste{at, random_clipboard(rng, 20, 5), random_orientation(rng)};
       break;
     case 1: {
       const VoxelPos max{at.x + rng.between(1, 20), at.y + rng.between(1, 20), at.z + rng.between(1, 20)};
@@ -61,7 +64,7 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
   }
   edit.mask.kind = static_cast<MaskKind>(rng.below(4));
   if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(1 + rng.below(4));
-  edit.material = static_cast<Material>(rng.below(5));
+  if (!std::holds_alternative<Paste>(edit.shape)) edit.material = static_cast<Material>(rng.below(5));
   return edit;
 }
 

@@ -13,6 +13,7 @@
 #include "server/app/replay_program.hpp"
 #include "tests/support/compact_by_hand.hpp"
 #include "tests/support/dense_chunk.hpp"
+#include "tests/support/edit_oracle.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
@@ -41,30 +42,6 @@ class GroundGenerator final : public Generator {
   std::int32_t y_max() const override { return 4; }
   std::int32_t surface_y(std::int32_t, std::int32_t) const override { return 4; }
 };
-
-bool oracle_covers(const EditDescriptor& edit, VoxelPos p) {
-  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) return voxel->at == p;
-  if (const auto* box = std::get_if<FillBox>(&edit.shape)) return box->box.contains(p);
-  if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
-    for (std::size_t i = 1; i < stroke->points.size(); ++i) {
-      const VoxelPos &a = stroke->points[i - 1], &b = stroke->points[i];
-      const double dx = b.x - a.x, dy = b.y - a.y, dz = b.z - a.z;
-      const double px = p.x - a.x, py = p.y - a.y, pz = p.z - a.z;
-      const double whole = dx * dx + dy * dy + dz * dz, place = px * dx + py * dy + pz * dz;
-      // Times |ab|^2, so that a double holds each number exactly.
-      const double beside = (px * px + py * py + pz * pz) * whole;
-      const double squared = place <= 0       ? beside
-                             : place >= whole ? beside - (2 * place - whole) * whole
-                                              : beside - place * place;
-      const double r = stroke->radius;
-      if (squared <= (r * r + r) * whole) return true;
-    }
-    return false;
-  }
-  const auto& sphere = std::get<FillSphere>(edit.shape);
-  const std::int64_t dx = p.x - sphere.centre.x, dy = p.y - sphere.centre.y, dz = p.z - sphere.centre.z;
-  return dx * dx + dy * dy + dz * dz <= std::int64_t{sphere.radius} * sphere.radius + sphere.radius;
-}
 
 bool oracle_admits(const Mask& mask, Material present) {
   switch (mask.kind) {
@@ -129,11 +106,12 @@ struct LiveWorld {
           for (int x = box.min.x; x < box.max.x; ++x) {
             for (int y = box.min.y; y < box.max.y; ++y) {
               for (int z = box.min.z; z < box.max.z; ++z) {
-                if (!oracle_covers(record.edit, {x, y, z})) continue;
+                const auto written = oracle_writes(record.edit, {x, y, z});
+                if (!written) continue;
                 touched = true;
                 const Material present = voxels.at(x - o.x, y - o.y, z - o.z);
                 if (oracle_admits(record.edit.mask, present)) {
-                  voxels.set(x - o.x, y - o.y, z - o.z, record.edit.material);
+                  voxels.set(x - o.x, y - o.y, z - o.z, *written);
                 }
               }
             }

@@ -4,6 +4,7 @@
 
 #include "common/edits/edit_stack.hpp"
 #include "common/edits/edit_stack_strategies.hpp"
+#include "common/runs/reorder.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
@@ -161,6 +162,33 @@ TEST_CASE("a stack deeper than a word of the active set equals its edits one aft
       }
       REQUIRE(stacked == one_by_one);
       REQUIRE(digest == digest_one_by_one);
+    }
+  }
+}
+
+TEST_CASE("a paste lies as its orientation says, in each axis order of clipboard and chunk",
+          "[edits][property]") {
+  SplitMix64 rng{6 + Catch::rngSeed()};
+  ApplyScratch scratch;
+  constexpr Extent kChunk{9, 11, 13};
+  for (std::uint8_t byte = 0; byte < kOrientationCount; ++byte) {
+    for (const AxisOrder order : kAxisOrders) {
+      for (const AxisOrder cells_order : kAxisOrders) {
+        const auto some = random_clipboard(rng, 16, 6);
+        const auto clipboard = *Clipboard::of(some->palette(), reorder(some->cells(), cells_order));
+        const auto at = [&] { return rng.between(-6, 9); };
+        Mask mask{static_cast<MaskKind>(rng.below(4)), kEmpty};
+        if (mask.kind == MaskKind::only_material) mask.material = static_cast<Material>(rng.below(4));
+        const EditDescriptor edit{Paste{{at(), at(), at()}, clipboard, *Orientation::of_byte(byte)}, mask,
+                                  kEmpty};
+        RunChunk chunk = random_chunk(rng, kChunk, order, 4);
+        Digest digest = digest_of(chunk);
+        DenseChunk oracle = DenseChunk::of(chunk);
+        CAPTURE(Catch::rngSeed(), edit, static_cast<int>(order));
+        const char* differs = difference(chunk, digest, oracle, {}, std::span(&edit, 1), scratch);
+        INFO((differs == nullptr ? "" : differs));
+        REQUIRE(differs == nullptr);
+      }
     }
   }
 }

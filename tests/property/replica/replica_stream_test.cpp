@@ -32,9 +32,13 @@ EditDescriptor random_edit(SplitMix64& rng) {
   const VoxelPos at{coordinate(), coordinate(), coordinate()};
   EditDescriptor edit;
   edit.material = static_cast<Material>(rng.below(5));
-  switch (rng.below(5)) {
+  switch (rng.below(6)) {
     case 0:
       edit.shape = SetVoxel{at};
+      break;
+    case 5:
+      edit.shape = Paste{at, test::random_clipboard(rng, 12, 5), test::random_orientation(rng)};
+      edit.material = kEmpty;
       break;
     case 2:
       edit.shape = test::random_stroke(rng, at);

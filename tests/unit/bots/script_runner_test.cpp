@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "common/edits/clipboard_builder.hpp"
+
 using namespace runstone;
 
 namespace {
@@ -24,6 +26,7 @@ struct FakeHost final : ScriptHost {
   std::map<VoxelPos, Material> voxels;
   std::optional<RayHit> hit;
   std::vector<Submitted> edits;
+  mutable std::vector<VoxelBox> copied;
   std::vector<std::string> files;
 
   bool ready() const override { return open; }
@@ -40,6 +43,22 @@ struct FakeHost final : ScriptHost {
     if (pos.x > 1000) return std::nullopt;
     const auto it = voxels.find(pos);
     return it == voxels.end() ? kEmpty : it->second;
+  }
+  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+    copied.push_back(box);
+    if (box.min.x > 1000) return runstone::fail(ErrorCode::not_found, "it is far");
+    const auto side = [](std::int32_t low, std::int32_t high) {
+      return static_cast<std::uint8_t>(high - low);
+    };
+    ClipboardBuilder cells(
+        {side(box.min.x, box.max.x), side(box.min.y, box.max.y), side(box.min.z, box.max.z)});
+    cells.append(1, Material{5});
+    while (cells.filled() < static_cast<std::uint32_t>(box.max.x - box.min.x) *
+                                static_cast<std::uint32_t>(box.max.y - box.min.y) *
+                                static_cast<std::uint32_t>(box.max.z - box.min.z)) {
+      cells.append(1, solid ? std::nullopt : std::optional<Material>(kEmpty));
+    }
+    return cells.finish();
   }
   std::optional<RayHit> pick() const override { return hit; }
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
@@ -110,6 +129,33 @@ TEST_CASE_METHOD(Fixture, "a stroke goes through its places", "[bots]") {
   run("stroke 2 stone 1 2 3 1.5 2 3");  // one voxel twice
   REQUIRE(runner->failures().size() == 1);
   CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]") {
+  run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 1 0 0\ncopy a 0 0 0 0 0 0\n"
+      "paste b ~ 7 -2 rotate 1 mirror x rotate -1 only:sand\npaste a 1 2 3\n");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.copied.size() == 3);
+  CHECK(host.copied[0] == VoxelBox{{1, 2, 3}, {6, 5, 31}});
+  REQUIRE(host.edits.size() == 2);
+  const auto b = *host.copy({{0, 0, 0}, {2, 1, 1}}, false);
+  // A mirror along x between a quarter of a turn and back is one along z.
+  CHECK(host.edits[0].edit == EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
+                                             {MaskKind::only_material, 2},
+                                             kEmpty});
+  const auto a = *host.copy({{0, 0, 0}, {1, 1, 1}}, false);  // the newer one of that name
+  CHECK(host.edits[1].edit == EditDescriptor{runstone::Paste{{1, 2, 3}, a, {}}, {}, kEmpty});
+  CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end the script", "[bots]") {
+  run("copy a 1001 0 0 1002 0 0\nset 1 2 3 stone");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:1: cannot copy \"a\": it is far");
+  run("paste a 1 2 3\nset 1 2 3 stone");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:1: nothing was copied as \"a\"");
+  CHECK(host.edits.empty());
 }
 
 TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {

@@ -60,6 +60,16 @@ TEST_CASE("every command is read with its values", "[bots]") {
   CHECK(stroke.points[2][2].offset == 9);
   CHECK(stroke.mask.material == "sand");
   CHECK(only<script::Stroke>("stroke 1 0 1 2 3 4 5 6").mask.kind == MaskKind::everything);
+  const auto copy = only<script::Copy>("copy house 1 2 3 ~4 ^ 6 solid");
+  CHECK(copy.name == "house");
+  CHECK(copy.solid);
+  CHECK(copy.to[1].base == Base::surface);
+  CHECK_FALSE(only<script::Copy>("copy house 1 2 3 4 5 6").solid);
+  const auto paste = only<script::Paste>("paste house 1 2 ~ rotate 3 mirror y solid");
+  CHECK(paste.name == "house");
+  CHECK(paste.orientation == Orientation{}.rotated_about_y(3).mirrored(Axis::y));
+  CHECK(paste.mask.kind == MaskKind::only_solid);
+  CHECK(only<script::Paste>("paste house 1 2 3").orientation == Orientation{});
   only<script::Dig>("dig");
   CHECK(only<script::Place>("place sand").material == "sand");
   CHECK(only<script::Wait>("wait 0.25").seconds == 0.25);
@@ -109,6 +119,11 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
   CHECK(message_of("stroke 1 stone 1 2 3 solid 4 5 6") == "s.txt:1: a stroke needs two positions or more");
   CHECK(message_of("stroke 1 stone 1 2 3 4 5") == "s.txt:1: expected Z");
   CHECK(message_of("stroke 1 stone 1 2 3 4 5 6 solid 7") == "s.txt:1: unexpected \"7\"");
+  CHECK(message_of("copy") == "s.txt:1: expected NAME");
+  CHECK(message_of("copy a 1 2 3 4 5 6 empty") == "s.txt:1: unexpected \"empty\"");
+  CHECK(message_of("paste a 1 2 3 mirror w") == "s.txt:1: AXIS: \"w\" is none of x, y, z");
+  CHECK(message_of("paste a 1 2 3 rotate 4") == "s.txt:1: QUARTERS: \"4\" is not a number in its range");
+  CHECK(message_of("paste a 1 2 3 solid rotate 1") == "s.txt:1: unexpected \"rotate\"");
   CHECK(message_of("walk 1 2 3 0") == "s.txt:1: SPEED: \"0\" is not a number in its range");
   CHECK(message_of("box 1 2 3 4 5 6 stone some") ==
         "s.txt:1: MASK: \"some\" is none of empty, solid, only:MATERIAL");

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "common/edits/clipboard_builder.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "common/edits/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
@@ -83,6 +84,56 @@ TEST_CASE("a stroke has points, steps and a radius within its limits, and no poi
   CHECK(validate(stroke(points)).has_value());
   points.push_back({0, 0, 0});
   CHECK(error_of(stroke(points)) == ErrorCode::limit_exceeded);
+}
+
+TEST_CASE("a paste has a clipboard, an orientation and no material, and its touched cells lie in the world",
+          "[edits]") {
+  ClipboardBuilder cells({4, 1, 1});
+  cells.append(3, std::nullopt);
+  cells.append(1, Material{300});
+  const auto clipboard = *cells.finish();
+  const auto paste = [&](VoxelPos at, Orientation orientation = {}) {
+    return EditDescriptor{Paste{at, clipboard, orientation}, {}, kEmpty};
+  };
+  CHECK(validate(paste({1, 2, 3})).has_value());
+  CHECK(validate(paste({kWorldLimit - 4, 0, 0})).has_value());
+  CHECK(error_of(paste({kWorldLimit - 3, 0, 0})) == ErrorCode::bad_value);
+  CHECK(validate(paste({kWorldLimit - 3, 0, 0}, Orientation{}.mirrored(Axis::x))).has_value());
+  CHECK(error_of(paste({kWorldLimit, 0, 0}, Orientation{}.mirrored(Axis::x))) == ErrorCode::bad_value);
+  CHECK(error_of(paste({-kWorldLimit - 1, 0, 0})) ==
+        ErrorCode::bad_value);  // though its only cell lies inside
+  CHECK(error_of(paste({INT32_MAX, 0, 0})) == ErrorCode::bad_value);
+  CHECK(error_of(paste({0, 0, 0}, {AxisOrder::xyz, 8})) == ErrorCode::bad_value);
+  CHECK(error_of({Paste{}, {}, kEmpty}) == ErrorCode::bad_value);
+  EditDescriptor coloured = paste({0, 0, 0});
+  coloured.material = 1;
+  CHECK(error_of(coloured) == ErrorCode::bad_value);
+  CHECK(decode_error({6, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 1}) == ErrorCode::bad_value);   // likewise
+  CHECK(decode_error({6, 0, 0, 0, 0, 0, 48, 0, 0, 0, 0, 0, 7, 1}) == ErrorCode::bad_value);  // orientation
+  CHECK(decode_descriptor(Bytes{6, 0, 0, 0, 0, 0, 47, 0, 0, 0, 0, 0, 7, 1}).has_value());
+
+  CHECK(material_max(paste({0, 0, 0})) == 300);
+  EditDescriptor masked = paste({0, 0, 0});
+  masked.mask = {MaskKind::only_material, 301};
+  CHECK(material_max(masked) == 301);
+  CHECK(material_max(kVoxel) == 4);
+}
+
+TEST_CASE("pastes are equal when their clipboards are, shared or not", "[edits]") {
+  const auto clipboard = [](Material material) {
+    ClipboardBuilder cells({2, 2, 2});
+    cells.append(8, material);
+    return *cells.finish();
+  };
+  const auto shared = clipboard(1);
+  const Paste paste{{1, 2, 3}, shared, {}};
+  CHECK(paste == Paste{{1, 2, 3}, shared, {}});
+  CHECK(paste == Paste{{1, 2, 3}, clipboard(1), {}});
+  CHECK_FALSE(paste == Paste{{1, 2, 3}, clipboard(2), {}});
+  CHECK_FALSE(paste == Paste{{1, 2, 4}, shared, {}});
+  CHECK_FALSE(paste == Paste{{1, 2, 3}, shared, Orientation{}.mirrored(Axis::y)});
+  CHECK_FALSE(paste == Paste{{1, 2, 3}, nullptr, {}});
+  CHECK(Paste{} == Paste{});
 }
 
 TEST_CASE("a mask material belongs to the only_material mask alone", "[edits]") {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/edits/clipboard_builder.hpp"
 #include "tests/support/authority_model.hpp"
 
 using namespace runstone;
@@ -252,7 +253,23 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
   CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
+  // In the mask and in a clipboard, too.
+  const auto masked = [](Material material) {
+    return EditDescriptor{SetVoxel{{1, 2, 3}}, {MaskKind::only_material, material}, 1};
+  };
+  CHECK_FALSE(session.submit(masked(last), now, now).has_value());
+  const auto paste = [](Material material) {
+    ClipboardBuilder cells({2, 1, 1});
+    cells.append(1, Material{1});
+    cells.append(1, material);
+    return EditDescriptor{Paste{{1, 2, 3}, *cells.finish(), {}}, {}, kEmpty};
+  };
+  CHECK_FALSE(session.submit(paste(last), now, now).has_value());
+  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // no clipboard at all
   CHECK(session.replica().own_edits().all().empty());
+  const auto known = static_cast<Material>(last - 1);
+  CHECK(session.submit(masked(known), now, now).has_value());
+  CHECK(session.submit(paste(known), now, now).has_value());
 }
 
 TEST_CASE_METHOD(Fixture, "after a cut the undecided edits are offered again in order, before newer ones",

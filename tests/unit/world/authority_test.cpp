@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"
+#include "common/edits/clipboard_builder.hpp"
 #include "common/edits/edit_geometry.hpp"
+#include "protocol/codec/messages.hpp"
 #include "tests/support/dense_chunk.hpp"
 
 namespace runstone {
@@ -168,6 +170,63 @@ TEST_CASE("the server's own edits may be larger and higher than players', but no
   EditOffer unknown = offer(4, box(0, 4), 8);
   unknown.cause = Cause::redo;
   CHECK(authority.submit(unknown, true) == RejectReason::unknown_material);
+}
+
+TEST_CASE("a paste is checked by its touched cells and each of its materials", "[world]") {
+  EditLimits l = limits();
+  l.heights = {0, 8};
+  const auto paste = [](VoxelPos at, Material high, std::uint32_t touched) {
+    ClipboardBuilder cells({128, 1, 128}, AxisOrder::xzy);
+    cells.append(touched, Material{1});
+    cells.append(1, high);
+    cells.append(128 * 128 - 1 - touched, std::nullopt);
+    return EditDescriptor{Paste{at, *cells.finish(), {}}, {}, kEmpty};
+  };
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
+  CHECK(check_edit(paste({0, 7, 0}, 8, 900), l) == RejectReason::unknown_material);
+  CHECK(check_edit(paste({0, 8, 0}, 7, 900), l) == RejectReason::outside_world);
+  l.volume_max = 901;
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
+  CHECK(check_edit(paste({0, 7, 0}, 7, 901), l) == RejectReason::too_large);
+  l.touched_chunks_max = 8;  // a row along x
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 127), l).has_value());
+  CHECK(check_edit(paste({1, 7, 0}, 7, 127), l) == RejectReason::too_large);
+
+  CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}) == 1);
+  CHECK(edit_tokens(paste({0, 7, 0}, 7, 900)) == 2);
+}
+
+TEST_CASE("a commit ends before its message is too long, whatever the edits weigh", "[world]") {
+  EditLimits l = limits();
+  l.chunk_edge = 128;
+  l.volume_max = 100'000;
+  Authority authority(l, {1, 0, 0});
+  std::vector<Run> runs;  // a byte each
+  for (std::uint32_t i = 1; i <= 48'000; ++i) runs.push_back({i, static_cast<Material>(1 + i % 2)});
+  const Extent extent{128, 125, 3};
+  RunChunk cells{extent, AxisOrder::xyz, RunList(extent.volume())};
+  for (const Run& run : runs) cells.runs.push_back(run);
+  const auto clipboard = *Clipboard::of({1, 2}, cells);
+  CHECK(clipboard->byte_size() > 48'000);
+  CHECK(edit_tokens({Paste{{0, 0, 0}, clipboard, {}}, {}, kEmpty}) == 48);
+  for (ClientSequence seq = 1; seq <= 40; ++seq) {
+    CHECK_FALSE(authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty), true).has_value());
+  }
+  std::size_t edits = 0, commits = 0;
+  while (const auto batch = authority.commit(kNow)) {
+    const EncodedMessage message = encode_message(batch->commit);
+    CHECK(message.bytes->size() <= kServerEditBytesMax);
+    edits += batch->records.size();
+    ++commits;
+  }
+  CHECK(edits == 40);
+  CHECK(commits == 4);  // eleven go over half a MiB
+
+  // Small edits fill a commit by their number, not by what the largest could weigh.
+  for (ClientSequence seq = 41; seq <= 40 + 3000; ++seq) {
+    CHECK_FALSE(authority.submit(offer(seq, SetVoxel{{1, 1, 1}}, 1), true).has_value());
+  }
+  CHECK(authority.commit(kNow)->records.size() == 3000);
 }
 
 TEST_CASE("an edit that reaches above or below the world is refused whole", "[world]") {

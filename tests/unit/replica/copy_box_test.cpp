@@ -1,0 +1,106 @@
+#include "client/replica/copy_box.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "common/core/hash.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/support/authority_model.hpp"
+#include "tests/support/edit_oracle.hpp"
+#include "tests/support/random_chunk.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr std::int32_t kEdge = 16;
+const Arrival kNow{1000, 1100, 1200};
+
+struct Fixture {
+  Fixture() {
+    replica.set_view({{0, 0, 0}, 3, 3});
+    static_cast<void>(replica.open({kEdge, 5, 77, 3, 0, 0, 0}));
+  }
+  /// Shows the chunks -2 .. 1 around the origin, random and in random axis orders.
+  void load() {
+    for (std::int32_t x = -2; x < 2; ++x) {
+      for (std::int32_t y = -2; y < 2; ++y) {
+        for (std::int32_t z = -2; z < 2; ++z) {
+          ChunkSnapshot snapshot;
+          snapshot.key = {0, {x, y, z}};
+          snapshot.chunk.voxels = random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, Shape::boxes);
+          snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
+          replica.receive(std::move(snapshot), kNow);
+        }
+      }
+    }
+  }
+  std::string error_of(const VoxelBox& box) const {
+    const auto copied = copy_box(replica, box, CopyEmpty::as_untouched);
+    return copied ? "copied" : copied.error().what;
+  }
+  SplitMix64 rng{51};
+  Replica replica;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, empty ones as asked", "[replica]") {
+  load();
+  for (int round = 0; round < 60; ++round) {
+    const auto low = [&] { return rng.between(-32, 31); };
+    const VoxelPos min{low(), low(), low()};
+    const auto end = [&](std::int32_t from) { return rng.between(from + 1, std::min(from + 40, 32)); };
+    const VoxelBox box{min, {end(min.x), end(min.y), end(min.z)}};
+    const CopyEmpty empty = round % 2 == 0 ? CopyEmpty::as_empty : CopyEmpty::as_untouched;
+    const auto copied = copy_box(replica, box, empty);
+    bool any = false;
+    for (VoxelPos p = box.min; p.x < box.max.x; ++p.x) {
+      for (p.y = box.min.y; p.y < box.max.y; ++p.y) {
+        for (p.z = box.min.z; p.z < box.max.z; ++p.z) {
+          const Material shown = *replica.shown_at(p);
+          const bool leaves = shown == kEmpty && empty == CopyEmpty::as_untouched;
+          any = any || !leaves;
+          if (!copied) continue;
+          const LocalPos cell{static_cast<std::uint8_t>(p.x - min.x), static_cast<std::uint8_t>(p.y - min.y),
+                              static_cast<std::uint8_t>(p.z - min.z)};
+          REQUIRE((*copied)->at(cell) == (leaves ? std::nullopt : std::optional<Material>(shown)));
+        }
+      }
+    }
+    REQUIRE(copied.has_value() == any);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "a copy pasted where it was changes nothing", "[replica]") {
+  load();
+  const VoxelBox box{{-20, -7, -30}, {25, 30, 31}};
+  for (const CopyEmpty empty : {CopyEmpty::as_empty, CopyEmpty::as_untouched}) {
+    const auto copied = copy_box(replica, box, empty);
+    REQUIRE(copied.has_value());
+    const EditDescriptor edit{Paste{box.min, *copied, {}}, {}, kEmpty};
+    ApplyScratch scratch;
+    for (const ChunkCoord at : touched_chunks(edit, kEdge)) {
+      RunChunk chunk = *replica.shown({0, at});
+      Digest digest;
+      CHECK_FALSE(apply_stack(chunk, digest, origin_of(at, kEdge), {&edit, 1}, scratch).changed);
+    }
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "a copy says why it cannot be made", "[replica]") {
+  CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}, CopyEmpty::as_empty).error().what ==
+        std::string("no world is open"));
+  load();
+  CHECK(error_of({{0, 0, 0}, {32, 32, 33}}) == "a chunk of the box to copy is not here");
+  CHECK(error_of({{-33, 0, 0}, {1, 1, 1}}) == "a chunk of the box to copy is not here");
+  CHECK(error_of({{0, 0, 0}, {129, 1, 1}}) == "box to copy is longer than 128 voxels");
+  CHECK(error_of({{0, 0, 0}, {0, 1, 1}}) == "box to copy is empty");
+  CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) == "box to copy reaches outside the world");
+  ChunkSnapshot air;
+  air.key = {0, {0, 2, 0}};
+  air.chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
+  replica.receive(std::move(air), kNow);
+  CHECK(error_of({{0, 32, 0}, {4, 36, 4}}) == "clipboard has no material");
+}
+
+}  // namespace runstone::test
