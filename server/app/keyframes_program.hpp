@@ -3,17 +3,11 @@
 #include <iosfwd>
 #include <string>
 
-#include "server/history/keyframe_maker.hpp"
+#include "server/app/replay_options.hpp"
 
 namespace runstone {
 
-struct KeyframesRequest {
-  std::string world;  // folder
-  KeyframePolicy policy;
-  bool progress = false;  // also where stderr is no terminal
-};
-
-/// Prints what it did; the error is one line. What was made before an error stays.
-Result<void, std::string> make_keyframes(const KeyframesRequest& request, std::ostream& out);
+/// Prints what it did and writes options.json if it names a file; the error is one line. What was made before an error stays.
+Result<void, std::string> make_keyframes(const ReplayOptions& options, std::ostream& out);
 
 }  // namespace runstone

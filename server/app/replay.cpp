@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
 constexpr Sequence kProgressEdits = 1024;
+constexpr const char* kKeyframe = "keyframe";
 
 }  // namespace
 
@@ -31,6 +32,16 @@ void Replayer::expect(const std::string& source, const DigestList& list) {
   for (const AuditEntry& entry : list.chunks) {
     listed_[entry.key].emplace(entry.version, Expected{source, entry.version, entry.digest});
   }
+}
+
+void Replayer::expect_keyframes(const std::vector<StoredChunk>& chunks) {
+  for (const StoredChunk& chunk : chunks) {
+    listed_[chunk.key].emplace(chunk.version, Expected{kKeyframe, chunk.version, chunk.digest});
+  }
+}
+
+void Replayer::count(const Expected& expected) {
+  ++(expected.source == kKeyframe ? report_.keyframes_compared : report_.listed_compared);
 }
 
 StoreResult<Chunk> Replayer::base_of(const ChunkKey& key) {
@@ -84,7 +95,7 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, Rebuilt& rebuilt) {
   if (first != last) apply(key, rebuilt);
   for (auto row = first; row != last; ++row) {
     check(key, row->second, rebuilt.chunk);
-    ++report_.listed_compared;
+    count(row->second);
   }
   listed->second.erase(first, last);
   return {};
@@ -136,7 +147,7 @@ StoreResult<void> Replayer::compare_rest() {
         continue;
       }
       if (auto compared = compare_left_over(key, expected); !compared) return compared;
-      ++report_.listed_compared;
+      count(expected);
     }
   }
   return {};

@@ -18,7 +18,7 @@ namespace runstone {
 
 /// Two digests that should be equal and are not, or a version that the log does not have.
 struct ReplayDifference {
-  std::string source;  // "snapshot", "followed digest" or the name of a list
+  std::string source;  // "snapshot", "keyframe", "followed digest" or the name of a list
   ChunkKey key;
   Version expected_version, rebuilt_version;  // equal, unless the log never brought the chunk to the first
   Digest expected, rebuilt;
@@ -31,6 +31,7 @@ struct ReplayReport {
   /// Summed over sweeps: what one edit of a sweep sets and a later one resets is not in it.
   std::uint64_t voxels_changed = 0;
   std::uint64_t snapshots_compared = 0;
+  std::uint64_t keyframes_compared = 0;  // chunks of them
   std::uint64_t listed_compared = 0;
   std::uint64_t not_compared =
       0;  // snapshots and listed chunks newer than `seq`, or of another level of detail
@@ -48,6 +49,9 @@ class Replayer {
   /// Compares each listed chunk when (and if) the replay brings it to the listed version. Versions newer than
   /// the end of the replay are left out; versions that the log passed without meeting them are differences.
   void expect(const std::string& source, const DigestList& list);
+
+  /// The same for chunks that keyframes hold.
+  void expect_keyframes(const std::vector<StoredChunk>& chunks);
 
   /// Called now and then with the sequence reached and the last one.
   using Progress = std::function<void(Sequence, Sequence)>;
@@ -78,6 +82,7 @@ class Replayer {
   StoreResult<void> compare_rest();
   StoreResult<void> compare_left_over(const ChunkKey& key, const Expected& expected);
   void check(const ChunkKey& key, const Expected& expected, const Chunk& rebuilt);
+  void count(const Expected& expected);
   void differs(ReplayDifference difference);
 
   Store& store_;

@@ -13,28 +13,51 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
       "runstone-replay");
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // as the other programs
   app.add_option("--world", options.world, "folder of the world; a server may be running")->required();
-  app.add_option("--at", options.at, "stop after this sequence number");
+  const auto moment_of = [](const std::string& option, const std::string& text) {
+    const auto moment = parse_moment(text);
+    if (!moment) throw CLI::ValidationError(option, moment.error());
+    return *moment;
+  };
+  app.add_option_function<std::string>(
+      "--at", [&](const std::string& text) { options.moment = moment_of("--at", text); },
+      "stop at this moment: a sequence number, a time (2026-11-21T23:05:00Z), or a time before the end "
+      "(-2h30m)");
+  app.add_option("--write", options.write_to,
+                 "write the world of the moment --at as a new world into this folder instead");
+  app.add_option_function<std::vector<std::string>>(
+         "--diff",
+         [&](const std::vector<std::string>& texts) {
+           if (texts.size() != 2) throw CLI::ValidationError("--diff", "expected two moments");
+           options.diff = {moment_of("--diff", texts.at(0)), moment_of("--diff", texts.at(1))};
+         },
+         "say what differs between two moments, and whose work it is, instead")
+      ->expected(2);
   app.add_flag("--verify", options.verify, "also read and verify every row of every table");
-  app.add_option("--json", options.json, "write digests and report to this file");
+  app.add_option("--json", options.json, "write the report, of a replay with all digests, to this file");
   app.add_option("--against", options.against, "compare with digests that a server or client wrote");
-  CLI::Option* to = app.add_option("--export", options.export_to, "write the log to this .rlog file instead");
+  app.add_option("--export", options.export_to, "write the log to this .rlog file instead");
   app.add_option(
-         "--import", options.import_from,
-         "append this .rlog file to the world's log instead; makes the world if the folder holds none")
-      ->excludes(to);
+      "--import", options.import_from,
+      "append this .rlog file to the world's log instead; makes the world if the folder holds none");
   app.add_flag("--keyframes", options.keyframes,
                "make the keyframes that the world lacks instead; no server may run it");
   app.add_option("--keyframe-edits", options.keyframe_edits, "edits between two keyframes, at least")
       ->check(CLI::Range(1, 1'000'000'000))
       ->needs("--keyframes");
   app.add_flag("--progress", options.progress, "tell how far it is also where stderr is no terminal");
-  for (const char* mode : {"--export", "--import", "--keyframes"}) {
-    for (const char* other : {"--verify", "--json", "--against"}) app.get_option(mode)->excludes(other);
+  const char* modes[] = {"--export", "--import", "--keyframes", "--write", "--diff"};
+  for (const char* mode : modes) {
+    for (const char* other : {"--verify", "--against"}) app.get_option(mode)->excludes(other);
+    for (const char* other : modes) {
+      if (other != mode) app.get_option(mode)->excludes(other);
+    }
   }
   app.get_option("--import")->excludes("--at");
-  for (const char* other : {"--at", "--export", "--import"}) app.get_option("--keyframes")->excludes(other);
+  app.get_option("--keyframes")->excludes("--at");
+  app.get_option("--diff")->excludes("--at");
   add_timelapse_options(app, options.timelapse);
-  for (const char* other : {"--verify", "--against", "--export", "--import", "--keyframes"}) {
+  for (const char* other :
+       {"--verify", "--against", "--export", "--import", "--keyframes", "--write", "--diff"}) {
     app.get_option("--timelapse")->excludes(other);
   }
   try {

@@ -4,17 +4,23 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/ids.hpp"
 #include "server/app/timelapse_options.hpp"
+#include "server/history/moment.hpp"
 
 namespace runstone {
 
 struct ReplayOptions {
   std::string world;  // folder
   bool verify = false;
-  Sequence at = std::numeric_limits<Sequence>::max();
+  std::optional<Moment> moment;  // --at as written
+  Sequence at =
+      std::numeric_limits<Sequence>::max();  // what it means in the world; replay_program() looks it up
+  std::string write_to;                      // folder of a new world
+  std::optional<std::pair<Moment, Moment>> diff;
   std::string json;                    // file; empty: none
   std::vector<std::string> against;    // files
   std::string export_to, import_from;  // .rlog files; at most one is not empty

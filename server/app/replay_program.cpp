@@ -9,6 +9,7 @@
 #include "common/core/hex.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/app/keyframes_program.hpp"
+#include "server/app/moments_program.hpp"
 #include "server/app/progress_line.hpp"
 #include "server/app/replay.hpp"
 #include "server/app/replay_options.hpp"
@@ -43,6 +44,7 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   row(out, "chunks") << report.digests.size() << " edited\n";
   row(out, "voxels") << report.voxels_changed << " changed\n";
   row(out, "snapshots") << report.snapshots_compared << " compared\n";
+  row(out, "keyframes") << report.keyframes_compared << " chunks compared\n";
   row(out, "lists") << report.listed_compared << " chunks compared\n";
   row(out, "left out") << report.not_compared << " newer than the end, or of another level of detail\n";
   if (verified) row(out, "rows") << "all read and sound\n";
@@ -62,6 +64,7 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
                                  {"chunks", report.digests.size()},
                                  {"voxels_changed", report.voxels_changed},
                                  {"snapshots_compared", report.snapshots_compared},
+                                 {"keyframes_compared", report.keyframes_compared},
                                  {"listed_compared", report.listed_compared},
                                  {"not_compared", report.not_compared},
                                  {"differences", report.differences},
@@ -79,6 +82,13 @@ int cannot_read(std::ostream& err, const std::string& message) {
   return static_cast<int>(ReplayExit::cannot_read);
 }
 
+/// The report of a mode that compares nothing. The exit code.
+int write_report(const ReplayOptions& options, std::ostream& err, const nlohmann::ordered_json& json) {
+  if (options.json.empty()) return static_cast<int>(ReplayExit::equal);
+  const auto written = write_text_file(options.json, json.dump(1) + "\n");
+  return written ? static_cast<int>(ReplayExit::equal) : cannot_read(err, written.error().message());
+}
+
 int export_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   auto store = open_world(options.world, StoreAccess::read_only);
   if (!store) return cannot_read(err, store.error().message());
@@ -87,7 +97,9 @@ int export_log(const ReplayOptions& options, std::ostream& out, std::ostream& er
   row(out, "world") << to_hex((*store)->meta().world_id) << "  " << (*store)->file() << '\n';
   row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
   row(out, "written") << options.export_to << ", " << done->bytes << " bytes\n";
-  return static_cast<int>(ReplayExit::equal);
+  return write_report(
+      options, err,
+      {{"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}});
 }
 
 int import_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
@@ -97,7 +109,14 @@ int import_log(const ReplayOptions& options, std::ostream& out, std::ostream& er
   row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
                     << " compacted\n";
   row(out, "log") << "ends with sequence " << done->last << '\n';
-  if (done->stopped.empty()) return static_cast<int>(ReplayExit::equal);
+  const int written = write_report(options, err,
+                                   {{"made_world", done->made_world},
+                                    {"added", done->added},
+                                    {"known", done->known},
+                                    {"compacted", done->compacted},
+                                    {"last", done->last},
+                                    {"stopped", done->stopped}});
+  if (done->stopped.empty()) return written;
   return cannot_read(err, done->stopped);
 }
 
@@ -121,6 +140,9 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   }
   if (options.verify) {
     if (const auto checked = store.check(); !checked) return cannot_read(err, checked.error().message());
+    const auto kept = store.keyframe_chunks();
+    if (!kept) return cannot_read(err, kept.error().message());
+    replayer.expect_keyframes(*kept);
   }
 
   const auto start = std::chrono::steady_clock::now();
@@ -141,19 +163,26 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
 }  // namespace
 
 int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  const auto [options, exit_code] = parse_replay_options(argc, argv, out, err);
-  if (!options) return exit_code;
-  if (!options->export_to.empty()) return export_log(*options, out, err);
-  if (!options->import_from.empty()) return import_log(*options, out, err);
-  if (options->keyframes) {
-    const auto made = make_keyframes({options->world, {options->keyframe_edits}, options->progress}, out);
-    return made ? static_cast<int>(ReplayExit::equal) : cannot_read(err, made.error());
+  auto [parsed, exit_code] = parse_replay_options(argc, argv, out, err);
+  if (!parsed) return exit_code;
+  ReplayOptions& options = *parsed;
+  if (options.moment) {
+    const auto store = open_world(options.world, StoreAccess::read_only);
+    if (!store) return cannot_read(err, store.error().message());
+    const auto at = sequence_of(**store, *options.moment);
+    if (!at) return cannot_read(err, at.error().message());
+    options.at = *at;
   }
-  if (!options->timelapse.folder.empty()) {
-    const auto made = timelapse_program(*options, out);
-    return made ? static_cast<int>(ReplayExit::equal) : cannot_read(err, made.error());
-  }
-  return run(*options, out, err);
+  const auto exit_of = [&](const Result<void, std::string>& done) {
+    return done ? static_cast<int>(ReplayExit::equal) : cannot_read(err, done.error());
+  };
+  if (!options.export_to.empty()) return export_log(options, out, err);
+  if (!options.import_from.empty()) return import_log(options, out, err);
+  if (options.keyframes) return exit_of(make_keyframes(options, out));
+  if (!options.write_to.empty()) return exit_of(write_moment(options, out));
+  if (options.diff) return exit_of(diff_moments(options, out));
+  if (!options.timelapse.folder.empty()) return exit_of(timelapse_program(options, out));
+  return run(options, out, err);
 }
 
 }  // namespace runstone

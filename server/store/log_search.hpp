@@ -18,11 +18,11 @@ class LogSearch {
 
   /// Calls `each` with the sequences of all edits that answer the query, ascending, until it returns false.
   StoreResult<void> run(const LogQuery& query, const std::function<bool(Sequence)>& each);
+  /// The first edit of [first, last + 1] whose time is at least `time`; last + 1 if none is.
+  StoreResult<Sequence> first_at(TimeUs time, Sequence first, Sequence last);
 
  private:
   StoreResult<TimeUs> time_of(Sequence seq);
-  /// The first edit of [first, last + 1] whose time is at least `time`; last + 1 if none is.
-  StoreResult<Sequence> first_at(TimeUs time, Sequence first, Sequence last);
   StoreResult<sql::Statement> matching(const LogQuery& query, std::optional<AuthorId> author) const;
   StoreResult<std::vector<Sequence>> in_segments(const LogQuery& query, Sequence first, Sequence last);
 

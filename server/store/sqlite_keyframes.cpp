@@ -25,6 +25,14 @@ StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() {
   return *table == nullptr ? std::vector<Keyframe>() : (*table)->all();
 }
 
+StoreResult<std::vector<StoredChunk>> SqliteStore::keyframe_chunks() {
+  const auto table = keyframe_table();
+  if (!table) return Unexpected<StoreError>{table.error()};
+  return *table == nullptr ? std::vector<StoredChunk>() : (*table)->rows(kSequenceMax);
+}
+
+StoreResult<std::vector<StoredChunk>> SqliteStore::base_chunks() { return rows_of(base_); }
+
 StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head) {
   // An import may have made very many base chunks, of which none has an edit in it yet.
   if (head.version.seq == 0) return std::vector<StoredChunk>();

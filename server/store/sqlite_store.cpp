@@ -236,6 +236,24 @@ StoreResult<void> SqliteStore::query_log(const LogQuery& query,
   });
 }
 
+StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
+  return at_one_moment<Sequence>([&]() -> StoreResult<Sequence> {
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    const auto range = log_.range(*head);
+    if (!range) return Unexpected<StoreError>{range.error()};
+    if (head->version.seq > 0 && time_us < head->time_us) {
+      return refuse("edit_log", "begins at seq=" + std::to_string(range->first) +
+                                    ": what was before that time was compacted away");
+    }
+    if (range->last.time_us <= time_us) return range->last.version.seq;
+    const auto behind =
+        LogSearch(*database_, segments_, *range).first_at(time_us + 1, range->first, range->last.version.seq);
+    if (!behind) return behind;
+    return *behind - 1;
+  });
+}
+
 StoreResult<void> SqliteStore::upgrade() {
   const auto version = database_->integer("PRAGMA user_version");
   if (!version) return Unexpected<StoreError>{version.error()};

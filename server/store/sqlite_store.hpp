@@ -54,6 +54,9 @@ class SqliteStore final : public Store {
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
+  StoreResult<Sequence> sequence_at(TimeUs time_us) override;
+  StoreResult<std::vector<StoredChunk>> base_chunks() override;
+  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override;
   StoreResult<std::vector<Keyframe>> keyframes() override;
   StoreResult<StoredMoment> stored_moment(Sequence at) override;
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) override;

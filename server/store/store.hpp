@@ -142,6 +142,13 @@ class Store {
   // -----------------------------------------------------------------------------------------------
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
+  /// The last edit not later than a time (UTC): where the log stood then. The sequence before the first edit of the log if all are
+  /// later; then fails (bad_request) if something was compacted away that is later too.
+  virtual StoreResult<Sequence> sequence_at(TimeUs time_us) = 0;
+  /// All base chunks, imported or completed, ascending by key, as the fold in `meta` has them.
+  virtual StoreResult<std::vector<StoredChunk>> base_chunks() = 0;
+  /// All chunks that keyframes hold, ascending by sequence.
+  virtual StoreResult<std::vector<StoredChunk>> keyframe_chunks() = 0;
   /// All keyframes, ascending. None in a world of an older format that is open for reading only.
   virtual StoreResult<std::vector<Keyframe>> keyframes() = 0;
   /// The newest stored moment at or before `at`, proved by its digest. Fails (bad_request) if the log begins behind `at`.

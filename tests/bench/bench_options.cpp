@@ -70,6 +70,17 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->capture_default_str()
       ->check(CLI::Range(100, 10'000'000));
 
+  CLI::App* log =
+      app.add_subcommand("log", "what a long log costs: questions, keyframes, moments of the past");
+  std::size_t log_edits = 1'000'000;
+  log->add_option("--edits", log_edits, "length of the log")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 100'000'000));
+  log->add_option("--min-runs", options.repetitions, "questions of each sort, and moments")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  log->add_option("--json", options.json, "write all figures to this file");
+
   CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
   common(mesh_once, measured_world_names());
   unsigned times = 1;
@@ -85,6 +96,10 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   }
   if (chunk_edge->parsed()) options.command = BenchOptions::Command::chunk_edge;
   if (edits->parsed()) options.command = BenchOptions::Command::edits;
+  if (log->parsed()) {
+    options.command = BenchOptions::Command::log;
+    options.edits = log_edits;
+  }
   if (mesh_once->parsed()) {
     options.command = BenchOptions::Command::mesh_once;
     options.meshers = {mesher};

@@ -9,7 +9,7 @@
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> meshers;  // contestants; empty: all
@@ -18,7 +18,7 @@ struct BenchOptions {
   std::string luanti;                                   // folder of a world
   std::string csv, json;                                // files; empty: none
   unsigned repetitions = 30;
-  std::size_t edits = 200'000;  // of the log that is replayed
+  std::size_t edits = 200'000;  // of the log that is replayed, or asked
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

@@ -8,6 +8,7 @@
 #include "tests/bench/bench_options.hpp"
 #include "tests/bench/chunk_edge.hpp"
 #include "tests/bench/edit_bench.hpp"
+#include "tests/bench/log_bench.hpp"
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/mesh_once.hpp"
 
@@ -70,6 +71,17 @@ int edits(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return csv && json ? 0 : 1;
 }
 
+int log(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_log_bench(options, err);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_machine(this_machine(), out);
+  write_table(*result, out);
+  return write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err) ? 0 : 1;
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -88,6 +100,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return mesh_once(*parsed.options, out, err);
     case BenchOptions::Command::chunk_edge:
       return chunk_edge(*parsed.options, out, err);
+    case BenchOptions::Command::log:
+      return log(*parsed.options, out, err);
     case BenchOptions::Command::edits:
       return edits(*parsed.options, out, err);
   }

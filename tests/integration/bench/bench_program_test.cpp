@@ -224,3 +224,22 @@ TEST_CASE("runstone-bench edits has a row for every case and judges every bar", 
   CHECK(bars.size() == 6);
   for (const auto& bar : bars) CHECK(bar.at("verdict") != "not measured");
 }
+
+TEST_CASE("runstone-bench log opens moments with keyframes and without", "[bench]") {
+  const test::TempFolder folder;
+  const std::string json = folder / "log.json";
+  const Output output = run({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const auto document = nlohmann::json::parse(text_of(json));
+  CHECK(document.at("edits") == 70'000);
+  CHECK(document.at("bytes_an_edit") > 50);
+  CHECK(document.at("keyframe_bytes_an_edit") > 0);
+  CHECK(document.at("keyframe_chunks") > 50);
+  REQUIRE(document.at("moments").size() == 2);
+  CHECK(document.at("moments")[0].at("keyframes") == 0);
+  CHECK(document.at("moments")[1].at("keyframes") == 2);
+  CHECK(document.at("moments")[1].at("chunks") == document.at("moments")[0].at("chunks"));
+  CHECK(document.at("moments")[1].at("edits_read") <= document.at("moments")[0].at("edits_read"));
+  CHECK(document.at("questions").size() == 6);
+}

@@ -2,9 +2,6 @@
 // again, upgraded from format 1, compacted, or damaged.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
-#include <cstdlib>
-#include <iostream>
 
 #include "common/edits/edit_geometry.hpp"
 #include "server/store/sqlite_store.hpp"
@@ -215,87 +212,4 @@ TEST_CASE("a builders' edit costs at most 120 bytes of database, five edits a co
   CAPTURE(bytes);
   CHECK(bytes < 120);
   CHECK(bytes > 60);
-}
-
-// Hidden: `unit_store "[log-bench]"` prints a table; RUNSTONE_LOG_EDITS sets the number of edits.
-TEST_CASE("what questions to a long log cost", "[.][log-bench]") {
-  const TempFolder folder;
-  const char* wanted = std::getenv("RUNSTONE_LOG_EDITS");
-  const std::size_t edits = wanted == nullptr ? 1'000'000 : std::strtoull(wanted, nullptr, 10);
-  auto store = *create_sqlite_world(folder.path(), sample_meta(), {"", false});
-  REQUIRE(store->raise_epoch().has_value());
-  using Clock = std::chrono::steady_clock;
-  const auto ms_since = [](Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  };
-  BuilderSession session(7);
-  std::vector<EditRecord> batch, sampled;
-  const auto filling = Clock::now();
-  for (std::size_t i = 0; i < edits; ++i) {
-    batch.push_back(session.next());
-    if (i % (edits / 100) == 0) sampled.push_back(batch.back());
-    if (batch.size() < 64 && i + 1 < edits) continue;
-    REQUIRE(store->append({}, batch).has_value());
-    batch.clear();
-  }
-  const double fill_ms = ms_since(filling);
-  const long pages = std::stol(raw_sql(store->file(), "PRAGMA page_count"));
-  std::cout << edits << " edits, " << static_cast<double>(pages) * 4096 / static_cast<double>(edits)
-            << " bytes each, appended in " << fill_ms / 1000 << " s\n";
-  const auto measure = [&](const char* name, const std::function<LogQuery(const EditRecord&)>& query_at) {
-    std::vector<double> times;
-    std::size_t found = 0;
-    for (const EditRecord& record : sampled) {
-      const LogQuery query = query_at(record);
-      const auto start = Clock::now();
-      found += ask(*store, query).size();
-      times.push_back(ms_since(start));
-    }
-    std::sort(times.begin(), times.end());
-    std::cout << "| " << name << " | " << static_cast<double>(found) / static_cast<double>(times.size())
-              << " | " << times[times.size() / 2] << " | " << times.back() << " |\n";
-  };
-  constexpr TimeUs kMinute = 60'000'000;
-  const auto around = [](const EditRecord& record, std::int32_t reach) {
-    const VoxelPos at = bounding_box(record.edit).min;
-    return VoxelBox{{at.x - reach, at.y - reach, at.z - reach}, {at.x + reach, at.y + reach, at.z + reach}};
-  };
-  std::cout << "| question | edits found, mean | median ms | slowest ms |\n|---|---|---|---|\n";
-  measure("one minute of the log", [&](const EditRecord& r) {
-    LogQuery query;
-    query.from_us = r.time_us;
-    query.until_us = r.time_us + kMinute;
-    return query;
-  });
-  measure("ten minutes of one author", [&](const EditRecord& r) {
-    LogQuery query;
-    query.author = r.op.author;
-    query.from_us = r.time_us;
-    query.until_us = r.time_us + 10 * kMinute;
-    return query;
-  });
-  measure("who set this voxel, ever", [&](const EditRecord& r) {
-    LogQuery query;
-    query.box = around(r, 0);
-    query.box->max = {query.box->min.x + 1, query.box->min.y + 1, query.box->min.z + 1};
-    return query;
-  });
-  measure("box of 16, ever", [&](const EditRecord& r) {
-    LogQuery query;
-    query.box = around(r, 8);
-    return query;
-  });
-  measure("box of 16, one author, one hour", [&](const EditRecord& r) {
-    LogQuery query;
-    query.box = around(r, 8);
-    query.author = r.op.author;
-    query.from_us = r.time_us - 30 * kMinute;
-    query.until_us = r.time_us + 30 * kMinute;
-    return query;
-  });
-  measure("all rollbacks", [&](const EditRecord&) {
-    LogQuery query;
-    query.cause = Cause::rollback;
-    return query;
-  });
 }

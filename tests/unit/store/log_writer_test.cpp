@@ -69,6 +69,9 @@ class FakeStore final : public Store {
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }
+  StoreResult<Sequence> sequence_at(TimeUs) override { return last(); }
+  StoreResult<std::vector<StoredChunk>> base_chunks() override { return std::vector<StoredChunk>(); }
+  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override { return std::vector<StoredChunk>(); }
   StoreResult<std::vector<Keyframe>> keyframes() override { return std::vector<Keyframe>(); }
   StoreResult<StoredMoment> stored_moment(Sequence) override { return StoredMoment(); }
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk&) override {
