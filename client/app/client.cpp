@@ -1,11 +1,13 @@
 #include "client/app/client.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -26,6 +28,7 @@ namespace {
 constexpr TimeUs kRestUs = 10'000;  // longest pause of the loop: session ticks
 constexpr TimeUs kInputUs = 2'000;  // longest pause with a window: how late a key or click is noticed
 constexpr TimeUs kTitleUs = 500'000;
+constexpr Sequence kScrubSteps = 100;       // from the first edit to the newest
 constexpr TimeUs kEventsUs = 8'000;         // messages taken per turn before meshes and frames get theirs
 constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
 
@@ -45,6 +48,12 @@ std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Windo
   // Frames that nobody watches give way to what is measured.
   const auto priority = window == nullptr ? DrawPriority::background : DrawPriority::normal;
   return std::make_unique<DrawThread>(make_screen, priority, std::move(wake));
+}
+
+std::string moment_text(const std::optional<PastMoment>& past) {
+  if (!past) return {};
+  const std::time_t seconds = past->utc_us / 1'000'000;
+  return fmt::format("  as it was after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq, fmt::gmtime(seconds));
 }
 
 SessionConfig session_config(const ClientOptions& options) {
@@ -193,6 +202,8 @@ void Client::take_input(TimeUs now_us) {
   player_.steer(input, std::min(seconds, 0.1), picture_.materials().size());
   for (int i = 0; i < input.remove_clicks; ++i) click(false, now_us);
   for (int i = 0; i < input.place_clicks; ++i) click(true, now_us);
+  if (input.scrub != 0) scrub(input.scrub);
+  if (input.live) static_cast<void>(session_.travel({}));
   if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
   picture_.moved();
 }
@@ -202,6 +213,20 @@ void Client::click(bool place, TimeUs now_us) {
   if (!hit) return;
   const auto at = place ? place_against(*hit) : hit->voxel;
   if (at) static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
+}
+
+void Client::scrub(int steps) {
+  const Sequence newest = session_.replica().newest();
+  const bool is_away = session_.replica().past() || session_.travelling();
+  const auto from = static_cast<std::int64_t>(is_away ? scrubbed_to_ : newest);
+  const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
+  const auto to = static_cast<Sequence>(std::max<std::int64_t>(0, from + steps * step));
+  Travel travel;  // live
+  if (to < newest) {
+    travel.to = TravelTo::sequence;
+    travel.seq = scrubbed_to_ = to;
+  }
+  static_cast<void>(session_.travel(travel));
 }
 
 void Client::follow_player(TimeUs now_us) {
@@ -264,10 +289,11 @@ void Client::show_title(TimeUs now_us) {
   const Material held = player_.held();
   const MaterialTable& materials = picture_.materials();
   const std::uint64_t frames = picture_.frames_presented();
-  window_->set_title(fmt::format(
-      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}",
-      static_cast<double>(frames - title_frames_) * 1e6 / static_cast<double>(now_us - title_us_),
-      materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z, lost_us_ ? "  (connecting)" : ""));
+  window_->set_title(
+      fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}",
+                  static_cast<double>(frames - title_frames_) * 1e6 / static_cast<double>(now_us - title_us_),
+                  materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
+                  moment_text(session_.replica().past()), lost_us_ ? "  (connecting)" : ""));
   title_us_ = now_us;
   title_frames_ = frames;
 }
@@ -370,6 +396,11 @@ std::optional<RayHit> Client::pick() const {
 
 std::optional<std::int32_t> Client::surface(std::int32_t x, std::int32_t z) const {
   return surface_of(session_.replica(), x, z);
+}
+
+TimeUs Client::utc_now_us() const {
+  const auto utc = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(utc).count();
 }
 
 bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {

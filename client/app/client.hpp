@@ -64,6 +64,8 @@ class Client final : private ScriptHost {
   ClientReport report() const;
   std::string screenshot_path(const std::string& file) const;
   void click(bool place, TimeUs now_us);
+  /// A step earlier or later in time; beyond the newest edit lies the live world.
+  void scrub(int steps);
 
   // ScriptHost.
   bool ready() const override { return session_.openings() != 0; }
@@ -82,6 +84,10 @@ class Client final : private ScriptHost {
   bool durable() const override { return session_.replica().own_edits().all().empty(); }
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
+  void travel(const Travel& travel) override { static_cast<void>(session_.travel(travel)); }
+  bool travelling() const override { return session_.travelling(); }
+  std::string travel_refusal() const override { return session_.travel_refusal(); }
+  TimeUs utc_now_us() const override;
   bool screenshot(const std::string& file) override;
   std::optional<bool> screenshot_written() const override;
   bool digests(const std::string& file) override { return write_digests(file, session_); }
@@ -102,6 +108,7 @@ class Client final : private ScriptHost {
   TimeUs started_us_ = 0;
   std::optional<TimeUs> lost_us_;   // without a session since
   std::string last_failure_;        // why the last attempt to connect failed
+  Sequence scrubbed_to_ = 0;        // while the past is shown or asked for
   std::optional<int> wish_to_end_;  // the user or the server ends the program
 
   TimeUs input_us_ = 0, title_us_ = 0;

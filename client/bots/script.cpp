@@ -157,6 +157,28 @@ script::Step paste_step(Words& words) {
   return paste;
 }
 
+script::Step travel_step(Words& words) {
+  const std::string_view where = words.word("live, SEQ or -SECONDS");
+  script::Travel travel;
+  if (where == "live") return travel;
+  if (where.starts_with('-')) {
+    const auto seconds = to_number<double>(where.substr(1));
+    if (!seconds || *seconds < 0 || *seconds > 1e9) {
+      throw LineError{"\"" + std::string(where) + "\" is not a number of seconds ago"};
+    }
+    travel.to = TravelTo::time;
+    travel.seconds_ago = *seconds;
+    return travel;
+  }
+  const auto seq = to_number<Sequence>(where);
+  if (!seq || *seq > kSequenceMax) {
+    throw LineError{"\"" + std::string(where) + "\" is none of live, SEQ, -SECONDS"};
+  }
+  travel.to = TravelTo::sequence;
+  travel.seq = *seq;
+  return travel;
+}
+
 script::Step wait_step(Words& words) {
   const std::string_view what = words.word("SECONDS, loaded, durable or synced");
   std::optional<script::Until> until;
@@ -234,6 +256,7 @@ script::Step step_of(std::string_view verb, Words& words) {
     return burst;
   }
   if (verb == "digests") return script::Digests{std::string(words.word("FILE"))};
+  if (verb == "travel") return travel_step(words);
   if (verb == "quit") return script::Quit{};
   throw LineError{"unknown command \"" + std::string(verb) + "\""};
 }

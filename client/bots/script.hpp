@@ -11,6 +11,7 @@
 #include "common/core/result.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
+#include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
@@ -112,10 +113,15 @@ struct Burst {
 struct Digests {
   std::string file;
 };
+struct Travel {
+  TravelTo to = TravelTo::live;
+  Sequence seq = 0;        // TravelTo::sequence
+  double seconds_ago = 0;  // TravelTo::time
+};
 struct Quit {};
 
 using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
-                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Quit>;
+                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Quit>;
 
 }  // namespace script
 

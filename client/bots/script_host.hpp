@@ -46,6 +46,15 @@ class ScriptHost {
   virtual std::uint64_t sync_mark() const = 0;
   virtual bool synced(std::uint64_t mark) const = 0;
 
+  /// Asks to go to a moment of the past, or back.
+  virtual void travel(const Travel& travel) = 0;
+  /// Not all of what was asked for is here.
+  virtual bool travelling() const = 0;
+  /// Why the last travel() was refused; empty if it was not.
+  virtual std::string travel_refusal() const = 0;
+  /// UTC, for travels so and so long ago.
+  virtual TimeUs utc_now_us() const = 0;
+
   /// Asks for a picture of the current view; poll screenshot_written(). False: this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;
   /// None while it is under way; then whether its file could be written.

@@ -347,6 +347,27 @@ ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
   return Progress::done;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::Travel& c) {
+  if (!started_) {
+    start();
+    Travel travel;
+    travel.to = c.to;
+    travel.seq = c.seq;
+    if (c.to == TravelTo::time) {
+      travel.utc_us = host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
+    }
+    host_.travel(travel);
+  }
+  if (!host_.travelling()) {
+    const std::string refusal = host_.travel_refusal();
+    return refusal.empty() ? Progress::done : give_up("no such moment: " + refusal);
+  }
+  const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
+  if (now_us_ >= due_us) return give_up("the moment did not come in time");
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
 // ---- flow
 
 ScriptRunner::Progress ScriptRunner::run(const script::Repeat& c) {

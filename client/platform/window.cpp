@@ -94,6 +94,9 @@ Window::Window(int width, int height, const std::string& title) : state_(std::ma
     if (action != GLFW_PRESS) return;
     if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) state.pending.digit = key - GLFW_KEY_0;
     if (key == GLFW_KEY_F2) state.pending.screenshot = true;
+    if (key == GLFW_KEY_LEFT_BRACKET) --state.pending.scrub;
+    if (key == GLFW_KEY_RIGHT_BRACKET) ++state.pending.scrub;
+    if (key == GLFW_KEY_HOME) state.pending.live = true;
     if (key == GLFW_KEY_ESCAPE) {
       if (state.captured) return state.capture(false);
       state.pending.escape = true;

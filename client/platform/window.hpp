@@ -20,6 +20,8 @@ struct WindowInput {
   int scroll = 0;                   // wheel steps, up positive
   bool escape = false;              // pressed while the mouse was free (the first press only frees it)
   bool screenshot = false;          // F2 pressed
+  int scrub = 0;                    // ] less [ pressed: later or earlier
+  bool live = false;                // Home pressed
   bool close = false;               // the window's close button
 };
 

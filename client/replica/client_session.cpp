@@ -39,6 +39,8 @@ void ClientSession::disconnected() {
   view_sent_.reset();
   pose_sent_.reset();
   others_.clear();
+  travel_request_ = travelled_ = 0;
+  travel_refusal_.clear();
   early_.clear();
   wants_close_ = false;
 }
@@ -84,6 +86,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Durable>) {
           replica_.receive(m);
+        } else if constexpr (std::is_same_v<T, Moment>) {
+          on_moment(m);
         } else if constexpr (std::is_same_v<T, PlayerPoses>) {
           on_poses(m);
         } else if constexpr (std::is_same_v<T, Roster>) {
@@ -222,6 +226,25 @@ void ClientSession::set_view(const View& view) {
   if (is_open()) send_view();
 }
 
+Result<void> ClientSession::travel(Travel travel) {
+  if (!is_open()) return fail(ErrorCode::bad_value, "no world is open");
+  travel.request = ++travel_request_;
+  travel_refusal_.clear();
+  outgoing_.push_back(travel);
+  return {};
+}
+
+void ClientSession::on_moment(const Moment& moment) {
+  const bool is_newest = moment.request == travel_request_;
+  if (moment.phase == MomentPhase::begins) {
+    replica_.begin_moment(moment.past ? std::optional(PastMoment{moment.seq, moment.utc_us}) : std::nullopt);
+    if (is_newest && !moment.past) travelled_ = moment.request;  // its chunks are counted like any others
+  } else if (is_newest) {
+    travelled_ = moment.request;
+    if (moment.phase == MomentPhase::refused) travel_refusal_ = moment.text;
+  }
+}
+
 View ClientSession::view() const {
   View view = config_.view;
   const std::uint8_t limit = welcome_ ? welcome_->view_radius_max : std::uint8_t{kViewRadiusMax};
@@ -248,7 +271,8 @@ std::size_t ClientSession::view_chunks() const {
 }
 
 bool ClientSession::loaded() const {
-  return is_open() && replica_.current_count() + replica_.unavailable_count() == view_chunks() &&
+  return is_open() && !travelling() &&
+         replica_.current_count() + replica_.unavailable_count() == view_chunks() &&
          replica_.awaiting_count() == 0;
 }
 

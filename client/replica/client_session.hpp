@@ -80,6 +80,13 @@ class ClientSession {
   /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency counts from there.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void set_view(const View& view);
+  /// Asks to see the view as it was at a moment of the past, read-only, or as it is. `travel.request` is given here. The
+  /// live world is not touched, nor what others see. Fails before ready.
+  Result<void> travel(Travel travel);
+  /// A wish to travel was sent, and not everything has come that it asked for.
+  bool travelling() const { return travelled_ != travel_request_; }
+  /// Why the newest wish was refused; empty if it was not.
+  const std::string& travel_refusal() const { return travel_refusal_; }
   void set_pose(const Pose& pose) { pose_ = pose; }
 
   SessionState state() const { return state_; }
@@ -113,6 +120,7 @@ class ClientSession {
   void on_goodbye(const Goodbye& goodbye);
   void on_roster(const Roster& roster);
   void on_poses(const PlayerPoses& poses);
+  void on_moment(const Moment& moment);
   void fail_with(GoodbyeReason reason, std::string text, bool final);
   void send_view();
   void send_waiting_edits(TimeUs now_us);
@@ -130,6 +138,10 @@ class ClientSession {
   AuthorId author_ = 0;
   std::uint64_t openings_ = 0;
   std::uint64_t pongs_ = 0;
+
+  std::uint32_t travel_request_ = 0;  // of the newest wish on this connection; 0: none
+  std::uint32_t travelled_ = 0;       // the newest one that was fulfilled or refused
+  std::string travel_refusal_;
 
   std::vector<ClientSequence> waiting_;  // own edits to send, ascending
   std::optional<View> view_sent_;

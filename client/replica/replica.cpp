@@ -20,6 +20,7 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   // common then.
   const bool went_back = opening_ && (opening.epoch < opening_->epoch || opening.durable < durable_ ||
                                       (opening.epoch == opening_->epoch && opening.head < newest_));
+  past_.reset();
   opening_ = opening;
   durable_ = opening.durable;
   newest_ = opening.head;
@@ -88,7 +89,7 @@ void Replica::set_view(const View& view) {
 
 TrackedChunk& Replica::track(const ChunkKey& key) {
   const auto [it, fresh] = chunks_.try_emplace(key);
-  if (fresh) {
+  if (fresh && !past_) {
     const VoxelBox box = box_of(key.at, opening_->chunk_edge);
     for (const auto& [seq, own] : own_.all()) {
       if (!own.decided && touches(own.edit, box)) it->second.add_pending(seq, own.edit);
@@ -111,6 +112,7 @@ const TrackedChunk* Replica::find(const ChunkKey& key) const {
 
 Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us) {
   if (!opening_) return fail(ErrorCode::bad_value, "no world is open");
+  if (past_) return fail(ErrorCode::bad_value, "the past cannot be edited");
   if (const auto ok = validate(edit); !ok) return Unexpected<Error>{ok.error()};
   if (touched_chunks_bound(edit, opening_->chunk_edge) > kTouchedChunksMax) {
     return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
@@ -172,6 +174,14 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   if (!chunk.current) ++current_count_;
   chunk.current = true;
   if (std::exchange(chunk.unavailable, false)) --unavailable_count_;
+  if (past_) {
+    // Newer or older than what is held: it is what was asked for.
+    if (!chunk.confirmed) ++confirmed_count_;
+    ++counters_.snapshots_taken;
+    chunk.confirmed = std::make_shared<const Chunk>(std::move(snapshot.chunk));
+    show_predicted(snapshot.key, chunk, {});
+    return;
+  }
   if (chunk.confirmed) {
     const Version held = chunk.confirmed->version;
     const bool repairs = chunk.awaiting && snapshot.chunk.version == held;
@@ -296,7 +306,7 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
       }
       // Its commit never reached us, so this copy may lack it; after a resumption every chunk comes anew
       // anyway.
-      if (chunk->confirmed && !own->asked) request(key, *chunk, now_us);
+      if (chunk->confirmed && !own->asked && !past_) request(key, *chunk, now_us);
       continue;
     }
     if (chunk->drop_pending(reject.client_seq) && chunk->confirmed) show_predicted(key, *chunk, {});
@@ -327,6 +337,7 @@ void Replica::settle_own() {
 }
 
 void Replica::receive(const Audit& audit, TimeUs now_us) {
+  if (past_) return;
   for (const AuditEntry& theirs : audit.entries) {
     TrackedChunk* chunk = find(theirs.key);
     if (chunk == nullptr || !chunk->confirmed || chunk->awaiting) continue;
@@ -340,6 +351,32 @@ void Replica::receive(const Audit& audit, TimeUs now_us) {
   }
 }
 
+void Replica::begin_moment(const std::optional<PastMoment>& past) {
+  if (!opening_) return;
+  const bool from_past = past_.has_value();
+  past_ = past;
+  requests_.clear();
+  unavailable_count_ = 0;
+  if (!from_past || !past) current_count_ = 0;  // from moment to moment, what is not sent again is the same
+  for (auto& [key, chunk] : chunks_) {
+    chunk.unavailable = chunk.awaiting = false;
+    if (!from_past || !past) chunk.current = false;
+    if (past) {
+      chunk.pending.clear();
+      chunk.inbox.clear();
+      chunk.latest = 0;
+      if (chunk.confirmed) show_predicted(key, chunk, {});
+    }
+  }
+  if (past) return;
+  for (const auto& [seq, own] : own_.all()) {
+    if (own.decided) continue;
+    for (const ChunkKey& key : own.chunks) {
+      if (TrackedChunk* chunk = find(key)) chunk->add_pending(seq, own.edit);
+    }
+  }
+}
+
 void Replica::tick(TimeUs now_us) {
   for (auto& [key, chunk] : chunks_) {
     if (chunk.awaiting && now_us - *chunk.requested_us >= kRequestAgainUs) request(key, chunk, now_us);
@@ -350,7 +387,7 @@ void Replica::tick(TimeUs now_us) {
 
 /// Applies what the inbox holds in order, asks for a snapshot at a gap, and shows the outcome.
 void Replica::settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapshot, TimeUs now_us) {
-  if (!chunk.confirmed || chunk.awaiting) return;
+  if (!chunk.confirmed || chunk.awaiting || past_) return;
   const TrackedChunk::InOrder in_order = chunk.take_in_order();
   counters_.chunk_edits_applied += in_order.applied.size();
   counters_.chunk_edits_contained += in_order.contained.size();

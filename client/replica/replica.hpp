@@ -51,6 +51,12 @@ struct Opening {
   std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();  // voxels per edit
 };
 
+/// A moment of the past that a replica shows.
+struct PastMoment {
+  Sequence seq = 0;   // its last edit; 0: before the first one
+  TimeUs utc_us = 0;  // when that was ordered
+};
+
 class Replica {
  public:
   /// A connection opens: the first one, or a resumption of the same world. Returns the own edits to send
@@ -66,7 +72,7 @@ class Replica {
   const std::optional<View>& view() const { return view_; }
 
   /// Shows an own edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled
-  /// time. Fails on an invalid descriptor, beyond the world's heights or volume, on an unavailable chunk,
+  /// time. Fails in the past, on an invalid descriptor, beyond the world's heights or volume, on an unavailable chunk,
   /// before the first opening, and when kOwnEditsMax are held.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void mark_sent(ClientSequence seq, TimeUs now_us);
@@ -79,6 +85,10 @@ class Replica {
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
   void receive(const Audit& audit, TimeUs now_us);
+  /// From here on the chunks are those of another moment: what is shown stays until they come. In the past nothing is
+  /// predicted and no commit is applied, but for the fate of own edits. Back in the live world all is as after a
+  /// resumption, and own edits that wait are shown again.
+  void begin_moment(const std::optional<PastMoment>& past);
   /// Asks again for chunks that were asked for kRequestAgainUs ago and have not come.
   void tick(TimeUs now_us);
 
@@ -86,6 +96,9 @@ class Replica {
   ReplicaNews take_news() { return news_.take(); }
   /// Chunks to ask the server for, ascending.
   std::vector<ChunkKey> take_requests();
+
+  /// Nothing: the live world.
+  const std::optional<PastMoment>& past() const { return past_; }
 
   /// Null if not held.
   ChunkPtr confirmed(const ChunkKey& key) const;
@@ -130,6 +143,7 @@ class Replica {
 
   std::optional<Opening> opening_;
   std::optional<View> view_;
+  std::optional<PastMoment> past_;
   std::map<ChunkKey, TrackedChunk> chunks_;
   std::size_t confirmed_count_ = 0;
   std::size_t current_count_ = 0;

@@ -151,6 +151,36 @@ struct BodyReader {
     return m;
   }
 
+  Result<Message> read(const wire::Travel& t) const {
+    if (t.request() == 0) return bad("travel requests start at 1");
+    if (t.to() > kTravelToMax)
+      return bad("travel goes neither to the live world, nor to a sequence, nor to a time");
+    const auto to = static_cast<TravelTo>(t.to());
+    if (t.seq() > kSequenceMax || (to != TravelTo::sequence && t.seq() != 0)) {
+      return bad("travel sequence exceeds 63 bits, or is given without being asked for");
+    }
+    if (!is_time(t.utc_us()) || (to != TravelTo::time && t.utc_us() != 0)) {
+      return bad("travel time is out of range, or is given without being asked for");
+    }
+    return Travel{t.request(), to, t.seq(), t.utc_us()};
+  }
+
+  Result<Message> read(const wire::Moment& t) const {
+    Moment m;
+    if (t.request() == 0) return bad("moment answers no request");
+    if (t.phase() == 0 || t.phase() > kMomentPhaseMax) return bad("moment phase is unknown");
+    if (t.seq() > kSequenceMax || (!t.past() && t.seq() != 0)) return bad("moment sequence is out of range");
+    if (!is_time(t.utc_us())) return bad("moment time is out of range");
+    m.request = t.request();
+    m.phase = static_cast<MomentPhase>(t.phase());
+    m.past = t.past();
+    m.seq = t.seq();
+    m.utc_us = t.utc_us();
+    if (!take_text(t.text(), 0, kTextBytesMax, m.text))
+      return bad("moment text is not 0 .. 256 bytes of text");
+    return m;
+  }
+
   Result<Message> read(const wire::EditRequest& t) const {
     EditRequest m;
     m.client_seq = t.client_seq();
@@ -323,6 +353,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::ChunkRequest:
     case wire::Body::Move:
     case wire::Body::Ping:
+    case wire::Body::Travel:
       return Route{true, false, FrameClass::control};
     case wire::Body::EditRequest:
       return Route{true, false, FrameClass::edits};
@@ -339,6 +370,7 @@ std::optional<Route> route_of(wire::Body body) {
       return Route{false, true, FrameClass::edits};
     case wire::Body::Chunk:
     case wire::Body::ChunkUnavailable:
+    case wire::Body::Moment:
       return Route{false, true, FrameClass::chunks};
     case wire::Body::Goodbye:
       return Route{true, true, FrameClass::control};
@@ -388,6 +420,10 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Goodbye());
     case wire::Body::ChunkUnavailable:
       return reader.read(*message.body_as_ChunkUnavailable());
+    case wire::Body::Travel:
+      return reader.read(*message.body_as_Travel());
+    case wire::Body::Moment:
+      return reader.read(*message.body_as_Moment());
     case wire::Body::NONE:
       break;
   }

@@ -76,6 +76,13 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kUnavailableKeysMax);
     return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
   }
+  Offset<wire::Travel> operator()(const Travel& m) {
+    return wire::CreateTravel(b, m.request, static_cast<std::uint8_t>(m.to), m.seq, m.utc_us);
+  }
+  Offset<wire::Moment> operator()(const Moment& m) {
+    return wire::CreateMoment(b, m.request, static_cast<std::uint8_t>(m.phase), m.past, m.seq, m.utc_us,
+                              text(m.text));
+  }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
   }

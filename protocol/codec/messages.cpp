@@ -12,7 +12,8 @@ FrameClass frame_class_of(const Message& message) {
                                 std::is_same_v<T, Reject> || std::is_same_v<T, Durable> ||
                                 std::is_same_v<T, Ready>;
         if constexpr (kOrder) return FrameClass::edits;
-        constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable>;
+        constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
+                                std::is_same_v<T, Moment>;
         return kChunk ? FrameClass::chunks : FrameClass::control;
       },
       message);

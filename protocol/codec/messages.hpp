@@ -111,6 +111,33 @@ struct ChunkUnavailable {
   UnavailableReason reason = UnavailableReason::damaged;
   friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
 };
+/// What a session looks at. Values are on the wire.
+enum class TravelTo : std::uint8_t { live = 0, sequence = 1, time = 2 };
+inline constexpr std::uint8_t kTravelToMax = 2;
+
+/// A wish to see the view as it was. A later one replaces those before it.
+struct Travel {
+  std::uint32_t request = 1;  // from 1, ascending
+  TravelTo to = TravelTo::live;
+  Sequence seq = 0;   // TravelTo::sequence: the last edit to be seen; 0: before the first one
+  TimeUs utc_us = 0;  // TravelTo::time: edits up to here are seen
+  friend bool operator==(const Travel&, const Travel&) = default;
+};
+
+/// begins: the chunks that follow are of this moment. complete: all chunks of the view that differ from what the
+/// client holds were sent. refused: nothing changed, and `text` says why. Values are on the wire.
+enum class MomentPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
+inline constexpr std::uint8_t kMomentPhaseMax = 3;
+
+struct Moment {
+  std::uint32_t request = 1;
+  MomentPhase phase = MomentPhase::begins;
+  bool past = false;  // false: the live world
+  Sequence seq = 0;   // of a past moment: its last edit; 0 before the first one
+  TimeUs utc_us = 0;  // when that was ordered
+  std::string text;
+  friend bool operator==(const Moment&, const Moment&) = default;
+};
 struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
@@ -228,9 +255,9 @@ struct Goodbye {
 };
 
 /// Order follows the union of the schema.
-using Message =
-    std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
-                 Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye, ChunkUnavailable>;
+using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest,
+                             Commit, Reject, Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye,
+                             ChunkUnavailable, Travel, Moment>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {

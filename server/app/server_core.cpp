@@ -128,6 +128,7 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
   if (!read) return Unexpected<std::string>{read.error().message()};
   durable_.store(start->log.last);
   chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
+  moments_ = std::make_unique<Moments>(folder, generator_);
   start_writer(folder);
   logger("world").info("world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder,
                        *epoch, start->log.last, start->checkpoint, restacked, start->players.size(),
@@ -346,6 +347,39 @@ void ServerCore::load_chunk(const ChunkKey& key) {
         world_->chunk_failed(key, loaded.error().message(), now());
       }
       check_settled();
+    });
+  });
+}
+
+void ServerCore::open_moment(SessionId session, const Travel& travel) {
+  asio::post(workers_, [this, session, travel] {
+    const auto end =
+        travel.to == TravelTo::time ? moments_->open_at_time(travel.utc_us) : moments_->open(travel.seq);
+    Result<OpenedMoment, std::string> opened = OpenedMoment{};
+    if (end) {
+      opened = OpenedMoment{end->version.seq, end->time_us};
+    } else {
+      if (end.error().kind != StoreError::Kind::bad_request)
+        logger("store").error("{}", end.error().message());
+      opened = Unexpected<std::string>{end.error().what};  // not where on this machine the world lies
+    }
+    asio::post(strand_, [this, session, request = travel.request, opened = std::move(opened)] {
+      world_->moment_opened(session, request, opened, now());
+    });
+  });
+}
+
+void ServerCore::load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) {
+  asio::post(workers_, [this, session, request, at, key] {
+    auto loaded = moments_->chunk(at, key);
+    Result<ChunkPtr, std::string> chunk = ChunkPtr();
+    if (loaded) {
+      chunk = std::make_shared<const Chunk>(*std::move(loaded));
+    } else {
+      chunk = Unexpected<std::string>{loaded.error().message()};
+    }
+    asio::post(strand_, [this, session, request, key, chunk = std::move(chunk)] {
+      world_->past_chunk(session, request, key, chunk, now());
     });
   });
 }

@@ -20,6 +20,7 @@
 #include "server/app/chunk_source.hpp"
 #include "server/app/keyframe_thread.hpp"
 #include "server/app/world_folder.hpp"
+#include "server/history/moments.hpp"
 #include "server/net/listener.hpp"
 #include "server/store/log_writer.hpp"
 #include "server/world/token_bucket.hpp"
@@ -70,6 +71,8 @@ class ServerCore final : public WorldPorts, public NetEvents {
   bool log_has_room(std::size_t records) const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
   void load_chunk(const ChunkKey& key) override;
+  void open_moment(SessionId session, const Travel& travel) override;
+  void load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override;
   void log(WorldLogLevel level, const std::string& line) override;
 
@@ -103,6 +106,7 @@ class ServerCore final : public WorldPorts, public NetEvents {
   asio::steady_timer tick_;
   std::shared_ptr<Listener> listener_;
   std::unique_ptr<ChunkSource> chunks_;
+  std::unique_ptr<Moments> moments_;
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<LogWriter> writer_;
   std::unique_ptr<KeyframeThread> keyframes_;  // none if the configuration wants none

@@ -4,6 +4,8 @@
 //   waiting      not in memory: a load was asked for
 //   subscribed   a snapshot was sent; every later commit that touches the chunk goes to the session
 //   unavailable  it could not be loaded, and the session was told; loading again would fail again
+//   recalling    the session looks at the past, and the chunk as it was then is being made
+//   recalled     the session has it as it was; commits do not concern it
 // One thread.
 #pragma once
 #include <array>
@@ -18,7 +20,7 @@
 
 namespace runstone {
 
-enum class ChunkInterest { wanted, waiting, subscribed, unavailable };
+enum class ChunkInterest { wanted, waiting, subscribed, unavailable, recalling, recalled };
 
 class SessionInterest {
  public:
@@ -61,7 +63,7 @@ class SessionInterest {
   CoordLimit limit_;
   std::optional<View> view_;
   std::map<ChunkKey, ChunkInterest> chunks_;  // but the wanted ones
-  std::array<std::size_t, 4> counts_{};
+  std::array<std::size_t, 6> counts_{};
   // A heap with the nearest on top, of chunks of the view only. Holds every wanted chunk, and some that are
   // not wanted any more or twice in it: nearest_wanted() drops those it meets, set_view() all of them.
   std::vector<ChunkKey> queue_;

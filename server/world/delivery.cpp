@@ -1,5 +1,7 @@
 #include "server/world/delivery.hpp"
 
+#include "server/world/time_travel.hpp"
+
 namespace runstone {
 namespace {
 
@@ -14,9 +16,23 @@ void put_off(WorldState& world, SessionId session, const ChunkKey& key, const No
   world.interest.set_state(session, key, ChunkInterest::wanted);
 }
 
-/// The snapshot, or without a chunk the word that there is none. False: the queue is full, later again.
+/// Whether nothing is in front of the session's chunks any more.
+bool send_moment(WorldState& world, SessionId session, const Now& now) {
+  WorldSession& mine = *world.find(session);
+  if (!mine.moment_due) return true;
+  if (!world.ports.send(session, encode_message(*mine.moment_due))) {
+    ++world.counters.queue_full;
+    mine.stalled_us = now.steady_us;
+    return false;
+  }
+  mine.moment_due.reset();
+  return true;
+}
+
+}  // namespace
+
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                  const Now& now) {
+                  ChunkInterest then, const Now& now) {
   if (chunk == nullptr) {
     const ChunkUnavailable unavailable{{key}, UnavailableReason::damaged};
     if (!world.ports.send(session, encode_message(unavailable))) {
@@ -31,12 +47,10 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     put_off(world, session, key, now);
     return false;
   }
-  world.interest.set_state(session, key, ChunkInterest::subscribed);
+  world.interest.set_state(session, key, then);
   ++world.counters.snapshots_sent;
   return true;
 }
-
-}  // namespace
 
 void ask_load(WorldState& world, const ChunkKey& key) {
   if (world.authority.chunks().residency(key) != Residency::absent) return;
@@ -56,6 +70,8 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionState::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
+  if (!send_moment(world, session, now)) return;
+  if (mine->visit) return deliver_past(world, session, now);
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
   while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
@@ -64,7 +80,7 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
     const ChunkPtr chunk = chunks.find(*key);
     const Residency residency = chunks.residency(*key);
     if (chunk != nullptr || residency == Residency::quarantined) {
-      if (!answer_chunk(world, session, *key, chunk, now)) break;
+      if (!answer_chunk(world, session, *key, chunk, ChunkInterest::subscribed, now)) break;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
       if (residency == Residency::absent) world.loads.ask(session, *key);
@@ -80,7 +96,7 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
     if (is_stalled(world, *world.find(session), now)) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
     } else {
-      answer_chunk(world, session, key, chunk, now);
+      answer_chunk(world, session, key, chunk, ChunkInterest::subscribed, now);
     }
     deliver(world, session, now);
   }

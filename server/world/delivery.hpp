@@ -10,6 +10,10 @@ namespace runstone {
 /// Sends the session's nearest wanted chunks: those in memory at once, the others after a load. Stops when
 /// its queue is full or it waits for enough loads.
 void deliver(WorldState& world, SessionId session, const Now& now);
+/// Queues the snapshot of a wanted chunk, which gets the state `then`; without a chunk, the word that there is none. False:
+/// the session's queue is full, and the chunk stays wanted.
+bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                  ChunkInterest then, const Now& now);
 /// The world itself needs a chunk: queues its load unless it is here, on its way or quarantined.
 void ask_load(WorldState& world, const ChunkKey& key);
 /// Hands queued loads to the port, as many as may be under way.

@@ -1,5 +1,7 @@
 #include "server/world/view_turns.hpp"
 
+#include "server/world/time_travel.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -28,6 +30,7 @@ void take_effect(WorldState& world, SessionId id, const Now& now) {
   mine.has_passed_too_many = false;
   const std::size_t entered = world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
   world.view_chunks_left -= std::min(world.view_chunks_left, entered + 1);
+  forget_sent(mine);
   mine.viewed_us = now.steady_us;
   collect_released(world);
   deliver(world, id, now);

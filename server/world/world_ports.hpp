@@ -19,6 +19,12 @@ namespace runstone {
 /// What the world strand has to tell the operator; the port names the logger.
 enum class WorldLogLevel { debug, info, warn, error };
 
+/// Where in the log a past moment lies.
+struct OpenedMoment {
+  Sequence seq = 0;   // its last edit; 0: before the first one
+  TimeUs utc_us = 0;  // when that was ordered
+};
+
 class WorldPorts {
  public:
   virtual ~WorldPorts() = default;
@@ -45,6 +51,12 @@ class WorldPorts {
   /// Asks for a chunk: newest snapshot, else base, else generated, from a worker. Answer:
   /// WorldServer::chunk_loaded() or chunk_failed(). Asked at most once per chunk until answered.
   virtual void load_chunk(const ChunkKey& key) = 0;
+  /// Opens the moment that a session wants to see (travel.to is not live), on a worker. Answer:
+  /// WorldServer::moment_opened(). Asked at most once per session until answered.
+  virtual void open_moment(SessionId /*session*/, const Travel& /*travel*/) {}
+  /// Makes a chunk as it stood after edit `at`, on a worker. Answer: WorldServer::past_chunk().
+  virtual void load_past_chunk(SessionId /*session*/, std::uint32_t /*request*/, Sequence /*at*/,
+                               const ChunkKey& /*key*/) {}
   /// Hands over immutable chunks to be written as snapshots (each version <= durable), and the sequence up to
   /// which everything is then contained in snapshots. Answer: WorldServer::snapshots_saved().
   virtual void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) = 0;

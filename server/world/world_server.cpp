@@ -9,6 +9,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/handshake_steps.hpp"
 #include "server/world/request_steps.hpp"
+#include "server/world/time_travel.hpp"
 #include "server/world/view_turns.hpp"
 #include "server/world/world_state.hpp"
 
@@ -21,7 +22,7 @@ constexpr std::size_t kEvictionStepsPerTick = 512;
 bool needs_open(const Message& message) {
   return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
          std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-         std::holds_alternative<Ping>(message);
+         std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message);
 }
 
 void on_open_message(WorldState& world, SessionId session, const Message& message, const Now& now) {
@@ -32,6 +33,7 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   if (const auto* edit = std::get_if<EditRequest>(&message)) return on_edit(world, session, *edit, now);
   if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
+  if (const auto* travel = std::get_if<Travel>(&message)) return on_travel(world, session, *travel, now);
 }
 
 void close_silent_sessions(WorldState& world, const Now& now) {
@@ -153,6 +155,7 @@ void WorldServer::tick(const Now& now) {
     world.audits_us = now.steady_us;
     send_audits(world);
   }
+  open_waiting_moments(world);
   retry_owed(world, now);
   step_keeper(now);
   collect_released(world);
@@ -183,6 +186,18 @@ void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, con
   deliver_loaded(world, key, now);
   step_keeper(now);
   start_loads(world);
+}
+
+void WorldServer::moment_opened(SessionId session, std::uint32_t request,
+                                const Result<OpenedMoment, std::string>& opened, const Now& now) {
+  on_moment_opened(*state_, session, request, opened, now);
+}
+
+void WorldServer::past_chunk(SessionId session, std::uint32_t request, const ChunkKey& key,
+                             const Result<ChunkPtr, std::string>& chunk, const Now& now) {
+  if (!chunk)
+    state_->ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " of the past: " + chunk.error());
+  on_past_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
 }
 
 void WorldServer::durable(Sequence seq, const Now& now) {

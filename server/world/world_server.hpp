@@ -59,6 +59,12 @@ class WorldServer {
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
   /// `what` names file, table and row. The chunk is quarantined.
   void chunk_failed(const ChunkKey& key, const std::string& what, const Now& now);
+  /// The moment that a session asked for by `request`, or why there is none.
+  void moment_opened(SessionId session, std::uint32_t request,
+                     const Result<OpenedMoment, std::string>& opened, const Now& now);
+  /// A chunk as it was then, or what cannot be read: names file, table and row.
+  void past_chunk(SessionId session, std::uint32_t request, const ChunkKey& key,
+                  const Result<ChunkPtr, std::string>& chunk, const Now& now);
   /// Everything up to `seq` is on disk.
   void durable(Sequence seq, const Now& now);
   /// The oldest unanswered save_snapshots() is on disk.

@@ -2,6 +2,7 @@
 //   awaits_hello -> awaits_proof -> open. Closing forgets it at once.
 #pragma once
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,15 @@ namespace runstone {
 enum class SessionState { awaits_hello, awaits_proof, open };
 
 inline constexpr std::size_t kPassedViewsMax = 8;
+
+/// A session's stay in the past.
+struct Visit {
+  std::uint32_t request = 0;
+  Sequence seq = 0;                  // the last edit it sees
+  std::map<ChunkKey, Version> sent;  // what it has of the past: need not be sent again while the view stays
+  std::size_t loading = 0;           // chunks that workers are at for this request
+  bool is_complete = false;          // it was told that all of its view was sent
+};
 
 struct WorldSession {
   SessionState state = SessionState::awaits_hello;
@@ -36,6 +46,11 @@ struct WorldSession {
   std::optional<TimeUs> viewed_us;   // when the last one did
   std::vector<View> passed_views;    // that next_view replaced before they did: kPassedViewsMax at most,
   bool has_passed_too_many = false;  // more of them count as having left everything
+  // Time travel (time_travel.hpp).
+  std::optional<Travel> next_travel;  // the newest wish that nothing was done for yet
+  bool opens_moment = false;          // a worker is at one
+  std::optional<Visit> visit;         // nothing: it sees the live world
+  std::optional<Moment> moment_due;   // to be sent before any further chunk
   std::optional<TimeUs>
       stalled_us;  // its queue was full then: no snapshots until drained or the retry interval
 };

@@ -153,6 +153,26 @@ ChunkUnavailable any_unavailable(SplitMix64& rng) {
   return m;
 }
 
+Travel any_travel(SplitMix64& rng) {
+  Travel m;
+  m.request = 1 + rng.below(1'000'000);
+  m.to = static_cast<TravelTo>(rng.below(kTravelToMax + 1u));
+  if (m.to == TravelTo::sequence) m.seq = any64(rng) >> 1;
+  if (m.to == TravelTo::time) m.utc_us = any_time(rng);
+  return m;
+}
+
+Moment any_moment(SplitMix64& rng) {
+  Moment m;
+  m.request = 1 + rng.below(1'000'000);
+  m.phase = static_cast<MomentPhase>(1 + rng.below(kMomentPhaseMax));
+  m.past = rng.below(2) == 0;
+  if (m.past) m.seq = any64(rng) >> 1;
+  m.utc_us = any_time(rng);
+  m.text = any_text(rng, 0, kTextBytesMax);
+  return m;
+}
+
 ChunkSnapshot any_snapshot(SplitMix64& rng) {
   ChunkSnapshot m;
   m.key.at = any_coord(rng);
@@ -254,9 +274,13 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 17:
       return Goodbye{static_cast<GoodbyeReason>(1 + rng.below(kGoodbyeReasonMax)),
                      any_text(rng, 0, kTextBytesMax)};
-    default:
-      RUNSTONE_ASSERT(kind == 18);
+    case 18:
       return any_unavailable(rng);
+    case 19:
+      return any_travel(rng);
+    default:
+      RUNSTONE_ASSERT(kind == 20);
+      return any_moment(rng);
   }
 }
 
@@ -265,7 +289,8 @@ Sender sender_of(const Message& message) {
                       std::holds_alternative<View>(message) ||
                       std::holds_alternative<ChunkRequest>(message) ||
                       std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-                      std::holds_alternative<Ping>(message) || std::holds_alternative<Goodbye>(message);
+                      std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
+                      std::holds_alternative<Goodbye>(message);
   return client ? Sender::client : Sender::server;
 }
 

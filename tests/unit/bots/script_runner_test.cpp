@@ -28,6 +28,9 @@ struct FakeHost final : ScriptHost {
   std::vector<Submitted> edits;
   mutable std::vector<VoxelBox> copied;
   std::vector<std::string> files;
+  std::vector<Travel> travels;
+  bool is_travelling = false;
+  std::string refusal;
 
   bool ready() const override { return open; }
   WorldPos eye() const override { return at; }
@@ -73,6 +76,10 @@ struct FakeHost final : ScriptHost {
   bool durable() const override { return is_durable; }
   std::uint64_t sync_mark() const override { return pongs; }
   bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
+  void travel(const Travel& travel) override { travels.push_back(travel); }
+  bool travelling() const override { return is_travelling; }
+  std::string travel_refusal() const override { return refusal; }
+  TimeUs utc_now_us() const override { return 5'000'000; }
   bool screenshot(const std::string& file) override {
     files.push_back(file);
     return draws;

@@ -1,0 +1,69 @@
+#include "server/history/moments.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/history/log_place.hpp"
+
+namespace runstone {
+
+StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
+  std::shared_ptr<Kept> moment;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(kept_.begin(), kept_.end(), [at](const auto& kept) { return kept.first == at; });
+    if (found != kept_.end()) {
+      kept_.splice(kept_.begin(), kept_, found);
+    } else {
+      kept_.emplace_front(at, std::make_shared<Kept>());
+      if (kept_.size() > kept_max_) kept_.pop_back();  // whoever still uses it holds it
+    }
+    moment = kept_.front().second;
+  }
+  // Whoever comes second waits here until the first one has opened it.
+  const std::lock_guard lock(moment->mutex);
+  if (moment->world != nullptr) return moment;
+  const auto failed = [&](const StoreError& error) {
+    forget(at);
+    return Unexpected<StoreError>{error};
+  };
+  auto reader = open_world(folder_, StoreAccess::read_only);
+  if (!reader) return failed(reader.error());
+  const auto end = edit_at(**reader, at);
+  if (!end) return failed(end.error());
+  auto world = WorldAt::open(**reader, generator_, at);
+  if (!world) return failed(world.error());
+  moment->reader = *std::move(reader);
+  moment->world = std::make_unique<WorldAt>(*std::move(world));
+  moment->end = *end;
+  return moment;
+}
+
+void Moments::forget(Sequence at) {
+  const std::lock_guard lock(mutex_);
+  kept_.remove_if([at](const auto& kept) { return kept.first == at; });
+}
+
+StoreResult<LogEnd> Moments::open(Sequence at) {
+  const auto moment = find(at);
+  if (!moment) return Unexpected<StoreError>{moment.error()};
+  return (*moment)->end;
+}
+
+StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
+  const auto reader = open_world(folder_, StoreAccess::read_only);
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  const auto end = last_edit_at(**reader, utc_us);
+  if (!end) return end;
+  return open(end->version.seq);
+}
+
+StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {
+  const auto moment = find(at);
+  if (!moment) return Unexpected<StoreError>{moment.error()};
+  const std::lock_guard lock((*moment)->mutex);
+  return (*moment)->world->chunk(key);
+}
+
+}  // namespace runstone
