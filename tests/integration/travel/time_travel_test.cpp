@@ -24,7 +24,10 @@ Held held_by(const Replica& replica) {
 
 /// A builder whose replica says how the view stood after each of its edits.
 struct Builder {
-  explicit Builder(std::uint16_t port) : client(port, kView) { client.settle(); }
+  explicit Builder(std::uint16_t port) : client(port, kView) {
+    client.settle();
+    moments.push_back(held_by(client.replica()));
+  }
   void build(int edits) {
     for (int i = 0; i < edits; ++i) {
       const auto n = static_cast<std::int32_t>(moments.size());
@@ -35,7 +38,7 @@ struct Builder {
     }
   }
   LinkedSession client;
-  std::vector<Held> moments{held_by(client.replica())};  // by sequence
+  std::vector<Held> moments;  // by sequence
 };
 
 Travel to_seq(Sequence seq) { return {1, TravelTo::sequence, seq, 0}; }

@@ -39,7 +39,15 @@ class FakePorts : public WorldPorts {
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
   std::deque<ChunkKey> loads;
+  struct PastLoad {
+    SessionId session = 0;
+    std::uint32_t request = 0;
+    Sequence at = 0;
+    ChunkKey key;
+  };
   std::vector<Save> saves;
+  std::deque<std::pair<SessionId, Travel>> moments;
+  std::deque<PastLoad> past_loads;
   std::vector<std::string> lines;
   std::map<SessionId, ChunkEncoding> encodings;
   std::set<SessionId> full;                        // every send to them is refused
@@ -73,6 +81,12 @@ class FakePorts : public WorldPorts {
     records.insert(records.end(), new_records.begin(), new_records.end());
   }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void open_moment(SessionId session, const Travel& travel) override {
+    moments.emplace_back(session, travel);
+  }
+  void load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) override {
+    past_loads.push_back({session, request, at, key});
+  }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override {
     saves.push_back({std::move(chunks), checkpoint});
   }
