@@ -334,3 +334,22 @@ TEST_CASE_METHOD(Fixture, "a picture that cannot be written fails the script at 
   CHECK(runner->failures() == std::vector<std::string>{"s.txt:2: nosuch/a.png cannot be written"});
   CHECK(host.edits.size() == 1);
 }
+
+TEST_CASE("a travel waits until its moment is here, and a refused one ends the script", "[bots]") {
+  const auto script = *parse_script("travel -2\nset 1 2 3 stone\ntravel 7\nset 1 2 3 sand\n", "t");
+  FakeHost host;
+  host.is_travelling = true;
+  ScriptRunner runner(script, host);
+  runner.step(1'000'000);
+  REQUIRE(host.travels.size() == 1);
+  CHECK(host.travels[0].to == TravelTo::time);
+  CHECK(host.travels[0].utc_us == 3'000'000);
+  CHECK(host.edits.empty());
+  host.is_travelling = false;
+  host.refusal = "no such edit";
+  runner.step(1'100'000);
+  CHECK(runner.finished());
+  CHECK(host.edits.empty());
+  REQUIRE(runner.failures().size() == 1);
+  CHECK(runner.failures()[0] == "t:1: no such moment: no such edit");
+}

@@ -137,3 +137,21 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
   for (int i = 0; i < 9; ++i) deep += "repeat 1\n";
   CHECK(message_of(deep) == "s.txt:9: repeat is nested too deeply");
 }
+
+TEST_CASE("travel goes to a sequence, so many seconds back, or to the live world", "[bots]") {
+  const auto script = parse_script("travel 12\ntravel -90.5\ntravel live\n", "t");
+  REQUIRE(script.has_value());
+  const auto step = [&](std::size_t i) { return std::get<script::Travel>(script->commands[i].step); };
+  CHECK(step(0).to == TravelTo::sequence);
+  CHECK(step(0).seq == 12);
+  CHECK(step(1).to == TravelTo::time);
+  CHECK(step(1).seconds_ago == 90.5);
+  CHECK(step(2).to == TravelTo::live);
+  for (const char* wrong :
+       {"travel", "travel back", "travel -x", "travel 1 2", "travel 99999999999999999999"}) {
+    CAPTURE(wrong);
+    const auto refused = parse_script(wrong, "t");
+    REQUIRE_FALSE(refused.has_value());
+    CHECK(refused.error().line == 1);
+  }
+}
