@@ -122,6 +122,35 @@ TEST_CASE("an edit touches a box when one of its voxels is inside", "[edits][pro
   }
 }
 
+TEST_CASE("a paste touches a box inside it where a cell of the box is touched", "[edits][property]") {
+  SplitMix64 rng{26 + Catch::rngSeed()};
+  int misses = 0;
+  for (int round = 0; round < 400; ++round) {
+    const Paste paste{{rng.between(-9, 9), rng.between(-9, 9), rng.between(-9, 9)},
+                      random_clipboard(rng, 12, 3),
+                      random_orientation(rng)};
+    const EditDescriptor edit{paste, {}, kEmpty};
+    const VoxelBox whole = bounding_box(edit);
+    for (int i = 0; i < 30; ++i) {
+      const auto low = [&rng](std::int32_t from, std::int32_t to) { return rng.between(from, to - 1); };
+      const VoxelPos min{low(whole.min.x, whole.max.x), low(whole.min.y, whole.max.y),
+                         low(whole.min.z, whole.max.z)};
+      const auto side = [&rng] { return rng.between(1, 3); };
+      const VoxelBox box{min, {min.x + side(), min.y + side(), min.z + side()}};
+      bool expected = false;
+      for (VoxelPos p = min; p.x < box.max.x; ++p.x) {
+        for (p.y = min.y; p.y < box.max.y; ++p.y) {
+          for (p.z = min.z; p.z < box.max.z; ++p.z) expected = expected || oracle_covers(edit, p);
+        }
+      }
+      CAPTURE(Catch::rngSeed(), round, edit, min.x, min.y, min.z);
+      REQUIRE(touches(edit, box) == expected);
+      misses += expected ? 0 : 1;
+    }
+  }
+  CHECK(misses > 500);
+}
+
 TEST_CASE("spans are the maximal stretches of covered voxels in index order", "[edits][property]") {
   SplitMix64 rng{24 + Catch::rngSeed()};
   for (int round = 0; round < 3000; ++round) {
