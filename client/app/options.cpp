@@ -60,8 +60,14 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
   app.add_flag("--verbose", out.verbose, "log every step");
-  app.add_flag("--draw", out.draw, "draw what standard input orders, off screen; for other programs")
-      ->excludes("--connect");
+  CLI::Option* draw =
+      app.add_flag("--draw", out.draw, "draw what standard input orders, off screen; for other programs");
+  for (CLI::Option* other : app.get_options()) {
+    if (other != draw && !other->check_name("--workers") && !other->check_name("--help") &&
+        !other->check_name("--version")) {
+      draw->excludes(other);
+    }
+  }
   try {
     app.parse(argc, argv);
     if (address.empty() && !out.draw) throw CLI::RequiredError("--connect");

@@ -42,6 +42,9 @@ TEST_CASE("a program that draws for others needs no server, and takes none", "[c
   CHECK(accepted({"--draw", "--workers", "3"}).workers == 3);
   CHECK_FALSE(accepted({"--connect", "a:1"}).draw);
   CHECK(refused({"--draw", "--connect", "a:1"}) == 2);
+  CHECK(refused({"--draw", "--size", "64x64"}) == 2);
+  CHECK(refused({"--draw", "--no-render"}) == 2);
+  CHECK(refused({"--draw", "--help"}) == 0);
 }
 
 TEST_CASE("of two equal flags the last one counts", "[client_app]") {
