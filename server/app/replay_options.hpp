@@ -9,18 +9,18 @@
 
 #include "common/core/ids.hpp"
 #include "server/app/timelapse_options.hpp"
-#include "server/history/moment.hpp"
+#include "server/history/named_moment.hpp"
 
 namespace runstone {
 
 struct ReplayOptions {
   std::string world;  // folder
   bool verify = false;
-  std::optional<Moment> moment;  // --at as written
+  std::optional<NamedMoment> moment;  // --at as written
   Sequence at =
       std::numeric_limits<Sequence>::max();  // what it means in the world; replay_program() looks it up
   std::string write_to;                      // folder of a new world
-  std::optional<std::pair<Moment, Moment>> diff;
+  std::optional<std::pair<NamedMoment, NamedMoment>> diff;
   std::string json;                    // file; empty: none
   std::vector<std::string> against;    // files
   std::string export_to, import_from;  // .rlog files; at most one is not empty

@@ -3,9 +3,22 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/history/log_place.hpp"
-
 namespace runstone {
+namespace {
+
+/// When the edit was ordered, 0 before the first one. A moment that was opened has its edit, or is the log's head.
+StoreResult<LogEnd> edit_at(Store& reader, Sequence seq) {
+  auto end = reader.log_head();
+  if (!end || end->version.seq == seq) return end;
+  const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
+    end = LogEnd{record.version, record.time_us};
+    return true;
+  });
+  if (!read) return Unexpected<StoreError>{read.error()};
+  return end;
+}
+
+}  // namespace
 
 StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   std::shared_ptr<Kept> moment;
@@ -30,10 +43,10 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   };
   auto reader = open_world(folder_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
-  const auto end = edit_at(**reader, at);
-  if (!end) return failed(end.error());
   auto world = WorldAt::open(**reader, generator_, at);
   if (!world) return failed(world.error());
+  const auto end = edit_at(**reader, at);
+  if (!end) return failed(end.error());
   moment->reader = *std::move(reader);
   moment->world = std::make_unique<WorldAt>(*std::move(world));
   moment->end = *end;
@@ -54,9 +67,9 @@ StoreResult<LogEnd> Moments::open(Sequence at) {
 StoreResult<LogEnd> Moments::open_at_time(TimeUs utc_us) {
   const auto reader = open_world(folder_, StoreAccess::read_only);
   if (!reader) return Unexpected<StoreError>{reader.error()};
-  const auto end = last_edit_at(**reader, utc_us);
-  if (!end) return end;
-  return open(end->version.seq);
+  const auto seq = (*reader)->sequence_at(utc_us);
+  if (!seq) return Unexpected<StoreError>{seq.error()};
+  return open(*seq);
 }
 
 StoreResult<Chunk> Moments::chunk(Sequence at, const ChunkKey& key) {

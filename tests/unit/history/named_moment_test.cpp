@@ -1,5 +1,5 @@
 // Moments as people write them, and what they mean in a log.
-#include "server/history/moment.hpp"
+#include "server/history/named_moment.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr TimeUs kSecond = 1'000'000;
 
-Moment parsed(const std::string& text) {
+NamedMoment parsed(const std::string& text) {
   const auto moment = parse_moment(text);
   if (!moment) FAIL(moment.error());
   return *moment;
@@ -23,17 +23,17 @@ Moment parsed(const std::string& text) {
 }  // namespace
 
 TEST_CASE("moments are sequences, times in UTC and times before the end", "[history][moment]") {
-  CHECK(parsed("0") == Moment(Sequence{0}));
-  CHECK(parsed("9120") == Moment(Sequence{9120}));
-  CHECK(parsed("9223372036854775807") == Moment(kSequenceMax));
-  CHECK(parsed("1970-01-01T00:00:00Z") == Moment(AtTime{0}));
-  CHECK(parsed("2026-11-21T23:05:00Z") == Moment(AtTime{1'795'302'300 * kSecond}));
-  CHECK(parsed("2026-11-21T23:05Z") == Moment(AtTime{1'795'302'300 * kSecond}));
-  CHECK(parsed("2024-02-29T12:00:01.5Z") == Moment(AtTime{1'709'208'001 * kSecond + 500'000}));
-  CHECK(parsed("2024-02-29T12:00:01.000001Z") == Moment(AtTime{1'709'208'001 * kSecond + 1}));
-  CHECK(parsed("-2h30m") == Moment(BeforeEnd{9'000 * kSecond}));
-  CHECK(parsed("-1d2h3m4s") == Moment(BeforeEnd{93'784 * kSecond}));
-  CHECK(parsed("-90s") == Moment(BeforeEnd{90 * kSecond}));
+  CHECK(parsed("0") == NamedMoment(Sequence{0}));
+  CHECK(parsed("9120") == NamedMoment(Sequence{9120}));
+  CHECK(parsed("9223372036854775807") == NamedMoment(kSequenceMax));
+  CHECK(parsed("1970-01-01T00:00:00Z") == NamedMoment(AtTime{0}));
+  CHECK(parsed("2026-11-21T23:05:00Z") == NamedMoment(AtTime{1'795'302'300 * kSecond}));
+  CHECK(parsed("2026-11-21T23:05Z") == NamedMoment(AtTime{1'795'302'300 * kSecond}));
+  CHECK(parsed("2024-02-29T12:00:01.5Z") == NamedMoment(AtTime{1'709'208'001 * kSecond + 500'000}));
+  CHECK(parsed("2024-02-29T12:00:01.000001Z") == NamedMoment(AtTime{1'709'208'001 * kSecond + 1}));
+  CHECK(parsed("-2h30m") == NamedMoment(BeforeEnd{9'000 * kSecond}));
+  CHECK(parsed("-1d2h3m4s") == NamedMoment(BeforeEnd{93'784 * kSecond}));
+  CHECK(parsed("-90s") == NamedMoment(BeforeEnd{90 * kSecond}));
 }
 
 TEST_CASE("what is no moment is refused with what is one", "[history][moment]") {
@@ -87,7 +87,7 @@ TEST_CASE("a moment means the last edit that is not later", "[history][moment]")
     record.time_us = start + static_cast<TimeUs>(record.version.seq / 2) * kSecond;  // two edits a second
   }
   REQUIRE(store->append({}, records).has_value());
-  const auto meant = [&](const Moment& moment) {
+  const auto meant = [&](const NamedMoment& moment) {
     const auto seq = sequence_of(*store, moment);
     return seq ? std::to_string(*seq) : seq.error().what;
   };

@@ -1,4 +1,4 @@
-#include "server/history/moment.hpp"
+#include "server/history/named_moment.hpp"
 
 #include <array>
 #include <charconv>
@@ -98,7 +98,7 @@ std::optional<TimeUs> parse_time(Reader in) {
 
 }  // namespace
 
-Result<Moment, std::string> parse_moment(std::string_view text) {
+Result<NamedMoment, std::string> parse_moment(std::string_view text) {
   const auto wrong = [&] {
     return Unexpected<std::string>{
         "\"" + std::string(text) +
@@ -108,19 +108,19 @@ Result<Moment, std::string> parse_moment(std::string_view text) {
   if (text.starts_with('-')) {
     const auto duration = parse_duration(Reader(text.substr(1)));
     if (!duration) return wrong();
-    return Moment(BeforeEnd{*duration});
+    return NamedMoment(BeforeEnd{*duration});
   }
   Reader in(text);
   if (const auto sequence = in.number(19); sequence && in.at_end()) {
     if (*sequence > kSequenceMax) return wrong();
-    return Moment(Sequence{*sequence});
+    return NamedMoment(Sequence{*sequence});
   }
   const auto time = parse_time(Reader(text));
   if (!time) return wrong();
-  return Moment(AtTime{*time});
+  return NamedMoment(AtTime{*time});
 }
 
-StoreResult<Sequence> sequence_of(Store& reader, const Moment& moment) {
+StoreResult<Sequence> sequence_of(Store& reader, const NamedMoment& moment) {
   const auto range = reader.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
   const auto refuse = [&](std::string what) {

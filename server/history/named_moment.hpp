@@ -1,4 +1,4 @@
-// Moment: a place in the log as people write it.
+// NamedMoment: a place in the log as people write it.
 #pragma once
 #include <string>
 #include <string_view>
@@ -19,14 +19,14 @@ struct BeforeEnd {
   friend bool operator==(const BeforeEnd&, const BeforeEnd&) = default;
 };
 /// After this edit; after the last one that was not later than a time.
-using Moment = std::variant<Sequence, AtTime, BeforeEnd>;
+using NamedMoment = std::variant<Sequence, AtTime, BeforeEnd>;
 
 /// "9120", "2026-11-21T23:05:00Z" (UTC; the seconds may be left out or have up to six decimals) or "-2h30m" (days d, hours h,
 /// minutes m, seconds s, each at most once and in this order). The error says what is wrong with the text.
-Result<Moment, std::string> parse_moment(std::string_view text);
+Result<NamedMoment, std::string> parse_moment(std::string_view text);
 
 /// The sequence that a moment means in this world: that of the last edit not later, so 0 before the first edit. Fails (bad_request) if
 /// it lies before what was compacted, or behind the end of the log where it was named by its sequence.
-StoreResult<Sequence> sequence_of(Store& reader, const Moment& moment);
+StoreResult<Sequence> sequence_of(Store& reader, const NamedMoment& moment);
 
 }  // namespace runstone
