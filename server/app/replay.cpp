@@ -176,6 +176,20 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   }
   if (const auto expected = expect_snapshots(); !expected) return Unexpected<StoreError>{expected.error()};
 
+  if (range->first > 1) {
+    // What was edited only before the log begins belongs to the world all the same.
+    const auto base = store_.base_chunks();
+    if (!base) return Unexpected<StoreError>{base.error()};
+    for (const StoredChunk& stored : *base) {
+      if (stored.version == Version{}) continue;
+      auto chunk = base_of(stored.key);
+      if (!chunk) return Unexpected<StoreError>{chunk.error()};
+      const auto found = chunks_.emplace(stored.key, Rebuilt{*std::move(chunk), {}}).first;
+      if (auto compared = compare(stored.key, found->second); !compared)
+        return Unexpected<StoreError>{compared.error()};
+    }
+  }
+
   StoreResult<void> replayed;
   const auto read = store_.read_log(1, report_.seq, [&](const EditRecord& record) {
     replayed = replay_edit(record);

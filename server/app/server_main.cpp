@@ -1,10 +1,11 @@
-// runstone-server: runs a world, or imports one. Exit codes: 0 stopped cleanly, 1 failed while running,
+// runstone-server: runs a world, imports one, or compacts one. Exit codes: 0 stopped cleanly, 1 failed while running,
 // 2 could not start (docs/server.md).
 #include <spdlog/spdlog.h>
 
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -123,6 +124,12 @@ int run(const ServerOptions& options) {
 int server_program(int argc, char** argv) {
   const auto [options, exit_code] = parse_server_options(argc, argv);
   if (!options) return exit_code;
+  if (options->compact) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+    const auto compacted = compact_world(*options->compact, now_us, std::cout);
+    return compacted ? static_cast<int>(kStopped) : cannot_start(compacted.error());
+  }
   if (!options->import) return run(*options);
   const auto imported = import_world(*options->import, std::cout);
   return imported ? static_cast<int>(kStopped) : cannot_start(imported.error());

@@ -34,12 +34,25 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   import->add_option("--world", request.world, "folder of the new world")->required();
   import->add_option("--edge", request.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
   import->add_flag("--keep-all", request.keep_all, "keep plants, torches and the like as cubes");
+  CompactRequest compact_request;
+  bool keep_size = false;
+  CLI::App* compact = app.add_subcommand("compact", "take the oldest part of a world's log into its base");
+  compact->add_option("--world", compact_request.world, "folder of the world; no server may run it")
+      ->required();
+  compact->add_option("--keep", compact_request.keep_days, "days of the past to keep")
+      ->required()
+      ->check(CLI::Range(0, 36'500));
+  compact->add_flag("--keep-size", keep_size, "leave the free space in the file, for new edits");
+  compact->add_flag("--progress", compact_request.progress,
+                    "tell how far it is also where stderr is no terminal");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }
   if (import->parsed()) out.import = request;
+  compact_request.shrink = !keep_size;
+  if (compact->parsed()) out.compact = compact_request;
   return {out, 0};
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "server/app/compact_program.hpp"
 #include "server/app/import_program.hpp"
 #include "server/app/world_folder.hpp"
 
@@ -14,7 +15,8 @@ struct ServerOptions {
   std::string config_file, port_file, digests_file;  // empty: none
   bool print_config = false;
   WorldCreation creation;
-  std::optional<ImportRequest> import;  // the import subcommand
+  std::optional<ImportRequest> import;    // the import subcommand
+  std::optional<CompactRequest> compact;  // the compact subcommand
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help or version, 2 after a

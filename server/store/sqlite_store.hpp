@@ -51,6 +51,8 @@ class SqliteStore final : public Store {
                                    std::optional<Sequence> checkpoint) override;
   StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                   const std::optional<Keyframe>& keyframe) override;
+  StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<void> shrink() override;
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
@@ -82,6 +84,8 @@ class SqliteStore final : public Store {
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
   /// Null in a world of an older format.
   StoreResult<KeyframeTable*> keyframe_table();
+  StoreResult<void> complete_base(const StoredMoment& moment);
+  StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
   StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
   /// Also that they are of the epoch of now or, for history, that epochs do not fall.

@@ -135,6 +135,12 @@ class Store {
   /// (bad_request) a keyframe that the chunks of base and keyframes do not prove. A chunk that is there already stays.
   virtual StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
                                           const std::optional<Keyframe>& keyframe) = 0;
+  /// Takes all edits up to a keyframe into the base and deletes them, their indexes, the keyframe and those before it, in one
+  /// transaction: completes the base from the keyframe, moves the head of the log, and the checkpoint if it lies before; a chunk whose snapshot is
+  /// older than the base gets one that is not. Marks of players stay. While no server runs the world.
+  virtual StoreResult<void> compact(Sequence keyframe) = 0;
+  /// Gives the free space in the database back to the file system. Needs room for a second copy meanwhile.
+  virtual StoreResult<void> shrink() = 0;
   /// Import only, while nothing was ever logged: base chunks at version (0, 0).
   virtual StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) = 0;
 

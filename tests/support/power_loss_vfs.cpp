@@ -120,6 +120,8 @@ struct PowerLossCalls {
   }
 
   static int write(sqlite3_file* file, const void* data, int bytes, sqlite3_int64 offset) {
+    const PowerLossVfs& vfs = *of(file).vfs;
+    if (of(file).alive() && vfs.operations_ >= vfs.full_at_) return SQLITE_FULL;
     const auto* from = static_cast<const std::uint8_t*>(data);
     return change(of(file), {false, static_cast<std::size_t>(offset), Bytes(from, from + bytes)},
                   SQLITE_IOERR_WRITE);

@@ -43,6 +43,10 @@ class PowerLossVfs {
   /// The next sync fails with an I/O error, as fsync does once on a dying disk; power stays on.
   void fail_next_sync() { fail_sync_ = true; }
 
+  /// From operation number `operations` from now on, as cut_after() counts, writes find the disk full; the power stays on.
+  void full_after(std::uint64_t operations) { full_at_ = operations_ + operations; }
+  void make_room() { full_at_ = ~std::uint64_t{0}; }
+
   std::uint64_t operations() const { return operations_; }
   std::uint64_t syncs() const { return syncs_; }
   /// Bytes of a file as programs see them now; empty if there is none.
@@ -77,7 +81,7 @@ class PowerLossVfs {
   std::unique_ptr<sqlite3_vfs> vfs_;
   std::map<std::string, std::shared_ptr<File>> live_names_, durable_names_;
   std::uint64_t generation_ = 0;  // raised by each power loss: connections remember theirs
-  std::uint64_t operations_ = 0, syncs_ = 0, cut_at_ = ~std::uint64_t{0};
+  std::uint64_t operations_ = 0, syncs_ = 0, cut_at_ = ~std::uint64_t{0}, full_at_ = ~std::uint64_t{0};
   bool cut_ = false, fail_sync_ = false;
 };
 

@@ -66,6 +66,8 @@ class FakeStore final : public Store {
       return Unexpected<StoreError>{{StoreError::Kind::full, "w", "keyframe", "disk full"}};
     return commit({{}, {}, chunks.size(), {}, keyframe});
   }
+  StoreResult<void> compact(Sequence) override { return {}; }
+  StoreResult<void> shrink() override { return {}; }
   StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
   StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
   StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }

@@ -1,0 +1,86 @@
+// The part of SqliteStore that forgets: the beginning of the log, once the base holds what it did.
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "common/core/key_text.hpp"
+#include "server/store/sqlite_store.hpp"
+
+namespace runstone {
+
+StoreResult<void> SqliteStore::delete_up_to(const char* text, Sequence last) {
+  auto statement = database_->prepare(text);
+  if (!statement) return Unexpected<StoreError>{statement.error()};
+  return statement->bind(1, static_cast<std::int64_t>(last)).run();
+}
+
+StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
+  auto base_fold = meta_table_.fold(base_.fold_key());
+  if (!base_fold) return Unexpected<StoreError>{base_fold.error()};
+  auto snapshot_fold = meta_table_.fold(snapshots_.fold_key());
+  if (!snapshot_fold) return Unexpected<StoreError>{snapshot_fold.error()};
+  const auto snapshots = rows_of(snapshots_);
+  if (!snapshots) return Unexpected<StoreError>{snapshots.error()};
+  std::map<ChunkKey, Version> saved_at;
+  for (const StoredChunk& snapshot : *snapshots) saved_at[snapshot.key] = snapshot.version;
+  for (const StoredChunk& stored : moment.chunks) {
+    const auto snapshot = saved_at.find(stored.key);
+    // Records up to the new head are no longer there to bring an older snapshot up to date.
+    const bool needs_snapshot = snapshot == saved_at.end() || snapshot->second < stored.version;
+    if (stored.is_base && !needs_snapshot) continue;
+    const auto chunk = load_stored(stored);
+    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!chunk->has_value()) {
+      return Unexpected<StoreError>{
+          {StoreError::Kind::corrupt, file(), "keyframe_chunk chunk=" + text_of(stored.key), "is missing"}};
+    }
+    if (!stored.is_base) {
+      if (auto saved = base_.save(stored.key, **chunk, meta_.chunk_edge, *base_fold); !saved) return saved;
+    }
+    if (needs_snapshot) {
+      if (auto saved = snapshots_.save(stored.key, **chunk, meta_.chunk_edge, *snapshot_fold); !saved)
+        return saved;
+    }
+  }
+  if (auto put = meta_table_.put_fold(base_.fold_key(), *base_fold); !put) return put;
+  return meta_table_.put_fold(snapshots_.fold_key(), *snapshot_fold);
+}
+
+StoreResult<void> SqliteStore::compact(Sequence keyframe) {
+  auto compacted = write([&]() -> StoreResult<void> {
+    const auto table = keyframe_table();
+    if (!table) return Unexpected<StoreError>{table.error()};
+    const auto moment = stored_moment(keyframe);  // proved
+    if (!moment) return Unexpected<StoreError>{moment.error()};
+    const auto head = meta_table_.log_head();
+    if (!head) return Unexpected<StoreError>{head.error()};
+    const auto range = log_.range(*head);
+    if (!range) return Unexpected<StoreError>{range.error()};
+    if (moment->at.version.seq != keyframe || keyframe < range->first) {
+      return refuse("keyframe seq=" + std::to_string(keyframe), "is not there");
+    }
+    if (auto fits = check_keyframe({moment->at, 0, {}}, *range); !fits) return fits;
+    if (auto completed = complete_base(*moment); !completed) return completed;
+    const auto checkpoint = meta_table_.counter("checkpoint");
+    if (!checkpoint) return Unexpected<StoreError>{checkpoint.error()};
+    if (*checkpoint < keyframe) {
+      if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put) return put;
+    }
+    if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
+    if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe); !gone)
+      return gone;
+    // A segment that goes on behind the head stays as it is: its box is larger than need be, nothing else.
+    if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone) return gone;
+    return (*table)->remove(keyframe);
+  });
+  segments_.forget();
+  return compacted;
+}
+
+StoreResult<void> SqliteStore::shrink() {
+  if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
+  if (auto done = database_->run("VACUUM"); !done) return done;
+  return database_->run("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+}  // namespace runstone
