@@ -15,10 +15,14 @@ namespace {
 constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
 
 StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at) {
-  auto stored = reader.load_snapshot(key);
-  if (!stored) return Unexpected<StoreError>{stored.error()};
-  if (stored->has_value() && (*stored)->version.seq <= at) {
-    Chunk chunk = **std::move(stored);
+  auto newest = reader.load_kept(key, at);
+  if (!newest) return Unexpected<StoreError>{newest.error()};
+  auto snapshot = reader.load_snapshot(key);
+  if (!snapshot) return Unexpected<StoreError>{snapshot.error()};
+  const bool is_old_enough = snapshot->has_value() && (*snapshot)->version.seq <= at;
+  if (is_old_enough && (!newest->has_value() || (*newest)->version < (*snapshot)->version)) newest = snapshot;
+  if (newest->has_value()) {
+    Chunk chunk = **std::move(newest);
     chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
     return chunk;
   }

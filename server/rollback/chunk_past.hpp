@@ -1,5 +1,5 @@
 // chunk_past: a chunk as it stood at a sequence, for one chunk at a time: the newest stored form that is not
-// younger (snapshot, else base, else the generator), and the edits that touched the chunk since, by the log's
+// younger (snapshot, keyframe, base or generator), and the edits that touched the chunk since, by the log's
 // index of places. Blocks on the disk.
 #pragma once
 #include "common/edits/apply_scratch.hpp"

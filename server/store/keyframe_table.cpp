@@ -49,6 +49,9 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
       prepare(
           "SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = ?1 AND x = ?2 "
           "AND y = ?3 AND z = ?4 AND seq = ?5"),
+      prepare(
+          "SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = ?1 AND x = ?2 "
+          "AND y = ?3 AND z = ?4 AND seq <= ?5 ORDER BY seq DESC LIMIT 1"),
       prepare("INSERT INTO keyframe_chunk(lod, x, y, z, seq, epoch, digest0, digest1, checksum, data) "
               "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"),
       prepare("INSERT INTO keyframe(seq, epoch, time_us, chunks, digest0, digest1, checksum) "
@@ -94,15 +97,24 @@ StoreResult<std::vector<StoredChunk>> KeyframeTable::rows(Sequence last) {
 
 StoreResult<std::optional<Chunk>> KeyframeTable::load(const ChunkKey& key, Sequence seq,
                                                       std::uint16_t chunk_edge) {
-  const sql::ResetAtEnd reset_at_end(s_.load);
-  bind_key(s_.load, key);
-  const auto found = s_.load.bind(5, static_cast<std::int64_t>(seq)).step();
+  return read(s_.load, key, seq, chunk_edge);
+}
+
+StoreResult<std::optional<Chunk>> KeyframeTable::newest(const ChunkKey& key, Sequence last,
+                                                        std::uint16_t chunk_edge) {
+  return read(s_.newest, key, last, chunk_edge);
+}
+
+StoreResult<std::optional<Chunk>> KeyframeTable::read(sql::Statement& row, const ChunkKey& key, Sequence seq,
+                                                      std::uint16_t chunk_edge) {
+  const sql::ResetAtEnd reset_at_end(row);
+  bind_key(row, key);
+  const auto found = row.bind(5, static_cast<std::int64_t>(seq)).step();
   if (!found) return Unexpected<StoreError>{found.error()};
   if (!*found) return std::optional<Chunk>();
-  auto chunk = chunk_of(
-      kChunks, {key, version_at(s_.load, 0), digest_at(s_.load, 2), s_.load.integer(4), s_.load.blob(5)},
-      chunk_edge);
-  if (!chunk) return corrupt(place_of(key, seq), chunk.error());
+  const Version version = version_at(row, 0);
+  auto chunk = chunk_of(kChunks, {key, version, digest_at(row, 2), row.integer(4), row.blob(5)}, chunk_edge);
+  if (!chunk) return corrupt(place_of(key, version.seq), chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }
 

@@ -25,6 +25,8 @@ class KeyframeTable {
   StoreResult<std::vector<StoredChunk>> rows(Sequence last);
   /// Of a chunk, the row at this very sequence, verified; nothing if there is none.
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence seq, std::uint16_t chunk_edge);
+  /// Of a chunk, the newest row up to a sequence, verified; nothing if there is none. O(log rows).
+  StoreResult<std::optional<Chunk>> newest(const ChunkKey& key, Sequence last, std::uint16_t chunk_edge);
 
   /// All three in the caller's transaction. A row that is there already stays; it is damage if it differs.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge);
@@ -39,10 +41,12 @@ class KeyframeTable {
 
  private:
   struct Statements {
-    sql::Statement all, rows, load, save_chunk, save, remove_chunks, remove;
+    sql::Statement all, rows, load, newest, save_chunk, save, remove_chunks, remove;
   };
   KeyframeTable(std::string file, Statements statements)
       : file_(std::move(file)), s_(std::move(statements)) {}
+  StoreResult<std::optional<Chunk>> read(sql::Statement& row, const ChunkKey& key, Sequence seq,
+                                         std::uint16_t chunk_edge);
   Unexpected<StoreError> corrupt(std::string where, std::string what) const;
 
   std::string file_;

@@ -87,6 +87,13 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
        "has another digest than its moment"}};
 }
 
+StoreResult<std::optional<Chunk>> SqliteStore::load_kept(const ChunkKey& key, Sequence at) {
+  const auto table = keyframe_table();
+  if (!table) return Unexpected<StoreError>{table.error()};
+  if (*table == nullptr) return std::optional<Chunk>();
+  return (*table)->newest(key, at, meta_.chunk_edge);
+}
+
 StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {
   const Sequence seq = keyframe.at.version.seq;
   std::string what;

@@ -62,6 +62,7 @@ class SqliteStore final : public Store {
   StoreResult<std::vector<Keyframe>> keyframes() override;
   StoreResult<StoredMoment> stored_moment(Sequence at) override;
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) override;
+  StoreResult<std::optional<Chunk>> load_kept(const ChunkKey& key, Sequence at) override;
   StoreResult<void> read_log(Sequence first, Sequence last,
                              const std::function<bool(const EditRecord&)>& each) override;
   StoreResult<void> query_log(const LogQuery& query,

@@ -161,6 +161,9 @@ class Store {
   virtual StoreResult<StoredMoment> stored_moment(Sequence at) = 0;
   /// The voxels of a chunk of a stored moment; nothing if a compaction has taken them away since.
   virtual StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) = 0;
+  /// The newest form of one chunk that keyframes hold at or before `at`, as the edit of its version left it; no moment
+  /// need be complete for that. Nothing if there is none. O(log rows).
+  virtual StoreResult<std::optional<Chunk>> load_kept(const ChunkKey& key, Sequence at) = 0;
   /// Calls `each` for records first..last (both included) in order; stops early when it returns false. What
   /// lies outside log_range() is left out.
   /// Each record's checksum is verified and the sequence checked to be without gaps.

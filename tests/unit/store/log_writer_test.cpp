@@ -76,6 +76,9 @@ class FakeStore final : public Store {
   StoreResult<std::vector<StoredChunk>> keyframe_chunks() override { return std::vector<StoredChunk>(); }
   StoreResult<std::vector<Keyframe>> keyframes() override { return std::vector<Keyframe>(); }
   StoreResult<StoredMoment> stored_moment(Sequence) override { return StoredMoment(); }
+  StoreResult<std::optional<Chunk>> load_kept(const ChunkKey&, Sequence) override {
+    return std::optional<Chunk>();
+  }
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk&) override {
     return std::optional<Chunk>();
   }
