@@ -11,8 +11,9 @@
 namespace runstone {
 
 inline constexpr std::uint32_t kProtocolVersion = 2;
-/// Optional parts of the protocol that this build knows, a bit each. None exist yet.
-inline constexpr std::uint64_t kFeaturesKnown = 0;
+/// Optional parts of the protocol that this build knows, a bit each.
+inline constexpr std::uint64_t kFeatureCommands = 1;  // command_request and command_output
+inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands;
 
 // Frames. A fragment is small, so that an edit never waits behind much terrain in a send buffer.
 inline constexpr std::size_t kFrameHeaderBytes = 12;
@@ -57,6 +58,11 @@ inline constexpr std::size_t kTouchedChunksMax = 4096;  // per edit: bounds the 
 inline constexpr std::size_t kAuditEntriesMax = 1024;
 inline constexpr std::size_t kPlayersMax = 65536;
 inline constexpr std::size_t kTextBytesMax = 256;  // reject detail, goodbye text
+
+// Commands.
+inline constexpr std::size_t kCommandBytesMax = 1024;      // one line
+inline constexpr std::size_t kCommandLinesMax = 64;        // of one output message
+inline constexpr std::size_t kCommandLineBytesMax = 1024;  // each
 static_assert(kDescriptorBytesMax + 256 <= kClientEditBytesMax, "every descriptor fits a request");
 
 }  // namespace runstone

@@ -336,6 +336,29 @@ struct BodyReader {
       return bad("goodbye text is not 0 .. 256 bytes of text");
     return m;
   }
+
+  Result<Message> read(const wire::CommandRequest& t) const {
+    CommandRequest m;
+    m.id = t.id();
+    if (!take_text(t.text(), 1, kCommandBytesMax, m.text))
+      return bad("command is not 1 .. 1024 bytes of text");
+    return m;
+  }
+  Result<Message> read(const wire::CommandOutput& t) const {
+    CommandOutput m;
+    m.id = t.id();
+    m.is_done = t.done();
+    m.is_ok = t.ok();
+    const auto count = count_of(t.lines(), kCommandLinesMax);
+    if (!count) return bad("command output has more than 64 lines");
+    m.lines.resize(*count);
+    for (std::uint32_t i = 0; i < *count; ++i) {
+      if (!take_text(t.lines()->Get(i), 0, kCommandLineBytesMax, m.lines[i])) {
+        return bad("line of command output is not 0 .. 1024 bytes of text");
+      }
+    }
+    return m;
+  }
 };
 
 /// Who may send a body, and in which class it travels.
@@ -354,6 +377,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Move:
     case wire::Body::Ping:
     case wire::Body::Travel:
+    case wire::Body::CommandRequest:
       return Route{true, false, FrameClass::control};
     case wire::Body::EditRequest:
       return Route{true, false, FrameClass::edits};
@@ -362,6 +386,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::PlayerPoses:
     case wire::Body::Roster:
     case wire::Body::Pong:
+    case wire::Body::CommandOutput:
       return Route{false, true, FrameClass::control};
     case wire::Body::Ready:
     case wire::Body::Commit:
@@ -424,6 +449,10 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Travel());
     case wire::Body::Moment:
       return reader.read(*message.body_as_Moment());
+    case wire::Body::CommandRequest:
+      return reader.read(*message.body_as_CommandRequest());
+    case wire::Body::CommandOutput:
+      return reader.read(*message.body_as_CommandOutput());
     case wire::Body::NONE:
       break;
   }

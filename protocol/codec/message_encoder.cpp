@@ -150,6 +150,17 @@ struct BodyBuilder {
     return wire::CreateGoodbye(b, static_cast<std::uint16_t>(m.reason), text(m.text));
   }
 
+  Offset<wire::CommandRequest> operator()(const CommandRequest& m) {
+    RUNSTONE_ASSERT(!m.text.empty() && m.text.size() <= kCommandBytesMax);
+    return wire::CreateCommandRequest(b, m.id, b.CreateString(m.text));
+  }
+  Offset<wire::CommandOutput> operator()(const CommandOutput& m) {
+    RUNSTONE_ASSERT(m.lines.size() <= kCommandLinesMax);
+    std::vector<Offset<flatbuffers::String>> lines;
+    for (const std::string& line : m.lines) lines.push_back(b.CreateString(shown_line(line)));
+    return wire::CreateCommandOutput(b, m.id, b.CreateVector(lines), m.is_done, m.is_ok);
+  }
+
   Offset<wire::Chunk> snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
     const Bytes data = encode_chunk(chunk.voxels, encoding);
     b.ForceVectorAlignment(data.size(), 1, 4);  // raw runs are read in place
@@ -163,6 +174,14 @@ struct BodyBuilder {
     std::vector<wire::Key> keys(list.size());
     std::transform(list.begin(), list.end(), keys.begin(), key_of);
     return b.CreateVectorOfStructs(keys);
+  }
+  /// Lines may name files, whose names hold anything.
+  static std::string shown_line(const std::string& line) {
+    std::string shown = line;
+    if (!is_printable_utf8(shown)) {
+      for (char& c : shown) c = c >= ' ' && c <= '~' ? c : '?';
+    }
+    return std::string(cut_utf8(shown, kCommandLineBytesMax));
   }
   /// Texts are for people: a longer one is cut, never refused.
   Offset<flatbuffers::String> text(const std::string& t) {

@@ -254,10 +254,24 @@ struct Goodbye {
   friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
+/// A line for the server to carry out. One at a time: the next one after the output that is done.
+struct CommandRequest {
+  std::uint32_t id = 0;  // the client's choice; the outputs carry it
+  std::string text;      // 1 .. kCommandBytesMax
+  friend bool operator==(const CommandRequest&, const CommandRequest&) = default;
+};
+struct CommandOutput {
+  std::uint32_t id = 0;
+  std::vector<std::string> lines;  // kCommandLinesMax at most, each kCommandLineBytesMax
+  bool is_done = false;            // the last output of its request
+  bool is_ok = false;              // if done: it did what it was asked
+  friend bool operator==(const CommandOutput&, const CommandOutput&) = default;
+};
+
 /// Order follows the union of the schema.
 using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest,
                              Commit, Reject, Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye,
-                             ChunkUnavailable, Travel, Moment>;
+                             ChunkUnavailable, Travel, Moment, CommandRequest, CommandOutput>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {
@@ -271,8 +285,9 @@ inline bool digest_holds(const ChunkSnapshot& snapshot) {
 FrameClass frame_class_of(const Message& message);
 
 /// Serialises a message: FlatBuffers of protocol/schema/runstone.fbs, chunk snapshots as `raw` (see
-/// encode_snapshot()). Requires what decode_message() demands, but for texts: reject details and goodbye
-/// texts longer than kTextBytesMax are cut. Any thread.
+/// encode_snapshot()). Requires what decode_message() demands, but for texts: reject details, goodbye
+/// texts and lines of command output that are too long are cut, and what is not printable in those lines
+/// becomes "?". Any thread.
 EncodedMessage encode_message(const Message& message);
 
 /// A snapshot in the given encoding. Reads runs, makes no dense copy. O(runs).

@@ -12,6 +12,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
+#include "protocol/limits.hpp"
 
 namespace runstone {
 
@@ -69,10 +70,7 @@ struct RollbackListCommand {
 using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, StopCommand, UndoCommand, LogCommand,
                              RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
 
-/// Bytes that a command line may have.
-inline constexpr std::size_t kCommandBytesMax = 1024;
-
-/// One line without its line break. Words are parted by blanks; a word with blanks in it stands in double
+/// One line without its line break, kCommandBytesMax at most. Words are parted by blanks; a word with blanks in it stands in double
 /// quotes. `now_us`: UTC, what "since 1h" counts from. The error is one line for whoever typed it.
 Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us);
 

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <variant>
 
+#include "server/admin/operators.hpp"
+
 namespace runstone {
 namespace {
 
@@ -18,11 +20,19 @@ struct NumberField {
 struct TextField {
   std::string ServerConfig::* member;
   std::vector<std::string> choices;  // empty: any text that is not empty
+  /// For a text that may be empty and has a form of its own: what is wrong with it.
+  std::optional<std::string> (*wrong)(const std::string&) = nullptr;
 };
 struct Field {
   std::string name, help;
   std::variant<NumberField, TextField> kind;
 };
+
+std::optional<std::string> wrong_operators(const std::string& text) {
+  const auto keys = parse_operators(text);
+  if (keys) return std::nullopt;
+  return keys.error();
+}
 
 const std::vector<Field>& fields() {
   using C = ServerConfig;
@@ -33,10 +43,10 @@ const std::vector<Field>& fields() {
     return Field{name, range, NumberField{member, min, max}};
   };
   static const std::vector<Field> all = {
-      {"world", "folder of the world", TextField{&C::world, {}}},
-      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen, {}}},
+      {"world", "folder of the world", TextField{&C::world, {}, nullptr}},
+      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen, {}, nullptr}},
       {"log_level", "debug, info, warn or error",
-       TextField{&C::log_level, {"debug", "info", "warn", "error"}}},
+       TextField{&C::log_level, {"debug", "info", "warn", "error"}, nullptr}},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64, "threads that generate, load and encode chunks"),
       number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
@@ -45,12 +55,15 @@ const std::vector<Field>& fields() {
       number("view_radius_max", &C::view_radius_max, 0, 64, "chunks; larger views are cut to it"),
       number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
              "milliseconds between two views of a session that take effect"),
-      {"encoding", "packed or raw, where the client reads both", TextField{&C::encoding, {"packed", "raw"}}},
+      {"encoding", "packed or raw, where the client reads both",
+       TextField{&C::encoding, {"packed", "raw"}, nullptr}},
       number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
       number("messages_per_second", &C::messages_per_second, 0, kNoMax, "messages per session, 0: no limit"),
       number("control_queue_kib", &C::control_queue_kib, 64, 1'048'576, "KiB per session"),
       number("edit_queue_kib", &C::edit_queue_kib, 64, 1'048'576, "KiB per session"),
       number("chunk_queue_kib", &C::chunk_queue_kib, 64, 1'048'576, "KiB per session"),
+      {"operators", "public keys in hex of those who may give every command, parted by blanks or commas",
+       TextField{&C::operators, {}, wrong_operators}},
       number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
       number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
       number("depth_max", &C::depth_max, 0, 1ULL << 29, "voxels below y = 0 where edits may be"),
@@ -89,6 +102,11 @@ std::optional<std::string> assign(ServerConfig& config, const Field& field, std:
 std::optional<std::string> assign(ServerConfig& config, const Field& field, const std::string& value) {
   const auto* text = std::get_if<TextField>(&field.kind);
   if (text == nullptr) return "must be a whole number: " + field.help;
+  if (text->wrong != nullptr) {
+    if (auto what = text->wrong(value)) return what;
+    config.*text->member = value;
+    return std::nullopt;
+  }
   if (value.empty()) return "must not be empty";
   const auto& choices = text->choices;
   if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end()) {

@@ -34,6 +34,8 @@ struct ServerConfig {
   std::uint64_t control_queue_kib = 16'384;    // per session, KiB, 64..1048576
   std::uint64_t edit_queue_kib = 4'096;        // per session, KiB, 64..1048576
   std::uint64_t chunk_queue_kib = 4'096;       // per session, KiB, 64..1048576
+  std::string
+      operators;  // public keys in hex of those who may give every command, parted by blanks or commas
   // Edits.
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29

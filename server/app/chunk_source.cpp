@@ -24,6 +24,14 @@ void ChunkSource::give_back(std::unique_ptr<Store> reader) {
   idle_.push_back(std::move(reader));
 }
 
+StoreResult<void> ChunkSource::with_reader(const std::function<void(Store&)>& use) {
+  auto reader = borrow();
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  use(**reader);
+  give_back(*std::move(reader));
+  return {};
+}
+
 StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
   auto reader = borrow();
   if (!reader) return Unexpected<StoreError>{reader.error()};

@@ -2,6 +2,7 @@
 // Threads: load() from any thread; it blocks on the disk, so workers call it. Each caller borrows a reader of
 // its own from a pool.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,6 +22,8 @@ class ChunkSource {
   /// A chunk as it stands on disk, in its cheapest axis order, with its digest; an error names file, table
   /// and row.
   StoreResult<Chunk> load(const ChunkKey& key);
+  /// Lends a reader to `use`, which alone has it for that long.
+  StoreResult<void> with_reader(const std::function<void(Store&)>& use);
 
  private:
   StoreResult<std::unique_ptr<Store>> borrow();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/app/control_socket.hpp"
 #include "server/app/logging.hpp"
 #include "server/app/server_core.hpp"
 
@@ -23,6 +24,7 @@ struct Server::Parts {
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
   std::unique_ptr<asio::thread_pool> workers;
   std::vector<std::thread> io_threads;
+  std::unique_ptr<ControlSocket> control;  // none if the folder's path is too long for one
   std::unique_ptr<ServerCore> core;
   bool is_running = false;
 };
@@ -35,7 +37,8 @@ Server::~Server() {
 
 Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& config,
                                                            const WorldCreation& creation,
-                                                           std::function<void()> on_failure) {
+                                                           std::function<void()> on_failure,
+                                                           std::function<void()> on_stop) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
   // A start that cannot serve leaves no trace: neither a new world nor, below, a raised epoch.
   if (const auto free = can_listen(config.listen); !free) return Unexpected<std::string>{free.error()};
@@ -45,8 +48,9 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   parts->config = config;
   parts->world = *std::move(world);
   parts->workers = std::make_unique<asio::thread_pool>(config.worker_threads);
-  parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
-                                             *parts->world.generator, std::move(on_failure));
+  parts->core =
+      std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
+                                   *parts->world.generator, std::move(on_failure), std::move(on_stop));
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(config.world); !recovered) {
@@ -54,6 +58,15 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   }
   parts->work.emplace(parts->io.get_executor());
   parts->core->start();
+  auto control = ControlSocket::listen(parts->io, config.world,
+                                       [core = parts->core.get()](const std::string& line, DeskReply reply) {
+                                         core->command(line, std::move(reply));
+                                       });
+  if (control) {
+    parts->control = *std::move(control);
+  } else {
+    logger("app").warn("no control socket: {}", control.error());
+  }
   for (std::uint64_t i = 0; i < config.io_threads; ++i) {
     parts->io_threads.emplace_back([&io = parts->io] { io.run(); });
   }
@@ -71,11 +84,15 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }
+void Server::command(const std::string& line, DeskReply reply) {
+  parts_->core->command(line, std::move(reply));
+}
 void Server::log_counters() { parts_->core->log_counters(); }
 
 StopReport Server::stop() {
   Parts& parts = *parts_;
   parts.is_running = false;
+  parts.control.reset();
   const bool is_settled = parts.core->begin_stop().get();
   parts.core->stop_writer();
   parts.workers->join();

@@ -10,6 +10,7 @@
 #include "server/admin/server_config.hpp"
 #include "server/app/stop_report.hpp"
 #include "server/app/world_folder.hpp"
+#include "server/rollback/rollback_desk.hpp"
 
 namespace runstone {
 
@@ -17,14 +18,18 @@ class Server {
  public:
   /// Opens or makes the world, binds, recovers, and runs. The error is one line for the operator; nothing was
   /// overwritten. `on_failure` is called once, from another thread, if the log cannot be written any more:
-  /// the caller then stops the server.
+  /// the caller then stops the server. `on_stop` likewise, for an operator who asks for it.
   static Result<std::unique_ptr<Server>, std::string> start(
-      const ServerConfig& config, const WorldCreation& creation, std::function<void()> on_failure = [] {});
+      const ServerConfig& config, const WorldCreation& creation, std::function<void()> on_failure = [] {},
+      std::function<void()> on_stop = [] {});
   /// stop(), if nobody did.
   ~Server();
 
   std::uint16_t port() const;
   void log_counters();
+  /// Carries out a command as an operator. The replies come from another thread, the last one is done; none may
+  /// come once the server has stopped.
+  void command(const std::string& line, DeskReply reply);
   /// Goodbyes, drains the log, writes all snapshots, ends all threads. Blocks. Once.
   StopReport stop();
 

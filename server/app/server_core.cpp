@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/runs/dense.hpp"
+#include "server/admin/operators.hpp"
 #include "server/app/logging.hpp"
 #include "server/net/steady_us.hpp"
 
@@ -19,6 +20,16 @@ namespace {
 // loads.
 constexpr std::size_t kLoadsPerWorker = 4;
 constexpr auto kTickInterval = std::chrono::milliseconds(50);
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
 
 Now now() {
   const auto utc = std::chrono::system_clock::now().time_since_epoch();
@@ -40,7 +51,8 @@ NetLimits net_limits(const ServerConfig& config) {
 }  // namespace
 
 ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config,
-                       Store& store, const Generator& generator, std::function<void()> on_failure)
+                       Store& store, const Generator& generator, std::function<void()> on_failure,
+                       std::function<void()> on_stop)
     : workers_(workers),
       config_(config),
       store_(store),
@@ -48,7 +60,8 @@ ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const S
       on_failure_(std::move(on_failure)),
       strand_(asio::make_strand(io)),
       tick_(strand_),
-      listener_(std::make_shared<Listener>(io, net_limits(config), store.meta().chunk_edge, *this)) {}
+      listener_(std::make_shared<Listener>(io, net_limits(config), store.meta().chunk_edge, *this)),
+      on_stop_(std::move(on_stop)) {}
 
 ServerCore::~ServerCore() = default;
 
@@ -126,6 +139,12 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
     return true;
   });
   if (!read) return Unexpected<std::string>{read.error().message()};
+  const auto operators = parse_operators(config_.operators);
+  if (!operators) return Unexpected<std::string>{"operators: " + operators.error()};
+  operators_ = *operators;
+  rollback_ = std::make_unique<RollbackDesk>(
+      *world_, *this, [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
+  commands_ = std::make_unique<CommandDesk>(*world_, *rollback_, *this, store_.meta().materials, on_stop_);
   durable_.store(start->log.last);
   chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
   moments_ = std::make_unique<Moments>(folder, generator_);
@@ -146,6 +165,7 @@ void ServerCore::start_writer(const std::string& folder) {
     asio::post(strand_, [this] {
       durable_posted_.store(false);
       world_->durable(durable_.load(), now());
+      rollback_->tick(now());
       check_settled();
     });
   };
@@ -161,6 +181,7 @@ void ServerCore::start_writer(const std::string& folder) {
     failed_.store(true);
     asio::post(strand_, [this] {
       world_->log_failed();
+      rollback_->tick(now());
       check_settled();
     });
     on_failure_();
@@ -199,6 +220,7 @@ void ServerCore::schedule_tick() {
     if (error) return;
     const Now at = now();
     world_->tick(at);
+    rollback_->tick(at);
     check_settled();
     if (config_.counters_s > 0 &&
         at.steady_us - counters_us_ >= static_cast<TimeUs>(config_.counters_s) * 1'000'000) {
@@ -240,7 +262,9 @@ std::future<bool> ServerCore::begin_stop() {
   std::future<bool> answer = stopped->get_future();
   asio::post(strand_, [this, stopped] {
     stopped_ = std::move(*stopped);
+    rollback_->stop();
     world_->begin_stop(now());
+    rollback_->tick(now());                                            // whoever waits is told
     listener_->close_all(GoodbyeReason::closing, "the server stops");  // those that have not said hello yet
     check_settled();
   });
@@ -257,8 +281,42 @@ void ServerCore::check_settled() {
 }
 
 void ServerCore::stop_writer() {
+  log_readers_.join();
   if (keyframes_) keyframes_->stop();
   writer_->stop();
+}
+
+// ---- commands
+// --------------------------------------------------------------------------------------------------
+
+void ServerCore::command(const std::string& line, DeskReply reply) {
+  asio::post(strand_, [this, line, reply = std::move(reply)] {
+    commands_->run({0, true}, line, now(), reply);
+    rollback_->tick(now());
+  });
+}
+
+void ServerCore::command(SessionId session, AuthorId author, const PublicKey& key, const std::string& text) {
+  const CommandCaller caller{author, operators_.contains(key)};
+  if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
+  // Ports do not call back in: the answer may come at once.
+  asio::post(strand_, [this, session, caller, text] {
+    const auto reply = [this, session](const DeskAnswer& answer) {
+      world_->answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
+    };
+    commands_->run(caller, text, now(), reply);
+    rollback_->tick(now());
+  });
+}
+
+void ServerCore::run(Work work, std::function<void(std::string)> then) {
+  asio::post(log_readers_, [this, work = std::move(work), then = std::move(then)] {
+    const auto read = chunks_->with_reader([&](Store& reader) { work(reader, generator_); });
+    asio::post(strand_, [this, then, error = read ? std::string() : read.error().message()] {
+      then(error);
+      rollback_->tick(now());
+    });
+  });
 }
 
 // ---- NetEvents

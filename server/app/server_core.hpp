@@ -13,11 +13,13 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
 #include "server/admin/server_config.hpp"
 #include "server/app/chunk_source.hpp"
+#include "server/app/command_desk.hpp"
 #include "server/app/keyframe_thread.hpp"
 #include "server/app/world_folder.hpp"
 #include "server/history/moments.hpp"
@@ -28,12 +30,12 @@
 
 namespace runstone {
 
-class ServerCore final : public WorldPorts, public NetEvents {
+class ServerCore final : public WorldPorts, public NetEvents, public RollbackDesk::Workers {
  public:
   /// `io` and `workers` must outlive the core. `on_failure` is called at most once, from the log writer's
-  /// thread.
+  /// thread; `on_stop` from the world strand, when an operator asks for it.
   ServerCore(asio::io_context& io, asio::thread_pool& workers, const ServerConfig& config, Store& store,
-             const Generator& generator, std::function<void()> on_failure);
+             const Generator& generator, std::function<void()> on_failure, std::function<void()> on_stop);
   ~ServerCore() override;
 
   /// Binds the address; the world is not touched yet.
@@ -48,13 +50,15 @@ class ServerCore final : public WorldPorts, public NetEvents {
   /// Ends in this order: no new connections, goodbyes, what was accepted is ordered and durable, changed
   /// chunks are snapshots. Ready with true when all of it is on disk, with false if the log failed.
   std::future<bool> begin_stop();
-  /// After begin_stop()'s answer: ends the making of keyframes, writes what is queued and ends the writer's thread.
+  /// After begin_stop()'s answer: ends previews and the making of keyframes, writes what is queued and ends the writer's thread.
   void stop_writer();
   /// Edited chunks in memory, ascending. Once no thread runs the strand any more.
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited_chunks() const { return world_->edited_chunks(); }
   bool has_failed() const { return failed_.load(); }
   /// One line at info. Any thread.
   void log_counters();
+  /// Carries out a command of the console or of control. Any thread; the replies come on the world strand.
+  void command(const std::string& line, DeskReply reply);
 
   // ---- NetEvents, on session strands
   void on_connected(SessionId session) override;
@@ -74,9 +78,14 @@ class ServerCore final : public WorldPorts, public NetEvents {
   void open_moment(SessionId session, const Travel& travel) override;
   void load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) override;
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override;
+  void command(SessionId session, AuthorId author, const PublicKey& key, const std::string& text) override;
   void log(WorldLogLevel level, const std::string& line) override;
 
+  // ---- RollbackDesk::Workers, on the world strand
+  void run(Work work, std::function<void(std::string)> then) override;
+
  private:
+  static constexpr std::size_t kLogReaders = 2;
   /// Lines of one level, which peers can cause: ten a second; the next one says how many were left out.
   struct PeerLines {
     TokenBucket bucket{10, 10};
@@ -110,6 +119,13 @@ class ServerCore final : public WorldPorts, public NetEvents {
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<LogWriter> writer_;
   std::unique_ptr<KeyframeThread> keyframes_;  // none if the configuration wants none
+
+  std::unique_ptr<RollbackDesk> rollback_;
+  std::unique_ptr<CommandDesk> commands_;
+  std::set<PublicKey> operators_;
+  std::function<void()> on_stop_;
+  // They read the log for people who wait; chunks to be loaded or sent never wait for them.
+  asio::thread_pool log_readers_{kLogReaders};
 
   std::atomic<Sequence> durable_{0};
   std::atomic<bool> durable_posted_{false};

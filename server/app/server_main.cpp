@@ -1,6 +1,7 @@
-// runstone-server: runs a world, imports one, or compacts one. Exit codes: 0 stopped cleanly, 1 failed while running,
-// 2 could not start (docs/server.md).
+// runstone-server: runs a world, imports one, compacts one, or gives a running server a command. Exit codes: 0 stopped
+// cleanly (control: the command did what it was asked), 1 failed while running, 2 could not start (docs/server.md).
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
@@ -16,6 +17,7 @@
 #include <string>
 
 #include "common/runs/dense.hpp"
+#include "server/app/console.hpp"
 #include "server/app/logging.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
@@ -100,14 +102,23 @@ int run(const ServerOptions& options) {
   }
   asio::io_context main_loop;
   Signals signals(main_loop);
-  auto server = Server::start(*config, options.creation,
-                              [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); });
+  const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
+  auto server = Server::start(*config, options.creation, end, end);
   if (!server) return cannot_start(server.error());
+  std::shared_ptr<Console> console;
+  if (options.console || ::isatty(STDIN_FILENO) == 1) {
+    auto opened = Console::open(main_loop, [&server](const std::string& line, DeskReply reply) {
+      (*server)->command(line, std::move(reply));
+    });
+    if (opened) console = *opened;
+    if (!opened) logger("app").error("{}", opened.error());
+  }
   if (!options.port_file.empty()) {
     const auto written = write_text_file(options.port_file, std::to_string((*server)->port()) + "\n");
     if (!written) return cannot_start(written.error().message());
   }
   signals.wait_for_the_end(**server);
+  if (console) console->close();
   logger("app").info("stopping");
   const StopReport report = (*server)->stop();
   if (!report.error.empty()) logger("store").error("{}", report.error);
@@ -129,6 +140,11 @@ int server_program(int argc, char** argv) {
     const TimeUs now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
     const auto compacted = compact_world(*options->compact, now_us, std::cout);
     return compacted ? static_cast<int>(kStopped) : cannot_start(compacted.error());
+  }
+  if (options->control) {
+    const auto done = control_server(*options->control, std::cout);
+    if (!done) return cannot_start(done.error());
+    return *done ? kStopped : kFailed;
   }
   if (!options->import) return run(*options);
   const auto imported = import_world(*options->import, std::cout);

@@ -1,6 +1,7 @@
 #include "server/app/server_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 
 #include "protocol/limits.hpp"
 #include "server/admin/server_config.hpp"
@@ -18,6 +19,7 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
   app.add_option("--port-file", out.port_file, "write the port here once the server listens");
   app.add_option("--digests", out.digests_file, "write the digests of all edited chunks here on stop");
+  app.add_flag("--console", out.console, "read commands from standard input, also if it is no terminal");
   app.add_option("--generator", out.creation.generator, "new world: empty, flat, terrain or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters, "new world: TOML text");
   app.add_option("--seed", out.creation.seed, "new world: seed of the generator");
@@ -45,6 +47,11 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   compact->add_flag("--keep-size", keep_size, "leave the free space in the file, for new edits");
   compact->add_flag("--progress", compact_request.progress,
                     "tell how far it is also where stderr is no terminal");
+  ControlRequest control_request;
+  CLI::App* control =
+      app.add_subcommand("control", "give a running server a command, such as `control help`");
+  control->add_option("--world", control_request.world, "folder of the server's world");
+  control->prefix_command();  // what follows is the command, also words such as -4
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -53,6 +60,14 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   if (import->parsed()) out.import = request;
   compact_request.shrink = !keep_size;
   if (compact->parsed()) out.compact = compact_request;
+  if (control->parsed()) {
+    control_request.words = control->remaining();
+    if (control_request.words.empty()) {
+      std::cerr << "control: the command is missing, such as `control help`\n";
+      return {std::nullopt, 2};
+    }
+    out.control = control_request;
+  }
   return {out, 0};
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/app/compact_program.hpp"
+#include "server/app/control_program.hpp"
 #include "server/app/import_program.hpp"
 #include "server/app/world_folder.hpp"
 
@@ -17,6 +18,8 @@ struct ServerOptions {
   WorldCreation creation;
   std::optional<ImportRequest> import;    // the import subcommand
   std::optional<CompactRequest> compact;  // the compact subcommand
+  bool console = false;                   // read commands even if standard input is no terminal
+  std::optional<ControlRequest> control;  // the control subcommand
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help or version, 2 after a

@@ -135,6 +135,7 @@ void RestoreJob::step(WorldServer& world, const Now& now) {
   }
   next_seq_ = seq;
   progress_.chunks_done += slice.size();
+  progress_.chunks_changed += slice.size();
   progress_.edits += offers.size();
   progress_.voxels += voxels;
   if (progress_.first == 0) progress_.first = before + 1;

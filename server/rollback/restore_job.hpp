@@ -82,6 +82,7 @@ class RestoreJob {
   const RestoreOrder& order() const { return order_; }
   struct Progress {
     std::size_t chunks = 0, chunks_done = 0;  // done: written, or nothing to change
+    std::size_t chunks_changed = 0;           // written
     std::size_t chunks_failed = 0;
     std::uint64_t edits = 0, voxels = 0;  // written
     std::uint64_t collisions = 0;         // plans that came too late

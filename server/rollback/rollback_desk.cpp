@@ -55,7 +55,9 @@ struct RollbackDesk::Job {
 
 RollbackDesk::RollbackDesk(WorldServer& world, Workers& workers, RandomBytes random)
     : world_(world), workers_(workers), random_(std::move(random)) {}
-RollbackDesk::~RollbackDesk() {
+RollbackDesk::~RollbackDesk() = default;
+
+void RollbackDesk::stop() {
   for (auto& [number, preview] : previews_) preview->is_wanted->store(false);
 }
 
@@ -339,7 +341,7 @@ bool RollbackDesk::answer_if_ended(Job& job) {
   if (state == RestoreJob::State::applying) return false;
   const bool is_on_disk = world_.durable() >= p.last;
   if (!is_on_disk && world_.accepts_edits()) return false;  // said when it is true
-  const std::string what = counted(p.voxels, "voxel") + " in " + counted(p.chunks_done, "chunk");
+  const std::string what = counted(p.voxels, "voxel") + " in " + counted(p.chunks_changed, "chunk");
   const std::string undo_hint = p.first == 0 || job.own_change_of
                                     ? std::string()
                                     : "; `rollback undo " + std::to_string(p.first) + "` takes it back";

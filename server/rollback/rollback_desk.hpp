@@ -73,6 +73,8 @@ class RollbackDesk {
   /// On every tick, and whenever the log became durable or a worker answered: begins what waited for the disk,
   /// lets jobs write, answers.
   void tick(const Now& now);
+  /// Workers end soon what they compute for previews: the server stops.
+  void stop();
   /// Jobs that write or are about to.
   std::size_t running() const { return jobs_.size(); }
 

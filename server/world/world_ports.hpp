@@ -61,6 +61,11 @@ class WorldPorts {
   /// which everything is then contained in snapshots. Answer: WorldServer::snapshots_saved().
   virtual void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) = 0;
 
+  /// A client's command, to be carried out. Answers: WorldServer::answer_command(), the last one done. A session has
+  /// one command under way at a time. The key is the player's, for permissions.
+  virtual void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
+                       const std::string& /*text*/) {}
+
   /// One line for the operator, with fields as in "session=7 chunk=1,0,-3 seq=9120".
   virtual void log(WorldLogLevel /*level*/, const std::string& /*line*/) {}
 };

@@ -6,6 +6,7 @@
 
 #include "common/core/key_text.hpp"
 #include "server/world/broadcast.hpp"
+#include "server/world/command_steps.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/handshake_steps.hpp"
 #include "server/world/request_steps.hpp"
@@ -22,7 +23,8 @@ constexpr std::size_t kEvictionStepsPerTick = 512;
 bool needs_open(const Message& message) {
   return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
          std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-         std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message);
+         std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
+         std::holds_alternative<CommandRequest>(message);
 }
 
 void on_open_message(WorldState& world, SessionId session, const Message& message, const Now& now) {
@@ -34,6 +36,9 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
   if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
   if (const auto* travel = std::get_if<Travel>(&message)) return on_travel(world, session, *travel, now);
+  if (const auto* command = std::get_if<CommandRequest>(&message)) {
+    return on_command(world, session, *command, now);
+  }
 }
 
 void close_silent_sessions(WorldState& world, const Now& now) {
@@ -132,6 +137,20 @@ WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offer
   }
   commit(now);
   return OwnEdits::ordered;
+}
+
+void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done,
+                                 bool is_ok) {
+  send_command_output(*state_, session, lines, is_done, is_ok);
+}
+
+std::vector<WorldServer::Present> WorldServer::present() const {
+  std::vector<Present> out;
+  for (const auto& [id, session] : state_->sessions) {
+    if (session.state != SessionState::open) continue;
+    out.push_back({id, session.author, session.name, session.key, session.pose.at});
+  }
+  return out;
 }
 
 void WorldServer::step_keeper(const Now& now) {

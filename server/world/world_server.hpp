@@ -55,6 +55,19 @@ class WorldServer {
   /// sequences must be new, and their cause is not player.
   OwnEdits order_own(const std::vector<EditOffer>& offers, const Now& now);
 
+  // ---- commands
+  /// Output of the session's command under way, as lines; the last one is done. Ignored if the session is gone.
+  void answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done, bool is_ok);
+  struct Present {
+    SessionId session = 0;
+    AuthorId author = 0;
+    std::string name;
+    PublicKey key{};
+    WorldPos at;
+  };
+  /// Who is here, by session.
+  std::vector<Present> present() const;
+
   // ---- answers of the ports
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
   /// `what` names file, table and row. The chunk is quarantined.

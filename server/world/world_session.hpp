@@ -16,6 +16,8 @@ namespace runstone {
 enum class SessionState { awaits_hello, awaits_proof, open };
 
 inline constexpr std::size_t kPassedViewsMax = 8;
+/// An undo reads the log, so a session may not ask for very many.
+inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
 /// A session's stay in the past.
 struct Visit {
@@ -41,6 +43,8 @@ struct WorldSession {
   bool owes_durable = false;  // the watermark did not reach it: again on the next tick
   std::vector<Reject> owed;   // answers that did not fit its queue, in order: again when it drains
   TokenBucket edits{0, 0};
+  TokenBucket commands{kCommandsPerSecond, kCommandBurst};
+  std::optional<std::uint32_t> command;  // id of the one under way
   // Views (view_turns.hpp).
   std::optional<View> next_view;     // the newest, while it has not taken effect
   std::optional<TimeUs> viewed_us;   // when the last one did

@@ -173,6 +173,16 @@ Moment any_moment(SplitMix64& rng) {
   return m;
 }
 
+CommandOutput any_output(SplitMix64& rng) {
+  CommandOutput m;
+  m.id = rng.below(1000);
+  m.lines.resize(rng.below(kCommandLinesMax + 1));
+  for (std::string& line : m.lines) line = any_text(rng, 0, rng.below(8) == 0 ? kCommandLineBytesMax : 40);
+  m.is_done = rng.below(2) == 0;
+  m.is_ok = rng.below(2) == 0;
+  return m;
+}
+
 ChunkSnapshot any_snapshot(SplitMix64& rng) {
   ChunkSnapshot m;
   m.key.at = any_coord(rng);
@@ -278,19 +288,23 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
       return any_unavailable(rng);
     case 19:
       return any_travel(rng);
-    default:
-      RUNSTONE_ASSERT(kind == 20);
+    case 20:
       return any_moment(rng);
+    case 21:
+      return CommandRequest{rng.below(1000), any_text(rng, 1, kCommandBytesMax)};
+    default:
+      RUNSTONE_ASSERT(kind == 22);
+      return any_output(rng);
   }
 }
 
 Sender sender_of(const Message& message) {
-  const bool client = std::holds_alternative<Hello>(message) || std::holds_alternative<Proof>(message) ||
-                      std::holds_alternative<View>(message) ||
-                      std::holds_alternative<ChunkRequest>(message) ||
-                      std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-                      std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
-                      std::holds_alternative<Goodbye>(message);
+  const bool client =
+      std::holds_alternative<Hello>(message) || std::holds_alternative<Proof>(message) ||
+      std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
+      std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
+      std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
+      std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message);
   return client ? Sender::client : Sender::server;
 }
 

@@ -1,5 +1,7 @@
 #include "server/admin/server_config.hpp"
 
+#include "server/admin/operators.hpp"
+
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -77,6 +79,20 @@ TEST_CASE("the environment sets fields and its errors name the variable", "[admi
     REQUIRE_FALSE(read.has_value());
     CHECK(read.error().find("RUNSTONE_IO_THREADS") != std::string::npos);
     CHECK(config.io_threads == 8);
+  }
+}
+
+TEST_CASE("operators are keys, and a word that is none is named", "[admin]") {
+  const std::string key(64, 'a');
+  ServerConfig config;
+  CHECK(set_config(config, "operators", key + ", " + std::string(64, '0')).has_value());
+  CHECK(parse_operators(config.operators)->size() == 2);
+  CHECK(set_config(config, "operators", "").has_value());
+  CHECK(parse_operators(config.operators)->empty());
+  for (const std::string& wrong : {std::string("ana"), key + "0", std::string(62, 'a') + "zz"}) {
+    const auto set = set_config(config, "operators", wrong);
+    REQUIRE_FALSE(set.has_value());
+    CHECK(set.error().find("\"" + wrong + "\" is no public key: 64 hexadecimal digits") != std::string::npos);
   }
 }
 

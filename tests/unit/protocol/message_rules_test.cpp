@@ -317,6 +317,40 @@ TEST_CASE("unavailable chunks are named, and their reason may be one of the futu
   CHECK_FALSE(passes_from_client(build, FrameClass::chunks));
 }
 
+TEST_CASE("commands and their output are bounded lines of text", "[protocol]") {
+  const auto request = [](const std::string& text) {
+    return passes_from_client(
+        [&](auto& b) { return wire::CreateCommandRequest(b, 7, b.CreateString(text)); });
+  };
+  CHECK(request("undo"));
+  CHECK(request(std::string(kCommandBytesMax, 'a')));
+  CHECK_FALSE(request(std::string(kCommandBytesMax + 1, 'a')));
+  CHECK_FALSE(request(""));
+  CHECK_FALSE(request("undo\n"));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateCommandRequest(b, 7); }));
+  CHECK_FALSE(
+      passes_from_server([](auto& b) { return wire::CreateCommandRequest(b, 7, b.CreateString("undo")); }));
+  const auto output = [](std::size_t count, const std::string& line) {
+    return passes_from_server([&](auto& b) {
+      const std::vector<flatbuffers::Offset<flatbuffers::String>> lines(count, b.CreateString(line));
+      return wire::CreateCommandOutput(b, 7, b.CreateVector(lines), true, true);
+    });
+  };
+  CHECK(output(0, ""));
+  CHECK(output(kCommandLinesMax, std::string(kCommandLineBytesMax, 'a')));
+  CHECK_FALSE(output(kCommandLinesMax + 1, "a"));
+  CHECK_FALSE(output(1, std::string(kCommandLineBytesMax + 1, 'a')));
+  CHECK_FALSE(output(1, "a\nb"));
+  CHECK(passes_from_server([](auto& b) { return wire::CreateCommandOutput(b, 7); }));  // no lines are none
+  // What a sender was given is made fit to be read.
+  const auto sent =
+      encode_message(CommandOutput{7, {"a\tb\xff", std::string(2 * kCommandLineBytesMax, 'a')}, true, true});
+  const auto read = decode_message(Sender::server, FrameClass::control, *sent.bytes, 16);
+  REQUIRE(read.has_value());
+  CHECK(std::get<CommandOutput>(*read).lines ==
+        std::vector<std::string>{"a?b?", std::string(kCommandLineBytesMax, 'a')});
+}
+
 TEST_CASE("an edit request needs a sequence and one whole descriptor", "[protocol]") {
   const auto request = [](std::uint64_t seq, const Bytes& edit) {
     return passes_from_client(

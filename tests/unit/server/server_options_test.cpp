@@ -26,6 +26,18 @@ TEST_CASE("of two equal flags the last one counts", "[server_options]") {
   CHECK(import.options->import->world == "c");
 }
 
+TEST_CASE("what follows control is the command, whatever it looks like", "[server_options]") {
+  const auto parsed = parse({"control", "--world", "valley", "log", "box", "-1", "2", "3", "-4", "5", "6"});
+  REQUIRE(parsed.options);
+  REQUIRE(parsed.options->control);
+  CHECK(parsed.options->control->world == "valley");
+  CHECK(parsed.options->control->words ==
+        std::vector<std::string>{"log", "box", "-1", "2", "3", "-4", "5", "6"});
+  const auto none = parse({"control", "--world", "valley"});
+  CHECK_FALSE(none.options);
+  CHECK(none.exit_code == 2);
+}
+
 TEST_CASE("an unknown flag ends the program with 2", "[server_options]") {
   const auto parsed = parse({"--worlds", "/world"});
   CHECK_FALSE(parsed.options);

@@ -1,0 +1,250 @@
+#include "server/app/command_desk.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "common/core/hex.hpp"
+#include "common/core/utc_text.hpp"
+#include "common/edits/edit_geometry.hpp"
+#include "server/rollback/newest_edits.hpp"
+
+namespace runstone {
+namespace {
+
+void refuse(const DeskReply& reply, std::string text) { reply({std::move(text), true, false}); }
+
+std::string text_of_pos(const VoxelPos& p) {
+  return std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
+}
+
+const char* name_of(Cause cause) {
+  switch (cause) {
+    case Cause::player:
+      return "player";
+    case Cause::console:
+      return "console";
+    case Cause::rollback:
+      return "rollback";
+    case Cause::undo:
+      return "undo";
+    case Cause::redo:
+      return "redo";
+    case Cause::import:
+      return "import";
+  }
+  return "?";
+}
+
+const char* name_of(EditKind kind) {
+  switch (kind) {
+    case EditKind::set_voxel:
+      return "voxel";
+    case EditKind::fill_box:
+      return "box";
+    case EditKind::fill_sphere:
+      return "sphere";
+    case EditKind::fill_stroke:
+      return "stroke";
+    case EditKind::paste:
+      return "paste";
+  }
+  return "?";
+}
+
+/// "9120 2026-11-21T23:57:42Z ana #3 player box 1 2 3 to 4 5 6 := stone"
+std::string line_of(const EditRecord& record, const std::string& author, const MaterialTable& materials) {
+  const VoxelBox box = bounding_box(record.edit);
+  const EditKind kind = kind_of(record.edit);
+  std::string line = std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author +
+                     " " + name_of(record.cause);
+  if (record.subject != 0) line += " of " + std::to_string(record.subject);
+  line += std::string(" ") + name_of(kind) + " " + text_of_pos(box.min);
+  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
+  if (last != box.min) line += " to " + text_of_pos(last);
+  if (kind != EditKind::paste && materials.knows(record.edit.material)) {
+    line += " := " + materials[record.edit.material].name;
+  }
+  return line;
+}
+
+/// Names of authors, "ana #3"; the server's own is the server.
+class AuthorNames {
+ public:
+  explicit AuthorNames(const std::vector<PlayerRow>& rows) {
+    for (const PlayerRow& row : rows) names_[row.author] = row.name;
+  }
+  std::string of(AuthorId author) const {
+    if (author == 0) return "the server";
+    const auto found = names_.find(author);
+    return (found == names_.end() ? "" : found->second + " ") + "#" + std::to_string(author);
+  }
+
+ private:
+  std::map<AuthorId, std::string> names_;
+};
+
+}  // namespace
+
+CommandDesk::CommandDesk(WorldServer& world, RollbackDesk& rollback, RollbackDesk::Workers& workers,
+                         MaterialTable materials, std::function<void()> stop)
+    : world_(world),
+      rollback_(rollback),
+      workers_(workers),
+      materials_(std::move(materials)),
+      stop_(std::move(stop)) {}
+
+void CommandDesk::run(const CommandCaller& caller, const std::string& line, const Now& now, DeskReply reply) {
+  const auto command = parse_command(line, now.utc_us);
+  if (!command) return refuse(reply, command.error());
+  if (!caller.is_operator && !is_for_everybody(*command)) {
+    return refuse(reply, "that command is for operators: the server's setting `operators` names their keys");
+  }
+  if (std::holds_alternative<HelpCommand>(*command))
+    return reply({command_help(caller.is_operator), true, true});
+  if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
+  if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
+  if (std::holds_alternative<StopCommand>(*command)) {
+    reply({"the server stops", true, true});
+    return stop_();
+  }
+  if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
+    if (caller.author == 0) {
+      return refuse(reply,
+                    "undo and redo are for players: the console has no edits of its own (rollback undo ID "
+                    "takes a rollback back)");
+    }
+    return undo->is_redo ? rollback_.redo(caller.author, now, std::move(reply))
+                         : rollback_.undo(caller.author, now, std::move(reply));
+  }
+  if (const auto* log_of = std::get_if<LogCommand>(&*command)) return log(*log_of, now, reply);
+  if (const auto* preview_of = std::get_if<RollbackPreviewCommand>(&*command)) {
+    return preview(*preview_of, now, reply);
+  }
+  if (std::holds_alternative<RollbackListCommand>(*command)) return rollback_.list(std::move(reply));
+  const auto& rollback = std::get<RollbackCommand>(*command);
+  switch (rollback.verb) {
+    case RollbackCommand::Verb::apply:
+      return rollback_.apply(rollback.id, caller.author, std::move(reply));
+    case RollbackCommand::Verb::cancel:
+      return rollback_.cancel(rollback.id, std::move(reply));
+    case RollbackCommand::Verb::undo:
+      return rollback_.undo_rollback(rollback.id, caller.author, now, std::move(reply));
+  }
+}
+
+void CommandDesk::status(const DeskReply& reply) const {
+  const WorldCounters& c = world_.counters();
+  reply({"sessions " + std::to_string(world_.session_count()) + ", edits " + std::to_string(world_.head()) +
+             " (on disk " + std::to_string(world_.durable()) + "), since the start " +
+             std::to_string(c.edits_ordered) + " ordered and " + std::to_string(c.edits_rejected) +
+             " rejected\nchunks in memory " + std::to_string(world_.resident_chunks()) + " (" +
+             std::to_string(world_.resident_bytes() >> 20) + " MiB), damaged " +
+             std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+             std::to_string(rollback_.running()),
+         true, true});
+}
+
+void CommandDesk::players(const DeskReply& reply) {
+  std::map<AuthorId, WorldServer::Present> here;
+  for (WorldServer::Present& player : world_.present()) here[player.author] = std::move(player);
+  auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
+  workers_.run(
+      [rows](Store& reader, const Generator&) { *rows = reader.players(); },
+      [rows, here, reply](const std::string& error) {
+        if (!error.empty()) return refuse(reply, "players: " + error);
+        if (!*rows) return refuse(reply, "players: " + rows->error().message());
+        std::map<AuthorId, std::string> lines;
+        for (const PlayerRow& row : **rows) {
+          lines[row.author] = row.name + " #" + std::to_string(row.author) + " key " + to_hex(row.key);
+        }
+        for (const auto& [author, player] : here) {
+          lines[author] =
+              player.name + " #" + std::to_string(author) + " key " + to_hex(player.key) + " is here, at " +
+              text_of_pos({static_cast<std::int32_t>(player.at.x), static_cast<std::int32_t>(player.at.y),
+                           static_cast<std::int32_t>(player.at.z)});
+        }
+        std::string text = lines.empty() ? "nobody has ever been here\n" : "";
+        for (const auto& [author, line] : lines) text += line + "\n";
+        text.pop_back();
+        reply({text, true, true});
+      });
+}
+
+void CommandDesk::resolve(const CommandFilter& filter, const std::string& command, const DeskReply& reply,
+                          std::function<void(const SelectionFilter&)> go_on) {
+  SelectionFilter out;
+  out.from_us = filter.from_us.value_or(out.from_us);
+  out.until_us = filter.until_us.value_or(out.until_us);
+  out.box = filter.box;
+  out.cause = filter.cause;
+  const bool has_names =
+      std::any_of(filter.authors.begin(), filter.authors.end(), [](const auto& a) { return !a.number; });
+  for (const CommandFilter::Author& author : filter.authors) {
+    if (author.number) out.authors.push_back(*author.number);
+  }
+  if (!has_names) return go_on(out);
+  auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
+  workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
+               [rows, out, filter, command, reply, go_on](const std::string& error) mutable {
+                 if (!error.empty()) return refuse(reply, command + ": " + error);
+                 if (!*rows) return refuse(reply, command + ": " + rows->error().message());
+                 for (const CommandFilter::Author& author : filter.authors) {
+                   if (author.number) continue;
+                   std::vector<AuthorId> named;
+                   for (const PlayerRow& row : **rows) {
+                     if (row.name == author.name) named.push_back(row.author);
+                   }
+                   if (named.empty()) {
+                     return refuse(reply, command + " author \"" + author.name +
+                                              "\": nobody of that name has ever built (players lists them)");
+                   }
+                   // Names are not unique, keys are: to take back somebody else's work by mistake is worse than
+                   // to ask.
+                   if (named.size() > 1) {
+                     std::string numbers;
+                     for (const AuthorId number : named) numbers += " #" + std::to_string(number);
+                     return refuse(reply, command + " author \"" + author.name +
+                                              "\": several players have that name:" + numbers);
+                   }
+                   out.authors.push_back(named.front());
+                 }
+                 go_on(out);
+               });
+}
+
+void CommandDesk::log(const LogCommand& command, const Now& now, const DeskReply& reply) {
+  world_.commit(now);
+  resolve(command.filter, "log", reply, [this, limit = command.limit, reply](const SelectionFilter& filter) {
+    SelectionFilter on_disk = filter;
+    on_disk.last = world_.durable();
+    auto text = std::make_shared<std::string>();
+    auto wrong = std::make_shared<std::string>();
+    workers_.run(
+        [on_disk, limit, text, wrong, materials = materials_](Store& reader, const Generator&) {
+          const auto rows = reader.players();
+          const auto newest = newest_edits(reader, on_disk, limit);
+          if (!rows) *wrong = rows.error().message();
+          if (!newest) *wrong = newest.error().message();
+          if (!wrong->empty()) return;
+          const AuthorNames names(*rows);
+          for (const EditRecord& record : *newest) {
+            *text += line_of(record, names.of(record.op.author), materials) + "\n";
+          }
+        },
+        [text, wrong, reply](const std::string& error) {
+          if (!error.empty() || !wrong->empty()) return refuse(reply, "log: " + error + *wrong);
+          if (text->empty()) *text = "no edit matches\n";
+          text->pop_back();
+          reply({*text, true, true});
+        });
+  });
+}
+
+void CommandDesk::preview(const RollbackPreviewCommand& command, const Now& now, const DeskReply& reply) {
+  resolve(command.filter, "rollback preview", reply,
+          [this, now, reply](const SelectionFilter& filter) { rollback_.preview(filter, now, reply); });
+}
+
+}  // namespace runstone

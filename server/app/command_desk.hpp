@@ -1,0 +1,46 @@
+// CommandDesk: carries out the commands of console, control and clients (server/admin/command.hpp). It answers
+// in lines, some at once, the last one when all is done. It belongs to the world strand; what reads the disk
+// runs on the rollback desk's workers.
+#pragma once
+#include <functional>
+#include <set>
+#include <string>
+
+#include "server/admin/command.hpp"
+#include "server/rollback/rollback_desk.hpp"
+#include "server/world/world_server.hpp"
+
+namespace runstone {
+
+/// Who gives a command.
+struct CommandCaller {
+  AuthorId author = 0;  // 0: console and control
+  bool is_operator = false;
+};
+
+class CommandDesk {
+ public:
+  /// All must outlive the desk. `stop` asks the program to stop the server.
+  CommandDesk(WorldServer& world, RollbackDesk& rollback, RollbackDesk::Workers& workers,
+              MaterialTable materials, std::function<void()> stop);
+
+  /// Carries out one line. `reply` is called on the world strand, and must not call in.
+  void run(const CommandCaller& caller, const std::string& line, const Now& now, DeskReply reply);
+
+ private:
+  void status(const DeskReply& reply) const;
+  void players(const DeskReply& reply);
+  void log(const LogCommand& command, const Now& now, const DeskReply& reply);
+  void preview(const RollbackPreviewCommand& command, const Now& now, const DeskReply& reply);
+  /// Finds the authors that a filter names, on a worker, then goes on with the filter; or refuses.
+  void resolve(const CommandFilter& filter, const std::string& command, const DeskReply& reply,
+               std::function<void(const SelectionFilter&)> go_on);
+
+  WorldServer& world_;
+  RollbackDesk& rollback_;
+  RollbackDesk::Workers& workers_;
+  MaterialTable materials_;
+  std::function<void()> stop_;
+};
+
+}  // namespace runstone
