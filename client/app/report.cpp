@@ -68,6 +68,8 @@ Json replica_json(const Replica& replica) {
               {"chunk_edits_contained", c.chunk_edits_contained},
               {"chunk_edits_buffered", c.chunk_edits_buffered},
               {"buffer_overflows", c.buffer_overflows},
+              {"confirmed_stacks", c.confirmed_stacks.text()},
+              {"predicted_stacks", c.predicted_stacks.text()},
               {"gaps", c.gaps},
               {"requests", c.requests},
               {"audited", c.audited},

@@ -403,6 +403,7 @@ void Replica::settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapsho
   if (!in_order.stack.empty()) {
     auto next = std::make_shared<Chunk>(*chunk.confirmed);
     apply_stack(next->voxels, next->digest, origin(key), in_order.stack, scratch_);
+    counters_.confirmed_stacks.add(in_order.stack.size());
     next->version = in_order.version;
     chunk.confirmed = std::move(next);
   }
@@ -430,6 +431,7 @@ void Replica::request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us) {
 }
 
 void Replica::show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause) {
+  counters_.predicted_stacks.add(chunk.pending.size());
   show(key, chunk, chunk.predicted(origin(key), scratch_), cause);
 }
 

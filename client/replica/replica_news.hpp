@@ -10,6 +10,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/edit_stack.hpp"
+#include "common/edits/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -100,9 +101,10 @@ struct ReplicaCounters {
   std::uint64_t chunk_edits_buffered = 0;   // came ahead of their snapshot
   std::uint64_t buffer_overflows = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t requests = 0;  // chunks asked for again
-  std::uint64_t audited = 0;   // compared at equal version
-  std::uint64_t drifted = 0;   // and found different: repaired by a new snapshot
+  std::uint64_t requests = 0;                      // chunks asked for again
+  StackDepths confirmed_stacks, predicted_stacks;  // applied to confirmed runs, and on top of them
+  std::uint64_t audited = 0;                       // compared at equal version
+  std::uint64_t drifted = 0;                       // and found different: repaired by a new snapshot
   std::uint64_t own_submitted = 0;
   std::uint64_t own_confirmed = 0;
   std::uint64_t own_rejected = 0;

@@ -68,6 +68,7 @@ void Replayer::check(const ChunkKey& key, const Expected& expected, const Chunk&
 void Replayer::apply(const ChunkKey& key, Rebuilt& rebuilt) {
   if (rebuilt.stack.empty()) return;
   const VoxelPos origin = origin_of(key.at, edge_);
+  report_.stack_depths.add(rebuilt.stack.size());
   report_.voxels_changed +=
       apply_stack(rebuilt.chunk.voxels, rebuilt.chunk.digest, origin, rebuilt.stack, scratch_).voxels_changed;
   rebuilt.stack.clear();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/edits/edit_stack.hpp"
+#include "common/edits/stack_depths.hpp"
 #include "common/generate/generator.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/store/store.hpp"
@@ -30,6 +31,7 @@ struct ReplayReport {
   std::uint64_t edits = 0;
   /// Summed over sweeps: what one edit of a sweep sets and a later one resets is not in it.
   std::uint64_t voxels_changed = 0;
+  StackDepths stack_depths;  // of the sweeps
   std::uint64_t snapshots_compared = 0;
   std::uint64_t keyframes_compared = 0;  // chunks of them
   std::uint64_t listed_compared = 0;

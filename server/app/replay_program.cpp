@@ -43,6 +43,7 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   row(out, "edits") << report.edits << ", up to sequence " << report.seq << '\n';
   row(out, "chunks") << report.digests.size() << " edited\n";
   row(out, "voxels") << report.voxels_changed << " changed\n";
+  row(out, "stacks") << report.stack_depths.text() << " (depth:count)\n";
   row(out, "snapshots") << report.snapshots_compared << " compared\n";
   row(out, "keyframes") << report.keyframes_compared << " chunks compared\n";
   row(out, "lists") << report.listed_compared << " chunks compared\n";
@@ -63,6 +64,7 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
   nlohmann::ordered_json more = {{"edits", report.edits},
                                  {"chunks", report.digests.size()},
                                  {"voxels_changed", report.voxels_changed},
+                                 {"stack_depths", report.stack_depths.text()},
                                  {"snapshots_compared", report.snapshots_compared},
                                  {"keyframes_compared", report.keyframes_compared},
                                  {"listed_compared", report.listed_compared},

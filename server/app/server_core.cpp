@@ -243,13 +243,13 @@ void ServerCore::log_counters() {
         "chunks_resident={} "
         "resident_bytes={} chunks_failed={} snapshots_sent={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
-        "audit_mismatches={} bytes_in={} bytes_out={} dense_expansions={}",
+        "audit_mismatches={} bytes_in={} bytes_out={} stack_depths=\"{}\" dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
         world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale,
         w.queue_full, w.audits_sent, w.audit_mismatches, n.bytes_in.load(), n.bytes_out.load(),
-        dense_expansions());
+        world_->stack_depths().text(), dense_expansions());
   });
 }
 

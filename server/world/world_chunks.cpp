@@ -58,6 +58,7 @@ void WorldChunks::settle(const ChunkKey& key, Entry& e, Chunk chunk) {
   const std::span<const EditDescriptor> edits = std::span(e.stack).subspan(skip);
   if (!edits.empty()) {
     apply_stack(chunk.voxels, chunk.digest, origin_of(key.at, edge_), edits, scratch_);
+    stack_depths_.add(edits.size());
     chunk.version = e.version;
   }
   e.stack.clear();

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "common/edits/edit_stack.hpp"
+#include "common/edits/stack_depths.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/interest/chunk_key_hash.hpp"
 
@@ -77,6 +78,8 @@ class WorldChunks {
   /// checkpoint must stay below it, so that a start after a repair stacks those edits again.
   std::optional<Sequence> first_quarantined_edit() const;
 
+  /// Of all chunks published since the start.
+  const StackDepths& stack_depths() const { return stack_depths_; }
   std::size_t resident_count() const { return resident_count_; }
   std::size_t resident_bytes() const { return resident_bytes_; }
   std::size_t quarantined_count() const { return quarantined_.size(); }
@@ -102,6 +105,7 @@ class WorldChunks {
       quarantined_;  // first edit not in a snapshot
   std::deque<ChunkKey> idle_;
   std::size_t resident_count_ = 0, resident_bytes_ = 0;
+  StackDepths stack_depths_;
   ApplyScratch scratch_;
 };
 

@@ -261,6 +261,7 @@ Sequence WorldServer::checkpoint() const { return state_->keeper.checkpoint(); }
 std::size_t WorldServer::session_count() const { return state_->sessions.size(); }
 std::size_t WorldServer::resident_chunks() const { return state_->authority.chunks().resident_count(); }
 std::size_t WorldServer::resident_bytes() const { return state_->authority.chunks().resident_bytes(); }
+const StackDepths& WorldServer::stack_depths() const { return state_->authority.chunks().stack_depths(); }
 const WorldCounters& WorldServer::counters() const { return state_->counters; }
 ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const { return state_->authority.chunks().find(key); }
 std::vector<std::pair<ChunkKey, ChunkPtr>> WorldServer::edited_chunks() const {

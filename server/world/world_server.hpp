@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/edits/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
@@ -101,6 +102,8 @@ class WorldServer {
   std::size_t resident_chunks() const;
   std::size_t resident_bytes() const;
   const WorldCounters& counters() const;
+  /// How deep the edit stacks were that were applied.
+  const StackDepths& stack_depths() const;
   /// Null unless the chunk is in memory.
   ChunkPtr find_chunk(const ChunkKey& key) const;
   /// All chunks in memory that were ever edited, ascending.

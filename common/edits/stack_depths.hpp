@@ -1,0 +1,46 @@
+// StackDepths: how deep the edit stacks were that were applied: a histogram by powers of two. Deep stacks are what the
+// single sweep is for; this says how often they occur.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace runstone {
+
+class StackDepths {
+ public:
+  /// Of depths 1, 2, 3..4, 5..8, ..., 1,025..2,048, and more.
+  static constexpr std::size_t kBuckets = 13;
+
+  /// A stack of this many edits was applied; empty stacks do not count. O(1).
+  void add(std::size_t depth) {
+    if (depth != 0) ++counts_[std::min<std::size_t>(std::bit_width(depth - 1), kBuckets - 1)];
+  }
+  StackDepths& operator+=(const StackDepths& other) {
+    for (std::size_t i = 0; i < kBuckets; ++i) counts_[i] += other.counts_[i];
+    return *this;
+  }
+  std::uint64_t count(std::size_t bucket) const { return counts_[bucket]; }
+  /// Largest depth of a bucket; of the last one there is none.
+  static constexpr std::size_t depth_max(std::size_t bucket) { return std::size_t{1} << bucket; }
+  /// "1:812 2:40 4:7": largest depth and count of the buckets that are not empty, "2049+:3" the last one's; "none".
+  std::string text() const {
+    std::string out;
+    for (std::size_t i = 0; i < kBuckets; ++i) {
+      if (counts_[i] == 0) continue;
+      if (!out.empty()) out += ' ';
+      out += i + 1 == kBuckets ? std::to_string(depth_max(i - 1) + 1) + '+' : std::to_string(depth_max(i));
+      out += ':' + std::to_string(counts_[i]);
+    }
+    return out.empty() ? "none" : out;
+  }
+  friend bool operator==(const StackDepths&, const StackDepths&) = default;
+
+ private:
+  std::array<std::uint64_t, kBuckets> counts_{};
+};
+
+}  // namespace runstone
