@@ -203,6 +203,8 @@ void Client::take_input(TimeUs now_us) {
   for (int i = 0; i < input.remove_clicks; ++i) click(false, now_us);
   for (int i = 0; i < input.place_clicks; ++i) click(true, now_us);
   if (input.scrub != 0) scrub(input.scrub);
+  if (input.undo) static_cast<void>(session_.command("undo"));
+  if (input.redo) static_cast<void>(session_.command("redo"));
   if (input.live) static_cast<void>(session_.travel({}));
   if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
   picture_.moved();
@@ -213,6 +215,17 @@ void Client::click(bool place, TimeUs now_us) {
   if (!hit) return;
   const auto at = place ? place_against(*hit) : hit->voxel;
   if (at) static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
+}
+
+std::string Client::command(const std::string& text) {
+  const auto given = session_.command(text);
+  return given ? std::string() : given.error().what;
+}
+
+bool Client::show_answer() {
+  for (const std::string& line : session_.command_lines()) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  return session_.command_ok();
 }
 
 void Client::scrub(int steps) {

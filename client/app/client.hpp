@@ -86,6 +86,9 @@ class Client final : private ScriptHost {
   bool synced(std::uint64_t mark) const override;
   void travel(const Travel& travel) override { static_cast<void>(session_.travel(travel)); }
   bool travelling() const override { return session_.travelling(); }
+  std::string command(const std::string& text) override;
+  bool commanding() const override { return session_.commanding(); }
+  bool show_answer() override;
   std::string travel_refusal() const override { return session_.travel_refusal(); }
   TimeUs utc_now_us() const override;
   bool screenshot(const std::string& file) override;

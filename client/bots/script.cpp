@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "protocol/limits.hpp"
+
 namespace runstone {
 namespace {
 
@@ -16,7 +18,7 @@ struct LineError {
 
 class Words {
  public:
-  explicit Words(std::string_view line) {
+  explicit Words(std::string_view line) : line_(line) {
     std::size_t at = 0;
     while (at < line.size()) {
       const std::size_t first = line.find_first_not_of(" \t\r", at);
@@ -34,11 +36,23 @@ class Words {
     if (!more()) throw LineError{std::string("expected ") + what};
     return words_[next_++];
   }
+  /// All that follows the last word taken, as it stands, comments too.
+  std::string_view rest() {
+    const std::size_t first = next_ == 0 ? 0
+                                         : static_cast<std::size_t>(words_[next_ - 1].data() - line_.data()) +
+                                               words_[next_ - 1].size();
+    std::string_view text = line_.substr(first);
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
+    text = text.substr(0, text.find_last_not_of(" \t\r") + 1);
+    next_ = words_.size();
+    return text;
+  }
   void finish() const {
     if (more()) throw LineError{"unexpected \"" + std::string(words_[next_]) + "\""};
   }
 
  private:
+  std::string_view line_;
   std::vector<std::string_view> words_;
   std::size_t next_ = 0;
 };
@@ -257,6 +271,13 @@ script::Step step_of(std::string_view verb, Words& words) {
   }
   if (verb == "digests") return script::Digests{std::string(words.word("FILE"))};
   if (verb == "travel") return travel_step(words);
+  if (verb == "undo" || verb == "redo") return script::Command{std::string(verb)};
+  if (verb == "command") {
+    script::Command command{std::string(words.rest())};
+    if (command.text.empty()) throw LineError{"expected TEXT"};
+    if (command.text.size() > kCommandBytesMax) throw LineError{"TEXT has at most 1024 bytes"};
+    return command;
+  }
   if (verb == "quit") return script::Quit{};
   throw LineError{"unknown command \"" + std::string(verb) + "\""};
 }

@@ -118,10 +118,14 @@ struct Travel {
   Sequence seq = 0;        // TravelTo::sequence
   double seconds_ago = 0;  // TravelTo::time
 };
+/// A command for the server; undo and redo are two of them.
+struct Command {
+  std::string text;
+};
 struct Quit {};
 
 using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
-                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Quit>;
+                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Command, Quit>;
 
 }  // namespace script
 

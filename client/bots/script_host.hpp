@@ -48,6 +48,12 @@ class ScriptHost {
 
   /// Asks to go to a moment of the past, or back.
   virtual void travel(const Travel& travel) = 0;
+  /// Gives the server a command. Empty, or why it cannot be given.
+  virtual std::string command(const std::string& text) = 0;
+  /// Its answer is not complete.
+  virtual bool commanding() const = 0;
+  /// What came of it, once it is complete: shows its lines, and says whether it did what it was asked.
+  virtual bool show_answer() = 0;
   /// Not all of what was asked for is here.
   virtual bool travelling() const = 0;
   /// Why the last travel() was refused; empty if it was not.

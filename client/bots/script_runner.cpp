@@ -368,6 +368,22 @@ ScriptRunner::Progress ScriptRunner::run(const script::Travel& c) {
   return Progress::waits;
 }
 
+ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
+  if (!started_) {
+    start();
+    const std::string refusal = host_.command(c.text);
+    if (!refusal.empty()) return give_up("the command cannot be given: " + refusal);
+  }
+  if (!host_.commanding()) {
+    if (!host_.show_answer()) fail("the server refused \"" + c.text + "\"");
+    return Progress::done;
+  }
+  const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
+  if (now_us_ >= due_us) return give_up("the server did not answer in time");
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
 // ---- flow
 
 ScriptRunner::Progress ScriptRunner::run(const script::Repeat& c) {

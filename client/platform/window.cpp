@@ -89,13 +89,15 @@ Window::Window(int width, int height, const std::string& title) : state_(std::ma
   glfwSetScrollCallback(state_->window, [](GLFWwindow* w, double, double dy) {
     static_cast<State*>(glfwGetWindowUserPointer(w))->pending.scroll += dy > 0 ? 1 : dy < 0 ? -1 : 0;
   });
-  glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int, int action, int) {
+  glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int, int action, int mods) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
     if (action != GLFW_PRESS) return;
     if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) state.pending.digit = key - GLFW_KEY_0;
     if (key == GLFW_KEY_F2) state.pending.screenshot = true;
     if (key == GLFW_KEY_LEFT_BRACKET) --state.pending.scrub;
     if (key == GLFW_KEY_RIGHT_BRACKET) ++state.pending.scrub;
+    if (key == GLFW_KEY_Z && (mods & GLFW_MOD_CONTROL) != 0) state.pending.undo = true;
+    if (key == GLFW_KEY_Y && (mods & GLFW_MOD_CONTROL) != 0) state.pending.redo = true;
     if (key == GLFW_KEY_HOME) state.pending.live = true;
     if (key == GLFW_KEY_ESCAPE) {
       if (state.captured) return state.capture(false);

@@ -21,6 +21,7 @@ struct WindowInput {
   bool escape = false;              // pressed while the mouse was free (the first press only frees it)
   bool screenshot = false;          // F2 pressed
   int scrub = 0;                    // ] less [ pressed: later or earlier
+  bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed
   bool live = false;                // Home pressed
   bool close = false;               // the window's close button
 };

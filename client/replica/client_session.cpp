@@ -4,6 +4,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/core/text.hpp"
+
 namespace runstone {
 namespace {
 
@@ -41,6 +43,8 @@ void ClientSession::disconnected() {
   others_.clear();
   travel_request_ = travelled_ = 0;
   travel_refusal_.clear();
+  if (is_commanding_) command_lines_ = {"the connection ended before the answer came"};
+  is_commanding_ = false;
   early_.clear();
   wants_close_ = false;
 }
@@ -92,6 +96,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           on_poses(m);
         } else if constexpr (std::is_same_v<T, Roster>) {
           on_roster(m);
+        } else if constexpr (std::is_same_v<T, CommandOutput>) {
+          on_command_output(std::move(m));
         } else if constexpr (std::is_same_v<T, Pong>) {
           clock_.add(m.sent_us, m.server_us, arrival.received_us);
           ++pongs_;
@@ -224,6 +230,31 @@ void ClientSession::set_view(const View& view) {
   config_.view = view;
   replica_.set_view(this->view());
   if (is_open()) send_view();
+}
+
+Result<void> ClientSession::command(std::string text) {
+  if (!is_open()) return fail(ErrorCode::bad_value, "no world is open");
+  if ((welcome_->features & kFeatureCommands) == 0) {
+    return fail(ErrorCode::unknown_kind, "the server takes no commands");
+  }
+  if (is_commanding_) return fail(ErrorCode::bad_value, "the command before is still under way");
+  if (text.empty() || text.size() > kCommandBytesMax || !is_printable_utf8(text)) {
+    return fail(ErrorCode::bad_value, "a command is 1 to 1024 bytes of text");
+  }
+  is_commanding_ = true;
+  is_command_ok_ = false;
+  command_lines_.clear();
+  outgoing_.push_back(CommandRequest{++command_, std::move(text)});
+  return {};
+}
+
+void ClientSession::on_command_output(CommandOutput output) {
+  if (!is_commanding_ || output.id != command_) return;  // of a command that a lost connection ended
+  for (std::string& line : output.lines) {
+    if (command_lines_.size() < kCommandLinesKept) command_lines_.push_back(std::move(line));
+  }
+  is_commanding_ = !output.is_done;
+  is_command_ok_ = output.is_done && output.is_ok;
 }
 
 Result<void> ClientSession::travel(Travel travel) {

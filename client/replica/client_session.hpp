@@ -31,7 +31,8 @@ inline constexpr TimeUs kOffsetWaitUsMax =
     1'000'000;  // edits wait this long for the first pong, then go without
 /// Ready travels with the edits; messages of the other classes may overtake it. So many are held back for it.
 inline constexpr std::size_t kEarlyMessagesMax = 4096;
-inline constexpr TimeUs kAnswerUsMax = 10'000'000;  // an edit not answered by then is offered again
+inline constexpr std::size_t kCommandLinesKept = 4096;  // of one command's output
+inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered by then is offered again
 
 struct SessionConfig {
   KeyPair keys;
@@ -83,6 +84,15 @@ class ClientSession {
   /// Asks to see the view as it was at a moment of the past, read-only, or as it is. `travel.request` is given here. The
   /// live world is not touched, nor what others see. Fails before ready.
   Result<void> travel(Travel travel);
+  /// Gives the server a command, such as "undo". One at a time. bad_value, also if it is no text of 1 ..
+  /// kCommandBytesMax bytes, and unknown_kind if the server takes no commands.
+  Result<void> command(std::string text);
+  /// A command was sent and its answer is not complete.
+  bool commanding() const { return is_commanding_; }
+  /// What came of the newest command: its lines so far, and, once it is complete, whether it did what it was asked. A
+  /// connection that ends leaves it undone.
+  const std::vector<std::string>& command_lines() const { return command_lines_; }
+  bool command_ok() const { return is_command_ok_; }
   /// A wish to travel was sent, and not everything has come that it asked for.
   bool travelling() const { return travelled_ != travel_request_; }
   /// Why the newest wish was refused; empty if it was not.
@@ -118,6 +128,7 @@ class ClientSession {
   void on_welcome(Welcome welcome);
   void on_ready(const Ready& ready, TimeUs now_us);
   void on_goodbye(const Goodbye& goodbye);
+  void on_command_output(CommandOutput output);
   void on_roster(const Roster& roster);
   void on_poses(const PlayerPoses& poses);
   void on_moment(const Moment& moment);
@@ -142,6 +153,9 @@ class ClientSession {
   std::uint32_t travel_request_ = 0;  // of the newest wish on this connection; 0: none
   std::uint32_t travelled_ = 0;       // the newest one that was fulfilled or refused
   std::string travel_refusal_;
+  std::uint32_t command_ = 0;  // id of the newest one
+  bool is_commanding_ = false, is_command_ok_ = false;
+  std::vector<std::string> command_lines_;  // kCommandLinesKept at most
 
   std::vector<ClientSequence> waiting_;  // own edits to send, ascending
   std::optional<View> view_sent_;

@@ -78,6 +78,14 @@ struct FakeHost final : ScriptHost {
   bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
   void travel(const Travel& travel) override { travels.push_back(travel); }
   bool travelling() const override { return is_travelling; }
+  std::vector<std::string> commands;
+  bool is_commanding = false, is_command_ok = true;
+  std::string command(const std::string& text) override {
+    commands.push_back(text);
+    return {};
+  }
+  bool commanding() const override { return is_commanding; }
+  bool show_answer() override { return is_command_ok; }
   std::string travel_refusal() const override { return refusal; }
   TimeUs utc_now_us() const override { return 5'000'000; }
   bool screenshot(const std::string& file) override {
@@ -333,6 +341,38 @@ TEST_CASE_METHOD(Fixture, "a picture that cannot be written fails the script at 
   CHECK(runner->finished());
   CHECK(runner->failures() == std::vector<std::string>{"s.txt:2: nosuch/a.png cannot be written"});
   CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE("a command waits for its answer, and a refused one is a failure that the script survives",
+          "[bots]") {
+  const auto script = *parse_script(
+      "command rollback preview author #3  # all\nset 1 2 3 stone\nundo\nset 1 2 3 sand\n", "t");
+  FakeHost host;
+  host.is_commanding = true;
+  ScriptRunner runner(script, host);
+  runner.step(1'000'000);
+  CHECK(host.commands == std::vector<std::string>{"rollback preview author #3  # all"});
+  CHECK(host.edits.empty());
+  host.is_commanding = false;
+  runner.step(1'100'000);
+  CHECK(host.commands.back() == "undo");
+  CHECK(host.edits.size() == 2);
+  CHECK(runner.failures().empty());
+
+  FakeHost refusing;
+  refusing.is_command_ok = false;
+  ScriptRunner again(script, refusing);
+  again.step(1'000'000);
+  CHECK(refusing.edits.size() == 2);
+  REQUIRE(again.failures().size() == 2);
+  CHECK(again.failures()[1] == "t:3: the server refused \"undo\"");
+}
+
+TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[bots]") {
+  CHECK_FALSE(parse_script("command", "t").has_value());
+  CHECK_FALSE(parse_script("command " + std::string(1025, 'a'), "t").has_value());
+  CHECK(parse_script("command " + std::string(1024, 'a'), "t").has_value());
+  CHECK_FALSE(parse_script("undo 2", "t").has_value());
 }
 
 TEST_CASE("a travel waits until its moment is here, and a refused one ends the script", "[bots]") {
