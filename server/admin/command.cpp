@@ -161,11 +161,7 @@ Result<Command, std::string> preview_command(Reader reader) {
   RollbackPreviewCommand preview;
   while (!reader.at_end()) {
     if (take_filter(reader, preview.filter)) continue;
-    const std::string word = reader.take("", "");
-    if (word != "picture") {
-      return mistake("rollback preview \"" + word + "\": author, since, until, box, cause or picture");
-    }
-    preview.picture = reader.take(word, "the folder to draw into");
+    return mistake("rollback preview \"" + reader.peek() + "\": author, since, until, box or cause");
   }
   if (!reader.error().empty()) return mistake("rollback preview " + reader.error());
   // A slip of the finger must not select the whole world.
@@ -228,20 +224,20 @@ bool is_for_everybody(const Command& command) {
 
 std::string command_help(bool is_operator) {
   std::string text =
-      "help                  this list\n"
-      "undo                  take back your last edit; what others built there since stays\n"
-      "redo                  do again what you undid last";
+      "help                      this list\n"
+      "undo                      take back your last edit; what others built there since stays\n"
+      "redo                      do again what you undid last";
   if (!is_operator) return text;
   return text +
-         "\nstatus                what the server does\n"
-         "players               who is here, and who has ever built\n"
-         "log FILTERS [limit N] the newest edits, the last one at the bottom\n"
-         "rollback preview FILTERS [picture FOLDER]   what taking these edits back would do\n"
-         "rollback apply ID     do it; people go on playing, and what they built since stays\n"
-         "rollback cancel ID    stop it, or forget a preview\n"
-         "rollback undo ID      take a rollback back\n"
-         "rollback list         previews, and the rollbacks so far\n"
-         "stop                  stop the server\n"
+         "\nstatus                    what the server does\n"
+         "players                   who is here, and who has ever built\n"
+         "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
+         "rollback preview FILTERS  what taking these edits back would do\n"
+         "rollback apply ID         do it; people go on playing, and what they built since stays\n"
+         "rollback cancel ID        stop it, or forget a preview\n"
+         "rollback undo ID          take a rollback back\n"
+         "rollback list             previews, and the rollbacks so far\n"
+         "stop                      stop the server\n"
          "FILTERS, any of: author NAME or author #N (several: any of them), since 1h or since "
          "2026-11-21T23:57:42Z,\n"
          "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import";

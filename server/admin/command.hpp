@@ -55,7 +55,6 @@ struct LogCommand {
 };
 struct RollbackPreviewCommand {
   CommandFilter filter;
-  std::string picture;  // folder for the picture; empty: none
   friend bool operator==(const RollbackPreviewCommand&, const RollbackPreviewCommand&) = default;
 };
 struct RollbackCommand {
