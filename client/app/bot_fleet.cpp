@@ -13,8 +13,8 @@
 #include <optional>
 #include <utility>
 
+#include "client/app/session_link.hpp"
 #include "client/net/key_file.hpp"
-#include "client/net/link.hpp"
 #include "client/net/steady_clock.hpp"
 #include "common/core/hash.hpp"
 
@@ -44,58 +44,23 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
 }
 
 /// A bot and its link.
-class Member final : private LinkEvents {
+class Member {
  public:
   Member(asio::io_context& io, BotConfig config, const NetConfig& net)
-      : bot_(std::move(config)), link_(io, net, *this) {
-    link_.start();
-  }
+      : bot_(std::move(config)), link_(io, bot_.session(), bot_.config().session.name, net) {}
 
   Bot& bot() { return bot_; }
-  const NetStats& stats() const { return link_.stats(); }
-  const std::string& last_failure() const { return last_failure_; }
-  bool is_final() const { return bot_.session().end() && bot_.session().end()->final; }
+  const SessionLink& link() const { return link_; }
 
   void step(TimeUs now_us) {
     bot_.step(now_us);
-    flush();
+    link_.flush();
   }
-  void leave() {
-    bot_.session().close(GoodbyeReason::closing, "");
-    flush();
-    link_.stop(kGoodbyeMs);
-  }
+  void leave() { link_.leave(kGoodbyeMs); }
 
  private:
-  void flush() {
-    ClientSession& session = bot_.session();
-    for (const Message& message : session.take_outgoing()) link_.send(connection_, encode_message(message));
-    if (session.wants_close() && connection_ != 0) link_.close(connection_);
-  }
-  void on_connected(ConnectionNumber connection) override {
-    connection_ = connection;
-    bot_.session().connected(random_nonce(), steady_now_us());
-    flush();
-  }
-  void on_received(NetReceived received) override {
-    const TimeUs now_us = steady_now_us();
-    bot_.session().receive(std::move(received.message), {received.received_us, received.unpacked_us, now_us});
-    flush();
-  }
-  void on_disconnected(ConnectionNumber /*connection*/, std::string why) override {
-    connection_ = 0;
-    bot_.session().disconnected();
-    last_failure_ = std::move(why);
-    if (bot_.session().end() && !bot_.session().end()->text.empty()) {
-      last_failure_ += " (" + bot_.session().end()->text + ")";
-    }
-    spdlog::debug("{}: {}", bot_.config().session.name, last_failure_);
-  }
-
   Bot bot_;
-  Link link_;
-  ConnectionNumber connection_ = 0;  // 0: none
-  std::string last_failure_;
+  SessionLink link_;
 };
 
 void add_up(BotCounts& sum, const BotCounts& one) {
@@ -140,7 +105,7 @@ struct BotFleet::Parts {
   std::string explain(const std::string& what, const std::function<bool(Member&)>& holds) const {
     for (const auto& member : members) {
       if (holds(*member)) continue;
-      const std::string& why = member->last_failure();
+      const std::string& why = member->link().last_failure();
       return member->bot().config().session.name + " " + what + (why.empty() ? "" : ": " + why);
     }
     return {};
@@ -161,7 +126,7 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
   report.bots = fleet.members.size();
   const auto is_loaded = [](Member& member) { return member.bot().loaded(); };
   const auto is_settled = [](Member& member) { return member.bot().settled(); };
-  const auto is_refused = [](Member& member) { return member.is_final(); };
+  const auto is_refused = [](Member& member) { return member.link().is_final(); };
 
   fleet.play_until([&] { return fleet.all(is_loaded) || fleet.all(is_refused); }, patience, stop);
   report.failure = fleet.explain("does not see the world around it", is_loaded);
@@ -188,8 +153,8 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
     report.standing.unseen += standing.unseen;
     report.audited += bot.session().replica().counters().audited;
     report.drifted += bot.session().replica().counters().drifted;
-    report.bytes_received += member->stats().bytes_received.load();
-    report.bytes_sent += member->stats().bytes_sent.load();
+    report.bytes_received += member->link().stats().bytes_received.load();
+    report.bytes_sent += member->link().stats().bytes_sent.load();
   }
   for (const auto& member : fleet.members) member->leave();
   fleet.io.run_for(std::chrono::milliseconds(2 * kGoodbyeMs));

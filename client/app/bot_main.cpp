@@ -1,5 +1,5 @@
-// runstone-bot: many players in one process. Exit codes: 0 played to the end, 1 something was lost or drifted,
-// 2 could not start (docs/bots.md).
+// runstone-bot: many players in one process. Exit codes: 0 played to the end, 1 something was lost, drifted or, of
+// a recorded log, refused, 2 could not start (docs/bots.md).
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -9,6 +9,8 @@
 
 #include "client/app/bot_fleet.hpp"
 #include "client/app/client.hpp"
+#include "client/app/play_fleet.hpp"
+#include "client/app/recorded_file.hpp"
 #include "client/app/report.hpp"
 
 namespace {
@@ -17,8 +19,30 @@ volatile std::sig_atomic_t stop_requested = 0;
 
 void request_stop(int) { stop_requested = 1; }
 
+int play(const runstone::BotOptions& options) {
+  using namespace runstone;
+  const auto log = read_recorded_file(options.play);
+  if (!log) {
+    std::fprintf(stderr, "runstone-bot: %s\n", log.error().c_str());
+    return kExitNoStart;
+  }
+  const PlayReport report = PlayFleet(options, *log).run(stop_requested);
+  if (!report.started) {
+    std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+    return kExitNoStart;
+  }
+  std::fputs(to_table(report).c_str(), stdout);
+  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+  if (!options.report.empty() && !write_text(options.report, to_json(report))) {
+    std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
+    return kExitFailed;
+  }
+  return report.is_complete() ? kExitOk : kExitFailed;
+}
+
 int run(const runstone::BotOptions& options) {
   using namespace runstone;
+  if (!options.play.empty()) return play(options);
   BotFleet fleet(options);
   const FleetReport report = fleet.run(stop_requested);
   std::fputs(to_table(report).c_str(), stdout);

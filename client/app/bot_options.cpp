@@ -6,6 +6,18 @@
 #include "protocol/limits.hpp"
 
 namespace runstone {
+namespace {
+
+double speed_of(const std::string& text) {
+  if (text == "max") return 0;
+  double speed = 0;
+  if (!CLI::detail::lexical_cast(text, speed) || !(speed >= 0 && speed <= kPlaySpeedMax)) {
+    throw CLI::ValidationError("--speed", "expected a number from 0 to 1000000, or max: " + text);
+  }
+  return speed;
+}
+
+}  // namespace
 
 ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   BotOptions out;
@@ -38,6 +50,17 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--report", out.report, "write counts and latencies as JSON at the end");
   app.add_flag("--verbose", out.verbose, "log every step");
+  CLI::Option* play =
+      app.add_option("--play", out.play,
+                     "play the edits of this .rlog instead: a bot for each author, each edit at its time");
+  app.add_option_function<std::string>(
+         "--speed", [&out](const std::string& text) { out.speed = speed_of(text); },
+         "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; default 1")
+      ->needs(play);
+  for (const char* other : {"--count", "--behaviour", "--name", "--key-dir", "--rate", "--duration",
+                            "--edits", "--sites", "--seed", "--view"}) {
+    play->excludes(app.get_option(other));
+  }
   try {
     app.parse(argc, argv);
     const std::string wrong = parse_host_port(address, out.host, out.port);

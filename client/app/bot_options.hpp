@@ -8,6 +8,8 @@
 
 namespace runstone {
 
+inline constexpr double kPlaySpeedMax = 1'000'000;
+
 struct BotOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 0;
@@ -21,9 +23,13 @@ struct BotOptions {
   std::size_t sites = 0;               // of the whole crowd, for a fleet that joins another; 0: count
   std::uint64_t seed = 1;
   std::uint8_t view_radius = 2, view_radius_v = 2;  // chunks
-  double load_seconds = 60;  // to see everything in view before the start, and to settle at the end
-  std::string report;        // file; empty: none
+  double load_seconds =
+      60;              // to see everything in view before the start, and to settle at the end; of a play
+                       // without any progress
+  std::string report;  // file; empty: none
   bool verbose = false;
+  std::string play;  // .rlog to play in place of a behaviour; empty: none
+  double speed = 1;  // of its time; 0: as fast as the server takes it
 };
 
 struct ParsedBotOptions {

@@ -1,0 +1,120 @@
+#include "client/bots/play_bot.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+namespace {
+
+/// Bytes of requests without an answer, at most: a link that holds much more is cut.
+constexpr std::size_t kOpenBytesMax = 2 * 1024 * 1024;
+constexpr std::int32_t kAloftHeight = kWorldLimit / 2;  // voxels: in every world, and far from what is built
+
+std::vector<TimeUs> offsets_of(const RecordedAuthor& recorded) {
+  std::vector<TimeUs> offsets;
+  offsets.reserve(recorded.edits.size());
+  for (const RecordedEdit& edit : recorded.edits) offsets.push_back(edit.offset_us);
+  return offsets;
+}
+
+SessionConfig named(SessionConfig config, const std::string& name) {
+  config.name = name;
+  return config;
+}
+
+std::size_t bytes_bound(const EditDescriptor& edit) {
+  const auto* paste = std::get_if<Paste>(&edit.shape);
+  return 256 + (paste == nullptr ? descriptor_bytes_max(kind_of(edit)) : paste->clipboard->byte_size());
+}
+
+bool is_pushed_back(RejectReason reason) {
+  return reason == RejectReason::rate_limited || reason == RejectReason::busy;
+}
+
+}  // namespace
+
+PlayBot::PlayBot(const RecordedAuthor& recorded, SessionConfig config, double speed)
+    : recorded_(recorded),
+      session_(named(std::move(config), recorded.name)),
+      schedule_(offsets_of(recorded), speed) {}
+
+bool PlayBot::waits() const {
+  return schedule_.unanswered() != 0 || schedule_.waiting() != 0 || !session_.is_open() ||
+         !session_.replica().own_edits().all().empty();
+}
+
+void PlayBot::look_away() {
+  const Welcome& world = *session_.welcome();
+  const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
+  const View view{chunk_of({down(world.spawn.x), kAloftHeight, down(world.spawn.z)}, world.chunk_edge), 0, 0};
+  if (session_.view() != view) session_.set_view(view);
+  session_.set_pose({world.spawn, 0, 0});
+}
+
+void PlayBot::step(TimeUs now_us) {
+  session_.tick(now_us);
+  take_news(now_us);
+  counts_.due = schedule_.due(now_us);
+  if (!session_.is_open()) return;
+  look_away();
+  hand_in(now_us);
+}
+
+void PlayBot::hand_in(TimeUs now_us) {
+  while (open_bytes_ < kOpenBytesMax && session_.replica().own_edits().all().size() < kOwnEditsMax) {
+    const auto turn = schedule_.next(now_us);
+    if (!turn) return;
+    const EditDescriptor& edit = recorded_.edits[turn->index].edit;
+    const auto sequence = session_.submit(edit, turn->due_us, now_us);
+    if (!sequence) {
+      ++counts_.refused[sequence.error().what];
+      schedule_.dropped();
+      continue;
+    }
+    ++counts_.submitted;
+    const Open open{*turn, bytes_bound(edit)};
+    open_bytes_ += open.bytes;
+    open_.emplace(*sequence, open);
+  }
+}
+
+void PlayBot::take_news(TimeUs now_us) {
+  const ReplicaNews news = session_.replica().take_news();
+  const auto close = [this](ClientSequence seq) -> std::optional<Open> {
+    const auto found = open_.find(seq);
+    if (found == open_.end()) return std::nullopt;
+    const Open open = found->second;
+    open_bytes_ -= open.bytes;
+    open_.erase(found);
+    return open;
+  };
+  for (const EditNews& edit : news.edits) {
+    if (edit.predicted || !edit.own) continue;
+    const auto open = close(edit.op.seq);
+    if (!open) continue;  // ordered again by a server that had lost it
+    counts_.own_us.add(edit.applied_us - open->turn.due_us);
+    ++counts_.confirmed;
+    schedule_.accepted();
+  }
+  for (const RejectNews& reject : news.rejects) {
+    const auto open = close(reject.seq);
+    if (!open) continue;
+    if (is_pushed_back(reject.reason)) {
+      ++counts_.again;
+      schedule_.pushed_back(open->turn, now_us);
+    } else {
+      ++counts_.rejected[to_string(reject.reason)];
+      schedule_.dropped();
+    }
+  }
+  for (const ClientSequence seq : news.unseen) {
+    if (!close(seq)) continue;
+    ++counts_.unseen;
+    schedule_.dropped();
+  }
+  counts_.durable += news.durable.size();
+}
+
+}  // namespace runstone

@@ -1,0 +1,95 @@
+#include "client/bots/recorded_log.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "common/core/text.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+namespace {
+
+Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+/// Times of a file never fall, but may lie anywhere.
+TimeUs between(TimeUs first, TimeUs later) {
+  const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(first);
+  return static_cast<TimeUs>(
+      std::min<std::uint64_t>(apart, static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max())));
+}
+
+void note_materials(const EditDescriptor& edit, std::vector<bool>& used) {
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    for (const Material material : paste->clipboard->palette()) used[material] = true;
+  }
+  used[edit.material] = true;
+  used[edit.mask.material] = true;
+}
+
+}  // namespace
+
+std::string session_name(const std::string& recorded, AuthorId author) {
+  if (author == 0) return "server";
+  if (recorded.empty() || !is_printable_utf8(recorded)) return "author " + std::to_string(author);
+  return std::string(cut_utf8(recorded, kPlayerNameBytesMax));
+}
+
+Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
+  auto reader = RlogReader::open(std::move(source));
+  if (!reader) return failure(reader.error().message());
+  auto materials = parse_material_table(reader->world().materials, "materials");
+  if (!materials) return failure(materials.error().message());
+  RecordedLog log;
+  log.materials = *std::move(materials);
+  std::map<AuthorId, RecordedAuthor> authors;
+  std::vector<bool> used(kMaterialCountMax, false);
+  TimeUs first_us = 0;
+  std::string wrong;
+  const auto read = reader->read({}, [&](const EditRecord& record) {
+    if (log.edits == 0) first_us = record.time_us;
+    if (!log.materials.knows(material_max(record.edit))) {
+      wrong = "edit " + std::to_string(record.version.seq) + " uses material " +
+              std::to_string(material_max(record.edit)) + ", which the file's table of materials lacks";
+      return false;
+    }
+    note_materials(record.edit, used);
+    authors[record.op.author].edits.push_back({between(first_us, record.time_us), record.edit});
+    ++log.edits;
+    return true;
+  });
+  if (!wrong.empty()) return failure(wrong);
+  if (!read) return failure(read.error().message());
+  for (const RlogPlayer& player : reader->players()) {
+    if (const auto found = authors.find(player.author); found != authors.end()) {
+      found->second.name = player.name;
+    }
+  }
+  for (auto& [author, recorded] : authors) {
+    recorded.author = author;
+    recorded.name = session_name(recorded.name, author);
+    log.authors.push_back(std::move(recorded));
+  }
+  for (std::size_t id = 0; id < used.size(); ++id) {
+    if (used[id]) log.used.push_back(static_cast<Material>(id));
+  }
+  return log;
+}
+
+Result<void, std::string> check_materials(const RecordedLog& log, const MaterialTable& live) {
+  for (const Material id : log.used) {
+    const std::string& name = log.materials[id].name;
+    if (!live.knows(id)) {
+      return failure("material " + std::to_string(id) + " is \"" + name +
+                     "\" in the file, and the world's table of materials ends before it");
+    }
+    if (live[id].name != name) {
+      return failure("material " + std::to_string(id) + " is \"" + name + "\" in the file and \"" +
+                     live[id].name + "\" in the world");
+    }
+  }
+  return {};
+}
+
+}  // namespace runstone

@@ -1,0 +1,45 @@
+#include "client/app/bot_options.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace runstone;
+
+namespace {
+
+ParsedBotOptions parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), {"runstone-bot", "--connect", "localhost:4747"});
+  return parse_bot_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+}  // namespace
+
+TEST_CASE("a recorded log is played at a speed", "[client_app][play]") {
+  const auto speed = [](std::vector<const char*> more) {
+    more.insert(more.begin(), {"--play", "a.rlog"});
+    const auto parsed = parse(more);
+    REQUIRE(parsed.options.has_value());
+    CHECK(parsed.options->play == "a.rlog");
+    return parsed.options->speed;
+  };
+  CHECK(speed({}) == 1);
+  CHECK(speed({"--speed", "0.5"}) == 0.5);
+  CHECK(speed({"--speed", "0"}) == 0);
+  CHECK(speed({"--speed", "max"}) == 0);
+  for (const char* wrong : {"-1", "fast", "", "nan", "inf", "1e9", "2x"}) {
+    CAPTURE(wrong);
+    CHECK(parse({"--play", "a.rlog", "--speed", wrong}).exit_code == 2);
+  }
+  CHECK(parse({"--speed", "2"}).exit_code == 2);
+}
+
+TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]") {
+  for (const char* other : {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
+    CAPTURE(other);
+    CHECK(parse({other, "3"}).options.has_value());
+    CHECK(parse({"--play", "a.rlog", other, "3"}).exit_code == 2);
+  }
+  CHECK(parse({"--play", "a.rlog", "--behaviour", "walk"}).exit_code == 2);
+  CHECK(parse({"--play", "a.rlog", "--name", "ada"}).exit_code == 2);
+  CHECK(parse({"--play", "a.rlog", "--key-dir", "."}).exit_code == 2);
+}
