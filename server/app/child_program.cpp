@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 
 namespace runstone {
 namespace {
@@ -37,6 +40,14 @@ struct SpawnSettings {
 };
 
 }  // namespace
+
+std::string sibling_program(const std::string& wanted, const char* variable, const std::string& name) {
+  if (!wanted.empty()) return wanted;
+  if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') return named;
+  std::error_code unknown;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  return unknown ? name : (self.parent_path() / name).string();
+}
 
 Result<pid_t, int> start_program(ChildProgram program) {
   SpawnSettings settings;

@@ -9,10 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -27,14 +24,6 @@ constexpr std::size_t kOrdersKept = 64 * 1024;  // small orders are sent togethe
 constexpr Milliseconds kEndLimit{10'000};       // for a child that has nothing more to do
 
 Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
-
-std::string program_to_start(const std::string& wanted) {
-  if (!wanted.empty()) return wanted;
-  if (const char* named = std::getenv("RUNSTONE_CLIENT"); named != nullptr && *named != '\0') return named;
-  std::error_code unknown;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  return unknown ? "runstone-client" : (self.parent_path() / "runstone-client").string();
-}
 
 }  // namespace
 
@@ -77,7 +66,7 @@ void DrawChild::close_and_kill() {
 }
 
 DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) {
-  const std::string program = program_to_start(options.program);
+  const std::string program = sibling_program(options.program, "RUNSTONE_CLIENT", "runstone-client");
   // A pair of sockets instead of two pipes: to write where nobody reads any more is an error then, not a
   // signal.
   std::array<int, 2> ends{-1, -1};

@@ -3,6 +3,15 @@
 #include <CLI/CLI.hpp>
 
 namespace runstone {
+namespace {
+
+/// As runstone-bot takes it: told before the log is exported.
+bool is_speed(const std::string& text) {
+  double speed = 0;
+  return text == "max" || (CLI::detail::lexical_cast(text, speed) && speed >= 0 && speed <= 1'000'000);
+}
+
+}  // namespace
 
 ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std::ostream& out,
                                          std::ostream& err) {
@@ -44,8 +53,23 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
   app.add_option("--keyframe-edits", options.keyframe_edits, "edits between two keyframes, at least")
       ->check(CLI::Range(1, 1'000'000'000))
       ->needs("--keyframes");
+  CLI::Option* into =
+      app.add_option("--into", options.into,
+                     "play the log into the live server at HOST:PORT instead, as players of its own");
+  app.add_option("--speed", options.speed,
+                 "into: 2 is twice as fast as recorded, 0 or max as fast as the server takes it; default 1")
+      ->check([](const std::string& text) { return is_speed(text) ? "" : "expected 0 to 1000000, or max"; })
+      ->needs(into);
+  app.add_option("--bot", options.bot,
+                 "into: the program that plays; default: RUNSTONE_BOT, or runstone-bot beside this one")
+      ->needs(into);
+  CLI::Option* bench =
+      app.add_flag("--bench", options.bench, "time reading the log and rebuilding the world instead");
+  app.add_option("--rounds", options.rounds, "bench: how often; default 5")
+      ->check(CLI::Range(1U, 1'000U))
+      ->needs(bench);
   app.add_flag("--progress", options.progress, "tell how far it is also where stderr is no terminal");
-  const char* modes[] = {"--export", "--import", "--keyframes", "--write", "--diff"};
+  const char* modes[] = {"--export", "--import", "--keyframes", "--write", "--diff", "--into", "--bench"};
   for (const char* mode : modes) {
     for (const char* other : {"--verify", "--against"}) app.get_option(mode)->excludes(other);
     for (const char* other : modes) {
@@ -56,8 +80,8 @@ ParsedReplayOptions parse_replay_options(int argc, const char* const* argv, std:
   app.get_option("--keyframes")->excludes("--at");
   app.get_option("--diff")->excludes("--at");
   add_timelapse_options(app, options.timelapse);
-  for (const char* other :
-       {"--verify", "--against", "--export", "--import", "--keyframes", "--write", "--diff"}) {
+  for (const char* other : {"--verify", "--against", "--export", "--import", "--keyframes", "--write",
+                            "--diff", "--into", "--bench"}) {
     app.get_option("--timelapse")->excludes(other);
   }
   try {

@@ -24,6 +24,10 @@ struct ReplayOptions {
   std::string json;                    // file; empty: none
   std::vector<std::string> against;    // files
   std::string export_to, import_from;  // .rlog files; at most one is not empty
+  std::string into;                    // HOST:PORT of a live server that the log is played into
+  std::string speed = "1", bot;        // of that, as runstone-bot takes it; the program that plays
+  bool bench = false;                  // time reading and rebuilding
+  std::uint32_t rounds = 5;            // of it
   bool keyframes = false;              // make those that are missing
   std::uint64_t keyframe_edits = 32'768;
   bool progress = false;       // also where stderr is no terminal

@@ -10,8 +10,10 @@
 #include "server/app/digest_list.hpp"
 #include "server/app/keyframes_program.hpp"
 #include "server/app/moments_program.hpp"
+#include "server/app/play_into.hpp"
 #include "server/app/progress_line.hpp"
 #include "server/app/replay.hpp"
+#include "server/app/replay_bench.hpp"
 #include "server/app/replay_options.hpp"
 #include "server/app/rlog_file.hpp"
 #include "server/app/timelapse_program.hpp"
@@ -180,6 +182,11 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
   };
   if (!options.export_to.empty()) return export_log(options, out, err);
   if (!options.import_from.empty()) return import_log(options, out, err);
+  if (options.bench) return exit_of(bench_replay(options, out));
+  if (!options.into.empty()) {
+    const auto code = play_into(options);
+    return code ? *code : cannot_read(err, code.error());
+  }
   if (options.keyframes) return exit_of(make_keyframes(options, out));
   if (!options.write_to.empty()) return exit_of(write_moment(options, out));
   if (options.diff) return exit_of(diff_moments(options, out));
