@@ -85,10 +85,11 @@ struct BotFleet::Parts {
     }
   }
 
-  /// Runs the links and steps every bot until `done`, the end of `seconds` (false) or a stop (false).
-  bool play_until(const std::function<bool()>& done, double seconds, const volatile std::sig_atomic_t& stop) {
+  /// Runs the links and steps every bot until `done`, the end of `seconds` (false) or so many signals (false).
+  bool play_until(const std::function<bool()>& done, double seconds, const volatile std::sig_atomic_t& stop,
+                  int signals = 1) {
     const TimeUs end_us = steady_now_us() + static_cast<TimeUs>(seconds * 1e6);
-    while (stop == 0) {
+    while (stop < signals) {
       const TimeUs now_us = steady_now_us();
       for (const auto& member : members) member->step(now_us);
       if (done()) return true;
@@ -139,7 +140,7 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
                      stop);
     for (const auto& member : fleet.members) member->bot().end();
     report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
-    const bool settled = fleet.play_until([&] { return fleet.all(is_settled); }, patience, stop);
+    const bool settled = fleet.play_until([&] { return fleet.all(is_settled); }, patience, stop, 2);
     if (!settled) report.failure = fleet.explain("has edits without an answer", is_settled);
   }
 

@@ -32,7 +32,8 @@ class BotFleet {
   explicit BotFleet(const BotOptions& options);
   ~BotFleet();
 
-  /// Plays to the end, or until `stop` is set by a signal.
+  /// Plays to the end. `stop` counts signals: the first one ends the edits, and what was handed in is still waited for; the
+  /// second one ends that too.
   FleetReport run(const volatile std::sig_atomic_t& stop);
 
  private:

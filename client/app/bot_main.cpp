@@ -17,7 +17,7 @@ namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-void request_stop(int) { stop_requested = 1; }
+void request_stop(int) { stop_requested = stop_requested + 1; }
 
 int play(const runstone::BotOptions& options) {
   using namespace runstone;

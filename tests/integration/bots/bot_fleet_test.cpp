@@ -85,6 +85,9 @@ TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
   });
   const FleetReport report = BotFleet(options).run(stop);
   stopper.join();
+  CHECK(report.failure.empty());
+  CHECK(report.counts.submitted > 20);
+  CHECK(report.counts.durable == report.counts.submitted);
   CHECK(report.seconds < 30);
   CHECK(report.counts.rejected == 0);
 }
