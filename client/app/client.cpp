@@ -28,9 +28,10 @@ namespace {
 constexpr TimeUs kRestUs = 10'000;  // longest pause of the loop: session ticks
 constexpr TimeUs kInputUs = 2'000;  // longest pause with a window: how late a key or click is noticed
 constexpr TimeUs kTitleUs = 500'000;
-constexpr Sequence kScrubSteps = 100;       // from the first edit to the newest
-constexpr TimeUs kEventsUs = 8'000;         // messages taken per turn before meshes and frames get theirs
-constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
+constexpr TimeUs kSettleUsMax = 10'000'000;  // for all that is here to be drawn without anything new to draw
+constexpr Sequence kScrubSteps = 100;        // from the first edit to the newest
+constexpr TimeUs kEventsUs = 8'000;          // messages taken per turn before meshes and frames get theirs
+constexpr std::int64_t kGoodbyeMs = 1'000;   // to say goodbye
 
 /// Null where nothing is to be seen.
 std::unique_ptr<Window> make_window(const ClientOptions& options) {
@@ -432,7 +433,15 @@ bool Client::view_has_followed() const {
          session_.view().centre == player_.chunk(session_.replica().chunk_edge());
 }
 
-bool Client::loaded() const { return view_has_followed() && session_.loaded() && picture_.is_settled(); }
+bool Client::loaded() const {
+  if (!view_has_followed() || !session_.loaded()) {
+    complete_us_.reset();
+    return false;
+  }
+  if (!complete_us_) complete_us_ = steady_now_us();
+  // Where others never stop editing there is always a mesh to make: then what was drawn meanwhile is the picture.
+  return picture_.is_settled() || steady_now_us() - *complete_us_ >= kSettleUsMax;
+}
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.

@@ -109,10 +109,11 @@ class Client final : private ScriptHost {
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t openings_seen_ = 0;
   TimeUs started_us_ = 0;
-  std::optional<TimeUs> lost_us_;   // without a session since
-  std::string last_failure_;        // why the last attempt to connect failed
-  Sequence scrubbed_to_ = 0;        // while the past is shown or asked for
-  std::optional<int> wish_to_end_;  // the user or the server ends the program
+  std::optional<TimeUs> lost_us_;              // without a session since
+  std::string last_failure_;                   // why the last attempt to connect failed
+  mutable std::optional<TimeUs> complete_us_;  // everything in view is here since
+  Sequence scrubbed_to_ = 0;                   // while the past is shown or asked for
+  std::optional<int> wish_to_end_;             // the user or the server ends the program
 
   TimeUs input_us_ = 0, title_us_ = 0;
   std::uint64_t title_frames_ = 0;  // presented when the title was set

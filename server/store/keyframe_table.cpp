@@ -184,14 +184,14 @@ StoreResult<void> KeyframeTable::prove(const std::vector<Keyframe>& keyframes,
 
 std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start, const std::vector<StoredChunk>& rows) {
   start.insert(start.end(), rows.begin(), rows.end());
-  std::stable_sort(start.begin(), start.end(),
-                   [](const StoredChunk& a, const StoredChunk& b) { return a.key < b.key; });
-  // Of equal keys the last is the newest, and std::unique keeps the first.
-  std::reverse(start.begin(), start.end());
+  // Of equal keys the newest comes first, and std::unique keeps the first.
+  std::sort(start.begin(), start.end(), [](const StoredChunk& a, const StoredChunk& b) {
+    if (a.key != b.key) return a.key < b.key;
+    return a.version != b.version ? b.version < a.version : a.is_base < b.is_base;
+  });
   start.erase(std::unique(start.begin(), start.end(),
                           [](const StoredChunk& a, const StoredChunk& b) { return a.key == b.key; }),
               start.end());
-  std::reverse(start.begin(), start.end());
   return start;
 }
 
