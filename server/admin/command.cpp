@@ -59,6 +59,12 @@ class Reader {
  public:
   Reader(const Words& words, std::size_t next, TimeUs now_us) : words_(words), next_(next), now_us_(now_us) {}
 
+  /// Whether the next word is this one, which is taken then.
+  bool take_word(std::string_view word) {
+    if (at_end() || peek() != word) return false;
+    ++next_;
+    return true;
+  }
   bool at_end() const { return next_ == words_.size() || !error_.empty(); }
   const std::string& peek() const { return words_[next_]; }
   /// The next word; an empty one, and the mistake, if there is none.
@@ -160,8 +166,12 @@ Result<Command, std::string> log_command(Reader reader) {
 Result<Command, std::string> preview_command(Reader reader) {
   RollbackPreviewCommand preview;
   while (!reader.at_end()) {
+    if (reader.take_word("picture")) {
+      preview.picture = true;
+      continue;
+    }
     if (take_filter(reader, preview.filter)) continue;
-    return mistake("rollback preview \"" + reader.peek() + "\": author, since, until, box or cause");
+    return mistake("rollback preview \"" + reader.peek() + "\": author, since, until, box, cause or picture");
   }
   if (!reader.error().empty()) return mistake("rollback preview " + reader.error());
   // A slip of the finger must not select the whole world.
@@ -232,7 +242,8 @@ std::string command_help(bool is_operator) {
          "\nstatus                    what the server does\n"
          "players                   who is here, and who has ever built\n"
          "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
-         "rollback preview FILTERS  what taking these edits back would do\n"
+         "rollback preview FILTERS [picture]\n"
+         "                          what taking these edits back would do; draws the area before and after\n"
          "rollback apply ID         do it; people go on playing, and what they built since stays\n"
          "rollback cancel ID        stop it, or forget a preview\n"
          "rollback undo ID          take a rollback back\n"

@@ -55,6 +55,7 @@ struct LogCommand {
 };
 struct RollbackPreviewCommand {
   CommandFilter filter;
+  bool picture = false;  // draw the area, before and after
   friend bool operator==(const RollbackPreviewCommand&, const RollbackPreviewCommand&) = default;
 };
 struct RollbackCommand {

@@ -8,6 +8,7 @@
 #include "common/core/hex.hpp"
 #include "common/core/utc_text.hpp"
 #include "common/edits/edit_geometry.hpp"
+#include "server/app/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
 
 namespace runstone {
@@ -88,11 +89,12 @@ class AuthorNames {
 }  // namespace
 
 CommandDesk::CommandDesk(WorldServer& world, RollbackDesk& rollback, RollbackDesk::Workers& workers,
-                         MaterialTable materials, std::function<void()> stop)
+                         MaterialTable materials, std::string world_folder, std::function<void()> stop)
     : world_(world),
       rollback_(rollback),
       workers_(workers),
       materials_(std::move(materials)),
+      world_folder_(std::move(world_folder)),
       stop_(std::move(stop)) {}
 
 void CommandDesk::run(const CommandCaller& caller, const std::string& line, const Now& now, DeskReply reply) {
@@ -243,8 +245,16 @@ void CommandDesk::log(const LogCommand& command, const Now& now, const DeskReply
 }
 
 void CommandDesk::preview(const RollbackPreviewCommand& command, const Now& now, const DeskReply& reply) {
-  resolve(command.filter, "rollback preview", reply,
-          [this, now, reply](const SelectionFilter& filter) { rollback_.preview(filter, now, reply); });
+  const auto go_on = [this, now, reply, picture = command.picture](const SelectionFilter& filter) {
+    if (!picture) return rollback_.preview(filter, now, reply);
+    const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
+    rollback_.preview(
+        filter, now, reply, [pictures](const RestorePlan& plan) { pictures->see(plan); },
+        [pictures](Store& reader, const Generator& generator, const std::string& id) {
+          return pictures->draw(reader, generator, id);
+        });
+  };
+  resolve(command.filter, "rollback preview", reply, go_on);
 }
 
 }  // namespace runstone

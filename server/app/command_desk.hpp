@@ -22,7 +22,7 @@ class CommandDesk {
  public:
   /// All must outlive the desk. `stop` asks the program to stop the server.
   CommandDesk(WorldServer& world, RollbackDesk& rollback, RollbackDesk::Workers& workers,
-              MaterialTable materials, std::function<void()> stop);
+              MaterialTable materials, std::string world_folder, std::function<void()> stop);
 
   /// Carries out one line. `reply` is called on the world strand, and must not call in.
   void run(const CommandCaller& caller, const std::string& line, const Now& now, DeskReply reply);
@@ -40,6 +40,7 @@ class CommandDesk {
   RollbackDesk& rollback_;
   RollbackDesk::Workers& workers_;
   MaterialTable materials_;
+  const std::string world_folder_;  // previews are drawn there
   std::function<void()> stop_;
 };
 

@@ -144,7 +144,8 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
   operators_ = *operators;
   rollback_ = std::make_unique<RollbackDesk>(
       *world_, *this, [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
-  commands_ = std::make_unique<CommandDesk>(*world_, *rollback_, *this, store_.meta().materials, on_stop_);
+  commands_ =
+      std::make_unique<CommandDesk>(*world_, *rollback_, *this, store_.meta().materials, folder, on_stop_);
   durable_.store(start->log.last);
   chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
   moments_ = std::make_unique<Moments>(folder, generator_);

@@ -112,7 +112,7 @@ void RollbackDesk::change_own(AuthorId author, Cause cause, const Now& now, Desk
 // ----------------------------------------------------------------------------------------------------
 
 void RollbackDesk::preview(const SelectionFilter& filter, const Now& now, DeskReply reply, Viewer see,
-                           std::function<std::string()> seen) {
+                           Seen seen) {
   when_durable(now, reply, [this, filter, reply, see, seen] {
     const auto preview = std::make_shared<Preview>();
     preview->number = next_preview_++;
@@ -147,7 +147,7 @@ void RollbackDesk::preview(const SelectionFilter& filter, const Now& now, DeskRe
         preview->chunks += plan->voxels > 0 ? 1 : 0;
         if (see && plan->voxels > 0) see(*plan);
       }
-      if (seen && preview->voxels > 0) preview->extra = seen();
+      if (seen && preview->voxels > 0) preview->extra = seen(reader, generator, preview->name());
     };
     workers_.run(work, [this, preview, reply](const std::string& error) {
       const std::string name = preview->name();

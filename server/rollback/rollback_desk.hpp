@@ -42,6 +42,8 @@ class RollbackDesk {
   };
   /// Sees the chunks of a preview, on a worker, one after another: now and restored.
   using Viewer = std::function<void(const RestorePlan&)>;
+  /// Has seen them all: returns lines to be added to the answer about the preview of this id.
+  using Seen = std::function<std::string(Store& reader, const Generator& generator, const std::string& id)>;
 
   /// All must outlive the desk.
   RollbackDesk(WorldServer& world, Workers& workers, RandomBytes random);
@@ -58,9 +60,9 @@ class RollbackDesk {
   }
 
   /// Says what a rollback of these edits would do, and keeps it under an id ("p1"). Changes nothing. `see`, if any,
-  /// gets each chunk that would change; `seen` then adds lines to the answer, also on the worker.
+  /// gets each chunk that would change, then `seen` has its say, also on the worker.
   void preview(const SelectionFilter& filter, const Now& now, DeskReply reply, Viewer see = {},
-               std::function<std::string()> seen = {});
+               Seen seen = {});
   /// Begins to carry out a preview. `author`: who asks; 0 the server.
   void apply(const std::string& id, AuthorId author, DeskReply reply);
   /// Stops a rollback that is being applied, or forgets a preview.

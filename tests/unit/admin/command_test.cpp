@@ -41,6 +41,8 @@ TEST_CASE("a filter says whose, when, where and why", "[admin][command]") {
       "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 -3 -4 70 "
       "8 "
       "cause player");
+  CHECK_FALSE(preview.picture);
+  CHECK(parsed<RollbackPreviewCommand>("rollback preview author #3 picture since 1h").picture);
   const CommandFilter& f = preview.filter;
   REQUIRE(f.authors.size() == 2);
   CHECK(f.authors[0] == CommandFilter::Author{"", 3});
@@ -72,7 +74,8 @@ TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
   CHECK(mistake("rollback list now") == "rollback list \"now\": nothing comes after list");
   CHECK(mistake("rollback preview") ==
         "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
-  CHECK(mistake("rollback preview by ana") == "rollback preview \"by\": author, since, until, box or cause");
+  CHECK(mistake("rollback preview by ana") ==
+        "rollback preview \"by\": author, since, until, box, cause or picture");
   CHECK(
       mistake("log since yesterday") ==
       "log since \"yesterday\": how long ago (90s, 15m, 12h, 2d, 1w) or when (2026-11-21T23:57:42Z, in UTC)");
