@@ -7,13 +7,16 @@
 #include <asio/local/stream_protocol.hpp>
 #include <asio/post.hpp>
 #include <asio/read_until.hpp>
+#include <asio/steady_timer.hpp>
 #include <asio/strand.hpp>
 #include <asio/write.hpp>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <deque>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "protocol/limits.hpp"
 
@@ -24,6 +27,7 @@ using Strand = asio::strand<asio::io_context::executor_type>;
 using Local = asio::local::stream_protocol;
 
 constexpr std::size_t kConnectionsMax = 16;
+constexpr auto kRetryInterval = std::chrono::milliseconds(200);
 constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 
 /// One connection: reads a line, has it carried out, writes the answer, reads the next.
@@ -35,6 +39,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
         handler_(std::move(handler)),
         slot_(std::move(slot)) {}
 
+  /// No further line; the answer under way is still written. All calls on the strand.
+  void finish() {
+    is_finishing_ = true;
+    if (!is_busy_) close();
+  }
+  void close() {
+    asio::error_code ignored;
+    socket_.close(ignored);
+  }
+
   void read() {
     asio::async_read_until(
         socket_, asio::dynamic_buffer(in_, kCommandBytesMax + 1), '\n',
@@ -43,6 +57,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                               if (error) return;  // gone, or a line without end
                               const std::string line = self->in_.substr(0, bytes - 1);
                               self->in_.erase(0, bytes);
+                              self->is_busy_ = true;
                               self->handler_(line, [self](const DeskAnswer& answer) {
                                 asio::post(self->strand_, [self, answer] { self->answer(answer); });
                               });
@@ -70,7 +85,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
                         if (error) return;
                         self->out_.pop_front();
                         if (!self->out_.empty()) return self->write();
-                        if (std::exchange(self->is_done_, false)) self->read();
+                        if (!std::exchange(self->is_done_, false)) return;
+                        self->is_busy_ = false;
+                        self->is_finishing_ ? self->close() : self->read();
                       }));
   }
 
@@ -80,29 +97,49 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<int> slot_;  // one of kConnectionsMax, while the connection lives
   std::string in_;
   std::deque<std::string> out_;
-  bool is_done_ = false;
+  bool is_done_ = false;       // the last answer to the line is among those to be written
+  bool is_busy_ = false;       // a line is being carried out or answered
+  bool is_finishing_ = false;  // the server stops
 };
 
 }  // namespace
 
 struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
   Parts(asio::io_context& io, std::string path_, Handler handler_)
-      : strand(asio::make_strand(io)), acceptor(io), path(std::move(path_)), handler(std::move(handler_)) {}
+      : strand(asio::make_strand(io)),
+        acceptor(io),
+        retry(io),
+        path(std::move(path_)),
+        handler(std::move(handler_)) {}
 
   void accept() {
     acceptor.async_accept(asio::bind_executor(
         strand, [self = shared_from_this()](const asio::error_code& error, Local::socket socket) {
-          if (error) return;
+          if (error == asio::error::operation_aborted) return;
+          if (error) return self->accept_later();  // too many open files, for one
           // More than so many programs of one user at a time are a mistake: the next one is turned away.
           if (self->slots.use_count() <= static_cast<long>(kConnectionsMax)) {
-            std::make_shared<Connection>(std::move(socket), self->strand, self->handler, self->slots)->read();
+            const auto connection =
+                std::make_shared<Connection>(std::move(socket), self->strand, self->handler, self->slots);
+            std::erase_if(self->connections, [](const auto& gone) { return gone.expired(); });
+            self->connections.push_back(connection);
+            connection->read();
           }
           self->accept();
         }));
   }
 
+  void accept_later() {
+    retry.expires_after(kRetryInterval);
+    retry.async_wait(asio::bind_executor(strand, [self = shared_from_this()](const asio::error_code& error) {
+      if (!error) self->accept();
+    }));
+  }
+
   Strand strand;
   Local::acceptor acceptor;
+  asio::steady_timer retry;
+  std::vector<std::weak_ptr<Connection>> connections;
   std::string path;
   Handler handler;
   std::shared_ptr<int> slots = std::make_shared<int>(0);
@@ -116,7 +153,14 @@ Result<std::string, std::string> control_path(const std::string& world) {
 }
 
 ControlSocket::ControlSocket(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ControlSocket::~ControlSocket() { stop(); }
+ControlSocket::~ControlSocket() {
+  stop();
+  asio::post(parts_->strand, [parts = parts_] {
+    for (const auto& weak : parts->connections) {
+      if (const auto connection = weak.lock()) connection->close();
+    }
+  });
+}
 
 Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::io_context& io,
                                                                           const std::string& world,
@@ -140,14 +184,17 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::
 }
 
 void ControlSocket::stop() {
-  if (!parts_) return;
+  if (std::exchange(is_stopped_, true)) return;
   asio::post(parts_->strand, [parts = parts_] {
     asio::error_code ignored;
     parts->acceptor.close(ignored);
+    parts->retry.cancel();
+    for (const auto& weak : parts->connections) {
+      if (const auto connection = weak.lock()) connection->finish();
+    }
   });
   std::error_code ignored;
   std::filesystem::remove(parts_->path, ignored);
-  parts_.reset();
 }
 
 }  // namespace runstone

@@ -28,18 +28,19 @@ class ControlSocket {
   static Result<std::unique_ptr<ControlSocket>, std::string> listen(asio::io_context& io,
                                                                     const std::string& world,
                                                                     Handler handler);
-  /// stop().
+  /// stop(), and closes the connections that are left, whatever they wait for.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Takes no more connections and removes the file. Those that wait for an answer still get it.
+  /// Takes no more connections and removes the file. Connections end, those that wait for an answer once they have it.
   void stop();
 
  private:
   struct Parts;
   explicit ControlSocket(std::shared_ptr<Parts> parts);
   std::shared_ptr<Parts> parts_;
+  bool is_stopped_ = false;
 };
 
 }  // namespace runstone

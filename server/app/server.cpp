@@ -92,11 +92,12 @@ void Server::log_counters() { parts_->core->log_counters(); }
 StopReport Server::stop() {
   Parts& parts = *parts_;
   parts.is_running = false;
-  parts.control.reset();
+  if (parts.control) parts.control->stop();
   const bool is_settled = parts.core->begin_stop().get();
   parts.core->stop_writer();
   parts.workers->join();
   parts.core->log_counters();
+  parts.control.reset();  // whoever has not read its answer by now has had time
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
   const bool is_clean = is_settled && !parts.core->has_failed();

@@ -283,6 +283,7 @@ void ServerCore::check_settled() {
 
 void ServerCore::stop_writer() {
   log_readers_.join();
+  past_readers_.join();
   if (keyframes_) keyframes_->stop();
   writer_->stop();
 }
@@ -411,7 +412,7 @@ void ServerCore::load_chunk(const ChunkKey& key) {
 }
 
 void ServerCore::open_moment(SessionId session, const Travel& travel) {
-  asio::post(workers_, [this, session, travel] {
+  asio::post(past_readers_, [this, session, travel] {
     const auto end =
         travel.to == TravelTo::time ? moments_->open_at_time(travel.utc_us) : moments_->open(travel.seq);
     Result<OpenedMoment, std::string> opened = OpenedMoment{};
@@ -429,7 +430,7 @@ void ServerCore::open_moment(SessionId session, const Travel& travel) {
 }
 
 void ServerCore::load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) {
-  asio::post(workers_, [this, session, request, at, key] {
+  asio::post(past_readers_, [this, session, request, at, key] {
     auto loaded = moments_->chunk(at, key);
     Result<ChunkPtr, std::string> chunk = ChunkPtr();
     if (loaded) {

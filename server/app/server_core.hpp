@@ -86,6 +86,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
 
  private:
   static constexpr std::size_t kLogReaders = 2;
+  static constexpr std::size_t kPastReaders = 2;
   /// Lines of one level, which peers can cause: ten a second; the next one says how many were left out.
   struct PeerLines {
     TokenBucket bucket{10, 10};
@@ -126,6 +127,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   std::function<void()> on_stop_;
   // They read the log for people who wait; chunks to be loaded or sent never wait for them.
   asio::thread_pool log_readers_{kLogReaders};
+  asio::thread_pool past_readers_{kPastReaders};  // chunks of the past: travellers wait for each other alone
 
   std::atomic<Sequence> durable_{0};
   std::atomic<bool> durable_posted_{false};

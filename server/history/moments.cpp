@@ -43,6 +43,12 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   };
   auto reader = open_world(folder_, StoreAccess::read_only);
   if (!reader) return failed(reader.error());
+  const auto stored = (*reader)->stored_moment(at);
+  if (!stored) return failed(stored.error());
+  if (at - stored->at.version.seq > kEditsMax) {
+    return failed({StoreError::Kind::bad_request, (*reader)->file(), "keyframe",
+                   "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"});
+  }
   auto world = WorldAt::open(**reader, generator_, at);
   if (!world) return failed(world.error());
   const auto end = edit_at(**reader, at);

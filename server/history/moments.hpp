@@ -14,11 +14,15 @@ namespace runstone {
 
 class Moments {
  public:
+  /// Edits that opening a moment may have to read and keep; with keyframes there are some 32,768.
+  static constexpr Sequence kEditsMax = 1'000'000;
+
   /// `generator` must outlive the object. Keeps `kept_max` moments, at least 1.
   Moments(std::string folder, const Generator& generator, std::size_t kept_max = 4)
       : folder_(std::move(folder)), generator_(generator), kept_max_(kept_max) {}
 
-  /// The moment after the edit with this sequence. Fails as WorldAt::open() does.
+  /// The moment after the edit with this sequence. Fails as WorldAt::open() does, and
+  /// (bad_request) if more than kEditsMax edits lie between it and the stored moment before.
   StoreResult<LogEnd> open(Sequence at);
   /// The moment after the last edit at or before this time (UTC).
   StoreResult<LogEnd> open_at_time(TimeUs utc_us);

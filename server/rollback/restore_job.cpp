@@ -50,6 +50,7 @@ bool RestoreJob::is_careful(const ChunkKey& key) const {
 }
 
 std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
+  if (!world.accepts_edits()) return std::nullopt;
   if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks) return std::nullopt;
   RestoreWork work;
   work.selection = order_.selection;
@@ -102,7 +103,11 @@ void RestoreJob::cancel() {
 
 void RestoreJob::step(WorldServer& world, const Now& now) {
   if (state_ != State::applying) return;
-  if (!world.accepts_edits()) return work_failed("the server stops, or its log cannot be written any more");
+  if (!world.accepts_edits()) {  // a worker may still be at it: its answer comes, and finds the job ended
+    state_ = State::failed;
+    progress_.error = "the server stops, or its log cannot be written any more";
+    return;
+  }
   if (planned_.empty()) return;
   world.commit(now);  // from here to order_own() no version moves
   std::vector<EditOffer> offers;

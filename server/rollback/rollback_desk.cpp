@@ -156,6 +156,10 @@ void RollbackDesk::preview(const SelectionFilter& filter, const Now& now, DeskRe
         previews_.erase(preview->number);
         return refuse(reply, "rollback preview: " + wrong);
       }
+      if (!previews_.contains(preview->number)) {
+        return refuse(reply,
+                      "rollback preview: " + name + " was forgotten: too many were asked for meanwhile");
+      }
       const Selection& s = *preview->selection;
       if (s.edits == 0 || preview->voxels == 0) {
         previews_.erase(preview->number);
@@ -215,8 +219,8 @@ void RollbackDesk::apply(const std::string& id, AuthorId author, DeskReply reply
 
 void RollbackDesk::cancel(const std::string& id, DeskReply reply) {
   for (const auto& job : jobs_) {
-    const bool is_it =
-        (job->preview && job->preview->name() == id) || std::to_string(job->job.progress().first) == id;
+    const bool is_it = (job->preview && job->preview->name() == id) ||
+                       (job->job.progress().first != 0 && std::to_string(job->job.progress().first) == id);
     if (!is_it || job->own_change_of) continue;
     job->job.cancel();
     return reply({"rollback " + id + " stops", true, true});

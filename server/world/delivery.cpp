@@ -16,16 +16,18 @@ void put_off(WorldState& world, SessionId session, const ChunkKey& key, const No
   world.interest.set_state(session, key, ChunkInterest::wanted);
 }
 
-/// Whether nothing is in front of the session's chunks any more.
+/// Sends what stands before the session's next chunk. False: its queue is full.
 bool send_moment(WorldState& world, SessionId session, const Now& now) {
   WorldSession& mine = *world.find(session);
-  if (!mine.moment_due) return true;
-  if (!world.ports.send(session, encode_message(*mine.moment_due))) {
-    ++world.counters.queue_full;
-    mine.stalled_us = now.steady_us;
-    return false;
+  for (std::optional<Moment>* due : {&mine.begins_due, &mine.word_due}) {
+    if (!*due) continue;
+    if (!world.ports.send(session, encode_message(**due))) {
+      ++world.counters.queue_full;
+      mine.stalled_us = now.steady_us;
+      return false;
+    }
+    due->reset();
   }
-  mine.moment_due.reset();
   return true;
 }
 

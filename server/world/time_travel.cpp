@@ -27,7 +27,8 @@ void open_next(WorldState& world, SessionId session) {
 void return_to_live(WorldState& world, SessionId session, std::uint32_t request, const Now& now) {
   WorldSession& mine = *world.find(session);
   mine.visit.reset();
-  mine.moment_due = Moment{request, MomentPhase::begins, false, 0, 0, ""};
+  mine.begins_due = Moment{request, MomentPhase::begins, false, 0, 0, ""};
+  mine.word_due.reset();
   want_all(world, session);
   deliver(world, session, now);
 }
@@ -62,16 +63,18 @@ void on_moment_opened(WorldState& world, SessionId session, std::uint32_t reques
   mine->next_travel.reset();
   if (!opened) {
     const bool is_past = mine->visit.has_value();
-    mine->moment_due =
+    mine->word_due =
         Moment{request, MomentPhase::refused, is_past, is_past ? mine->visit->seq : 0, 0, opened.error()};
     return deliver(world, session, now);
   }
   Visit visit;
+  visit.number = ++world.visits;
   visit.request = request;
   visit.seq = opened->seq;
   if (mine->visit) visit.sent = std::move(mine->visit->sent);
   mine->visit = std::move(visit);
-  mine->moment_due = Moment{request, MomentPhase::begins, true, opened->seq, opened->utc_us, ""};
+  mine->word_due.reset();
+  mine->begins_due = Moment{request, MomentPhase::begins, true, opened->seq, opened->utc_us, ""};
   want_all(world, session);
   deliver(world, session, now);
 }
@@ -84,18 +87,18 @@ void deliver_past(WorldState& world, SessionId session, const Now& now) {
     if (!key) break;
     world.interest.set_state(session, *key, ChunkInterest::recalling);
     ++visit.loading;
-    world.ports.load_past_chunk(session, visit.request, visit.seq, *key);
+    world.ports.load_past_chunk(session, visit.number, visit.seq, *key);
   }
   if (visit.loading != 0 || visit.is_complete || world.interest.nearest_wanted(session)) return;
   visit.is_complete = true;
-  mine.moment_due = Moment{visit.request, MomentPhase::complete, true, visit.seq, 0, ""};
+  mine.word_due = Moment{visit.request, MomentPhase::complete, true, visit.seq, 0, ""};
   deliver(world, session, now);
 }
 
-void on_past_chunk(WorldState& world, SessionId session, std::uint32_t request, const ChunkKey& key,
+void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit_number, const ChunkKey& key,
                    const ChunkPtr& chunk, const Now& now) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || !mine->visit || mine->visit->request != request) return;  // it went on
+  if (mine == nullptr || !mine->visit || mine->visit->number != visit_number) return;  // it went on
   Visit& visit = *mine->visit;
   --visit.loading;
   if (world.interest.find(session)->state(key) == ChunkInterest::recalling) {

@@ -18,7 +18,7 @@ void open_waiting_moments(WorldState& world);
 void on_moment_opened(WorldState& world, SessionId session, std::uint32_t request,
                       const Result<OpenedMoment, std::string>& opened, const Now& now);
 /// The port's answer; null if the chunk cannot be read.
-void on_past_chunk(WorldState& world, SessionId session, std::uint32_t request, const ChunkKey& key,
+void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit, const ChunkKey& key,
                    const ChunkPtr& chunk, const Now& now);
 
 /// Asks for the session's nearest wanted chunks as they were. Requires a visit.

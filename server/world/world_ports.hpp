@@ -55,7 +55,7 @@ class WorldPorts {
   /// WorldServer::moment_opened(). Asked at most once per session until answered.
   virtual void open_moment(SessionId /*session*/, const Travel& /*travel*/) {}
   /// Makes a chunk as it stood after edit `at`, on a worker. Answer: WorldServer::past_chunk().
-  virtual void load_past_chunk(SessionId /*session*/, std::uint32_t /*request*/, Sequence /*at*/,
+  virtual void load_past_chunk(SessionId /*session*/, std::uint32_t /*visit*/, Sequence /*at*/,
                                const ChunkKey& /*key*/) {}
   /// Hands over immutable chunks to be written as snapshots (each version <= durable), and the sequence up to
   /// which everything is then contained in snapshots. Answer: WorldServer::snapshots_saved().

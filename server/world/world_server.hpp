@@ -77,7 +77,7 @@ class WorldServer {
   void moment_opened(SessionId session, std::uint32_t request,
                      const Result<OpenedMoment, std::string>& opened, const Now& now);
   /// A chunk as it was then, or what cannot be read: names file, table and row.
-  void past_chunk(SessionId session, std::uint32_t request, const ChunkKey& key,
+  void past_chunk(SessionId session, std::uint32_t visit, const ChunkKey& key,
                   const Result<ChunkPtr, std::string>& chunk, const Now& now);
   /// Everything up to `seq` is on disk.
   void durable(Sequence seq, const Now& now);

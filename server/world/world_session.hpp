@@ -21,6 +21,7 @@ inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
 /// A session's stay in the past.
 struct Visit {
+  std::uint32_t number = 0;  // of all visits of the server: what workers bring belongs to it
   std::uint32_t request = 0;
   Sequence seq = 0;                  // the last edit it sees
   std::map<ChunkKey, Version> sent;  // what it has of the past: need not be sent again while the view stays
@@ -54,7 +55,8 @@ struct WorldSession {
   std::optional<Travel> next_travel;  // the newest wish that nothing was done for yet
   bool opens_moment = false;          // a worker is at one
   std::optional<Visit> visit;         // nothing: it sees the live world
-  std::optional<Moment> moment_due;   // to be sent before any further chunk
+  std::optional<Moment> begins_due;   // to be sent before any further chunk
+  std::optional<Moment> word_due;     // after it: all was sent, or a wish was refused
   std::optional<TimeUs>
       stalled_us;  // its queue was full then: no snapshots until drained or the retry interval
 };

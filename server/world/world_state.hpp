@@ -38,6 +38,7 @@ struct WorldState {
   TimeUs poses_us = 0, audits_us = 0;  // when last sent
   std::size_t view_chunks_left;        // of this tick's
   bool views_wait = false;             // some had to be left for the next tick
+  std::uint32_t visits = 0;            // to the past, ever
   std::size_t moments_opening = 0;     // by workers (time_travel.hpp)
   SessionId view_served = 0;           // whose view took effect last on a tick
 

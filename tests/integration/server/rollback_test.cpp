@@ -2,6 +2,10 @@
 // else goes on building. Afterwards server, snapshots and a replay of the log agree.
 #include <sys/stat.h>
 
+#include <array>
+#include <asio/buffer.hpp>
+#include <asio/io_context.hpp>
+#include <asio/local/stream_protocol.hpp>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <sstream>
@@ -188,6 +192,21 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on", "[integ
     }
   }
   CHECK(wrong == 0);
+}
+
+TEST_CASE("a control connection that says nothing does not keep a server from stopping",
+          "[integration][rollback]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  asio::io_context io;
+  asio::local::stream_protocol::socket idle(io);
+  idle.connect(*control_path(folder.path()));
+  CHECK(control(folder.path(), {"status"}).is_ok);
+  CHECK(server->stop().is_clean);
+  asio::error_code error;
+  std::array<char, 1> byte{};
+  CHECK(idle.read_some(asio::buffer(byte), error) == 0);
+  CHECK(error == asio::error::eof);
 }
 
 TEST_CASE("control says so when no server runs the world, or its path is too long",

@@ -59,7 +59,7 @@ Counted count_densely(const std::vector<EditRecord>& records, const Generator& g
 
 TEST_CASE("a difference of two moments is that of their voxels, each with its last writer",
           "[history][diff]") {
-  SplitMix64 rng(GENERATE(1, 2));
+  SplitMix64 rng(GENERATE(1U, 2U));
   const TempFolder folder;
   WorldMeta meta = sample_meta();
   meta.generator.name = "flat";

@@ -208,6 +208,24 @@ TEST_CASE("a rollback waits while the log is full, and says when it cannot be wr
   }
 }
 
+TEST_CASE(
+    "a disk that fails while a worker still plans ends the rollback, and the worker's answer is no harm",
+    "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.desk.apply(id, 0, night.reply());
+  night.tick();
+  REQUIRE_FALSE(night.works.empty());
+  night.bench.server.log_failed();
+  night.tick();
+  CHECK_FALSE(night.answer().is_ok);
+  while (night.work()) {
+  }
+  night.tick();
+  CHECK(night.desk.running() == 0);
+  CHECK(night.works.empty());
+}
+
 TEST_CASE("a rollback that is cancelled midway can be taken back", "[rollback]") {
   Night night;
   const auto griefed = night.digests();
