@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/runs/reorder.hpp"
+#include "server/history/base_chunk.hpp"
 
 namespace runstone {
 
@@ -42,15 +43,9 @@ StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
 
 StoreResult<Chunk> ChunkSource::load(Store& reader, const ChunkKey& key) const {
   auto stored = reader.load_snapshot(key);
-  if (stored && !stored->has_value()) stored = reader.load_base(key);
   if (!stored) return Unexpected<StoreError>{stored.error()};
-  Chunk chunk;
-  if (stored->has_value()) {
-    chunk = **std::move(stored);
-  } else {
-    chunk.voxels = generator_.generate(origin_of(key.at, edge_), Extent::cube(static_cast<unsigned>(edge_)));
-    chunk.digest = digest_of(chunk.voxels);
-  }
+  if (!stored->has_value()) return base_chunk(reader, generator_, key);
+  Chunk chunk = **std::move(stored);
   chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
   return chunk;
 }

@@ -16,8 +16,8 @@ namespace runstone {
 class ChunkSource {
  public:
   /// `generator` must outlive the source.
-  ChunkSource(std::string folder, std::int32_t edge, const Generator& generator)
-      : folder_(std::move(folder)), edge_(edge), generator_(generator) {}
+  ChunkSource(std::string folder, const Generator& generator)
+      : folder_(std::move(folder)), generator_(generator) {}
 
   /// A chunk as it stands on disk, in its cheapest axis order, with its digest; an error names file, table
   /// and row.
@@ -31,7 +31,6 @@ class ChunkSource {
   StoreResult<Chunk> load(Store& reader, const ChunkKey& key) const;
 
   const std::string folder_;
-  const std::int32_t edge_;
   const Generator& generator_;
   std::mutex mutex_;  // a leaf: guards the pool
   std::vector<std::unique_ptr<Store>> idle_;

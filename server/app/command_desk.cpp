@@ -14,6 +14,8 @@
 namespace runstone {
 namespace {
 
+constexpr std::size_t kPlayersTold = 500;  // of those who are not here: anybody can make keys
+
 void refuse(const DeskReply& reply, std::string text) { reply({std::move(text), true, false}); }
 
 std::string text_of_pos(const VoxelPos& p) {
@@ -168,7 +170,13 @@ void CommandDesk::players(const DeskReply& reply) {
                            static_cast<std::int32_t>(player.at.z)});
         }
         std::string text = lines.empty() ? "nobody has ever been here\n" : "";
-        for (const auto& [author, line] : lines) text += line + "\n";
+        std::size_t told = 0;
+        for (const auto& [author, line] : lines) {
+          if (here.contains(author) || told < kPlayersTold) text += line + "\n";
+          told += here.contains(author) ? 0 : 1;
+        }
+        if (told > kPlayersTold)
+          text += "and " + std::to_string(told - kPlayersTold) + " more who are not here\n";
         text.pop_back();
         reply({text, true, true});
       });

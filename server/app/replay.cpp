@@ -5,7 +5,7 @@
 
 #include "common/core/key_text.hpp"
 #include "common/edits/edit_geometry.hpp"
-#include "common/runs/reorder.hpp"
+#include "server/history/base_chunk.hpp"
 
 namespace runstone {
 
@@ -42,17 +42,6 @@ void Replayer::expect_keyframes(const std::vector<StoredChunk>& chunks) {
 
 void Replayer::count(const Expected& expected) {
   ++(expected.source == kKeyframe ? report_.keyframes_compared : report_.listed_compared);
-}
-
-StoreResult<Chunk> Replayer::base_of(const ChunkKey& key) {
-  auto base = store_.load_base(key);
-  if (!base) return Unexpected<StoreError>{base.error()};
-  if (base->has_value()) return **std::move(base);
-  Chunk chunk;
-  chunk.voxels = in_cheapest_order(
-      generator_.generate(origin_of(key.at, edge_), Extent::cube(static_cast<unsigned>(edge_))));
-  chunk.digest = digest_of(chunk.voxels);
-  return chunk;
 }
 
 void Replayer::differs(ReplayDifference difference) {
@@ -107,7 +96,7 @@ StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
     const ChunkKey key{0, at};
     auto found = chunks_.find(key);
     if (found == chunks_.end()) {
-      auto base = base_of(key);
+      auto base = base_chunk(store_, generator_, key);
       if (!base) return Unexpected<StoreError>{base.error()};
       found = chunks_.emplace(key, Rebuilt{*std::move(base), {}}).first;
       if (auto compared = compare(key, found->second); !compared) return compared;
@@ -160,7 +149,7 @@ StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expecte
     check(key, expected, found->second.chunk);
     return {};
   }
-  const auto base = base_of(key);
+  const auto base = base_chunk(store_, generator_, key);
   if (!base) return Unexpected<StoreError>{base.error()};
   check(key, expected, *base);
   return {};
@@ -183,7 +172,7 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
     if (!base) return Unexpected<StoreError>{base.error()};
     for (const StoredChunk& stored : *base) {
       if (stored.version == Version{}) continue;
-      auto chunk = base_of(stored.key);
+      auto chunk = base_chunk(store_, generator_, stored.key);
       if (!chunk) return Unexpected<StoreError>{chunk.error()};
       const auto found = chunks_.emplace(stored.key, Rebuilt{*std::move(chunk), {}}).first;
       if (auto compared = compare(stored.key, found->second); !compared)

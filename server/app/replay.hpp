@@ -73,7 +73,6 @@ class Replayer {
     Digest digest;
   };
 
-  StoreResult<Chunk> base_of(const ChunkKey& key);
   StoreResult<void> replay_edit(const EditRecord& record);
   void apply(const ChunkKey& key, Rebuilt& rebuilt);
   StoreResult<void> expect_snapshots();

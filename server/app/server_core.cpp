@@ -147,7 +147,7 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
   commands_ =
       std::make_unique<CommandDesk>(*world_, *rollback_, *this, store_.meta().materials, folder, on_stop_);
   durable_.store(start->log.last);
-  chunks_ = std::make_unique<ChunkSource>(folder, store_.meta().chunk_edge, generator_);
+  chunks_ = std::make_unique<ChunkSource>(folder, generator_);
   moments_ = std::make_unique<Moments>(folder, generator_);
   start_writer(folder);
   logger("world").info("world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder,
