@@ -157,6 +157,7 @@ struct BodyBuilder {
   Offset<wire::CommandOutput> operator()(const CommandOutput& m) {
     RUNSTONE_ASSERT(m.lines.size() <= kCommandLinesMax);
     std::vector<Offset<flatbuffers::String>> lines;
+    lines.reserve(m.lines.size());
     for (const std::string& line : m.lines) lines.push_back(b.CreateString(shown_line(line)));
     return wire::CreateCommandOutput(b, m.id, b.CreateVector(lines), m.is_done, m.is_ok);
   }

@@ -66,6 +66,7 @@ Result<pid_t, int> start_program(ChildProgram program) {
   ::posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
   std::vector<char*> arguments;
+  arguments.reserve(program.words.size() + 1);
   for (std::string& word : program.words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t pid = -1;
