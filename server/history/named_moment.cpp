@@ -29,8 +29,11 @@ class Reader {
     std::size_t count = 0;
     while (count < text_.size() && text_[count] >= '0' && text_[count] <= '9') ++count;
     if (count == 0 || count > most) return std::nullopt;
+    const std::string_view digits = text_.substr(0, count);
     std::uint64_t value = 0;
-    if (std::from_chars(text_.data(), text_.data() + count, value).ec != std::errc()) return std::nullopt;
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), value).ec != std::errc()) {
+      return std::nullopt;
+    }
     digits_ = count;
     text_.remove_prefix(count);
     return value;

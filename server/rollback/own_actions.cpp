@@ -46,6 +46,7 @@ std::vector<Sequence> OwnActions::redoable() const {
   std::sort(undone.begin(), undone.end(),
             [](const OwnAction* a, const OwnAction* b) { return a->last_undo.back() > b->last_undo.back(); });
   std::vector<Sequence> out;
+  out.reserve(undone.size());
   for (const OwnAction* action : undone) out.push_back(action->seq);
   return out;
 }

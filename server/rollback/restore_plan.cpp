@@ -64,6 +64,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
     plan.differences = inside(plan.differences, spans);
     plan.restored = plan.now;
     std::vector<Change> changes;
+    changes.reserve(plan.differences.size());
     for (const Difference& d : plan.differences) changes.push_back({d.first, d.last, d.restored});
     write_changes(plan.restored, changes, scratch_);
   }

@@ -71,6 +71,7 @@ StoreResult<std::vector<RollbackGroup>> rollback_groups(Store& reader, std::size
   });
   if (!read) return Unexpected<StoreError>{read.error()};
   std::vector<RollbackGroup> out;
+  out.reserve(by_instance.size());
   for (auto& [instance, group] : by_instance) out.push_back(std::move(group));
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   if (out.size() > count_max) out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(count_max));
