@@ -1,11 +1,14 @@
 #include "common/core/utc_text.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace runstone {
 namespace {
 
+constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::int64_t kDaySeconds = 86'400;
+constexpr std::size_t kDigitsMax = 6;  // of a number in a duration, and behind a decimal point
 
 constexpr std::int64_t floor_to(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -50,6 +53,20 @@ std::int64_t take_number(std::string_view& text, std::size_t digits) {
   return number;
 }
 
+/// How many digits the text begins with.
+std::size_t digits_of(std::string_view text) {
+  return std::min(text.find_first_not_of("0123456789"), text.size());
+}
+
+/// Takes one to six decimals of a second off the front, as microseconds; -1 if they are not there.
+std::int64_t take_decimals(std::string_view& text) {
+  const std::size_t digits = digits_of(text);
+  if (digits == 0 || digits > kDigitsMax) return -1;
+  std::int64_t us = take_number(text, digits);
+  for (std::size_t i = digits; i < kDigitsMax; ++i) us *= 10;
+  return us;
+}
+
 bool take(std::string_view& text, char c) {
   if (text.empty() || text.front() != c) return false;
   text.remove_prefix(1);
@@ -59,7 +76,7 @@ bool take(std::string_view& text, char c) {
 }  // namespace
 
 std::string utc_text(TimeUs utc_us) {
-  const std::int64_t seconds = floor_to(utc_us, 1'000'000);
+  const std::int64_t seconds = floor_to(utc_us, kSecondUs);
   const std::int64_t days = floor_to(seconds, kDaySeconds);
   const std::int64_t of_day = seconds - days * kDaySeconds;
   const Date date = date_of(days);
@@ -76,29 +93,40 @@ std::optional<TimeUs> parse_utc(std::string_view text) {
   const std::int64_t days = days_of(year, month, day);
   const Date back = date_of(days);
   if (day < 1 || back.month != month || back.day != day) return std::nullopt;  // such as February 30
-  std::int64_t hour = 0, minute = 0, second = 0;
+  std::int64_t hour = 0, minute = 0, second = 0, fraction_us = 0;
   if (take(text, 'T')) {
     hour = take_number(text, 2);
     if (hour < 0 || hour > 23 || !take(text, ':')) return std::nullopt;
     minute = take_number(text, 2);
     if (minute < 0 || minute > 59) return std::nullopt;
-    if (take(text, ':')) second = take_number(text, 2);
-    if (second < 0 || second > 59) return std::nullopt;
+    if (take(text, ':')) {
+      second = take_number(text, 2);
+      if (second < 0 || second > 59) return std::nullopt;
+      if (take(text, '.')) fraction_us = take_decimals(text);
+      if (fraction_us < 0) return std::nullopt;
+    }
     take(text, 'Z');
   }
   if (!text.empty()) return std::nullopt;
-  return ((days * 24 + hour) * 3600 + minute * 60 + second) * 1'000'000;
+  return ((days * 24 + hour) * 3600 + minute * 60 + second) * kSecondUs + fraction_us;
 }
 
 std::optional<TimeUs> parse_duration(std::string_view text) {
-  if (text.size() < 2 || text.size() > 7) return std::nullopt;
-  const std::int64_t number = take_number(text, text.size() - 1);
-  if (number < 0) return std::nullopt;
-  constexpr std::string_view kUnits = "smhdw";
-  constexpr std::int64_t kSeconds[] = {1, 60, 3600, kDaySeconds, 7 * kDaySeconds};
-  const std::size_t unit = kUnits.find(text.front());
-  if (unit == std::string_view::npos) return std::nullopt;
-  return number * kSeconds[unit] * 1'000'000;
+  constexpr std::string_view kUnits = "wdhms";
+  constexpr std::int64_t kSeconds[] = {7 * kDaySeconds, kDaySeconds, 3600, 60, 1};
+  std::int64_t seconds = 0;
+  std::size_t next = 0;  // units that may still come: each once, the longest first
+  do {
+    const std::size_t digits = digits_of(text);
+    if (digits == 0 || digits > kDigitsMax) return std::nullopt;
+    const std::int64_t number = take_number(text, digits);
+    const std::size_t unit = text.empty() ? text.npos : kUnits.find(text.front(), next);
+    if (unit == text.npos) return std::nullopt;
+    text.remove_prefix(1);
+    seconds += number * kSeconds[unit];
+    next = unit + 1;
+  } while (!text.empty());
+  return seconds * kSecondUs;
 }
 
 }  // namespace runstone

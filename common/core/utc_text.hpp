@@ -11,12 +11,12 @@ namespace runstone {
 /// "2026-11-21T23:57:42Z", to the second (rounded down).
 std::string utc_text(TimeUs utc_us);
 
-/// Microseconds since 1970 of "2026-11-21T23:57:42Z"; the Z may be missing, and the seconds, and the time of day. Years
-/// 1970 .. 9999. Nothing if it is no such moment.
+/// Microseconds since 1970 of "2026-11-21T23:57:42.25Z"; the Z may be missing, and the decimals (six at most), the seconds and the
+/// time of day. Years 1970 .. 9999. Nothing if it is no such moment.
 std::optional<TimeUs> parse_utc(std::string_view text);
 
-/// Microseconds of "90s", "15m", "12h", "2d", "1w": a number of at most six digits and its unit. Nothing
-/// otherwise.
+/// Microseconds of "90s", "15m", "2h30m", "1w2d": numbers of at most six digits, each with its unit w, d, h, m or s; each unit
+/// at most once, the longest first. Nothing otherwise.
 std::optional<TimeUs> parse_duration(std::string_view text);
 
 }  // namespace runstone

@@ -97,7 +97,7 @@ class Reader {
 
  private:
   static constexpr const char* kMoment =
-      "how long ago (90s, 15m, 12h, 2d, 1w) or when (2026-11-21T23:57:42Z, in UTC)";
+      "how long ago (90s, 15m, 2h30m, 2d, 1w) or when (2026-11-21T23:57:42Z, in UTC)";
   const Words& words_;
   std::size_t next_;
   TimeUs now_us_;

@@ -21,8 +21,8 @@ struct BeforeEnd {
 /// After this edit; after the last one that was not later than a time.
 using NamedMoment = std::variant<Sequence, AtTime, BeforeEnd>;
 
-/// "9120", "2026-11-21T23:05:00Z" (UTC; the seconds may be left out or have up to six decimals) or "-2h30m" (days d, hours h,
-/// minutes m, seconds s, each at most once and in this order). The error says what is wrong with the text.
+/// "9120", a time in UTC such as "2026-11-21T23:05:00Z" or, behind a minus, a duration such as "-2h30m" (both as
+/// common/core/utc_text.hpp reads them). The error says what is wrong with the text.
 Result<NamedMoment, std::string> parse_moment(std::string_view text);
 
 /// The sequence that a moment means in this world: that of the last edit not later, so 0 before the first edit. Fails (bad_request) if

@@ -76,9 +76,9 @@ TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
         "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
   CHECK(mistake("rollback preview by ana") ==
         "rollback preview \"by\": author, since, until, box, cause or picture");
-  CHECK(
-      mistake("log since yesterday") ==
-      "log since \"yesterday\": how long ago (90s, 15m, 12h, 2d, 1w) or when (2026-11-21T23:57:42Z, in UTC)");
+  CHECK(mistake("log since yesterday") ==
+        "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, 1w) or when (2026-11-21T23:57:42Z, in "
+        "UTC)");
   CHECK(mistake("log author #x") == "log author \"#x\": a number after #, or a name");
   CHECK(mistake("log author") == "log author: a name, or # and a number, is missing");
   CHECK(mistake("log box 1 2 3 4 5") ==

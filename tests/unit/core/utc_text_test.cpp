@@ -15,6 +15,9 @@ TEST_CASE("moments are written and read by the calendar, in UTC", "[core]") {
   CHECK(parse_utc("2001-09-09T01:46") == 999'999'960'000'000);
   CHECK(parse_utc("2001-09-09") == 999'993'600'000'000);
   CHECK(parse_utc("2400-02-29").has_value());
+  CHECK(parse_utc("2001-09-09T01:46:40.5Z") == 1'000'000'000'500'000);
+  CHECK(parse_utc("2001-09-09T01:46:40.000001") == 1'000'000'000'000'001);
+  CHECK(parse_utc("9999-12-31T23:59:59.999999Z") == 253'402'300'799'999'999);
 }
 
 TEST_CASE("every second of a day comes back, and days over centuries", "[core]") {
@@ -25,10 +28,30 @@ TEST_CASE("every second of a day comes back, and days over centuries", "[core]")
 }
 
 TEST_CASE("what is no moment and no duration is refused", "[core]") {
-  for (const char* text :
-       {"", "2001", "2001-9-09", "2001-02-29", "2001-13-01", "2001-00-01", "2001-01-00", "2001-01-32",
-        "1969-12-31", "2001-09-09T", "2001-09-09T24:00", "2001-09-09T01:60", "2001-09-09T01:46:60",
-        "2001-09-09T01:46:", "2001-09-09 01:46", "2001-09-09T01:46Zx", "2001-09-09T0146", "-001-01-01"}) {
+  for (const char* text : {"",
+                           "2001",
+                           "2001-9-09",
+                           "2001-02-29",
+                           "2001-13-01",
+                           "2001-00-01",
+                           "2001-01-00",
+                           "2001-01-32",
+                           "1969-12-31",
+                           "2001-09-09T",
+                           "2001-09-09T24:00",
+                           "2001-09-09T01:60",
+                           "2001-09-09T01:46:60",
+                           "2001-09-09T01:46:",
+                           "2001-09-09 01:46",
+                           "2001-09-09T01:46Zx",
+                           "2001-09-09T01:46.5Z",
+                           "2001-09-09T01:46:40.Z",
+                           "2001-09-09T01:46:40.1234567Z",
+                           "2001-09-09T01:46:40.-1Z",
+                           "2001-09-09T01:46:40+01:00",
+                           "2001-09-09Z",
+                           "2001-09-09T0146",
+                           "-001-01-01"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_utc(text).has_value());
   }
@@ -37,7 +60,12 @@ TEST_CASE("what is no moment and no duration is refused", "[core]") {
   CHECK(parse_duration("1h") == 3'600'000'000);
   CHECK(parse_duration("2d") == 172'800'000'000);
   CHECK(parse_duration("999999w").has_value());
-  for (const char* text : {"", "h", "1", "1x", "-1h", "1.5h", "1hh", "1000000s", " 1h"}) {
+  CHECK(parse_duration("0s") == 0);
+  CHECK(parse_duration("2h30m") == 9'000'000'000);
+  CHECK(parse_duration("1w2d3h4m5s") == 788'645'000'000);
+  CHECK(parse_duration("999999w999999d999999h999999m999999s") == 694'860'305'139'000'000);
+  for (const char* text : {"", "h", "1", "1x", "-1h", "1.5h", "1hh", "1000000s", " 1h", "30m2h", "2h2h",
+                           "2h30", "2h 30m", "2h-30m"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_duration(text).has_value());
   }
