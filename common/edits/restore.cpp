@@ -5,13 +5,9 @@
 
 #include "common/core/assert.hpp"
 #include "common/edits/edit_changes.hpp"
+#include "common/edits/followed_chunk.hpp"
 
 namespace runstone {
-namespace {
-
-constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
-
-}  // namespace
 
 void append_differences(const RunChunk& now, const RunChunk& restored, std::vector<Difference>& out) {
   RUNSTONE_ASSERT(now.extent == restored.extent && now.order == restored.order);
@@ -42,7 +38,7 @@ void ChunkRestore::add(const EditDescriptor& edit, bool is_selected, ApplyScratc
   // Once the chunks differ, two edits of others may not be swept together: the second might take back what
   // the first wrote over a selected edit, and the sweep would see no writer at all.
   const bool may_join = pending_.empty() || pending_is_selected_ == is_selected;
-  if (!may_join || pending_.size() == kStackMax) settle(scratch);
+  if (!may_join || pending_.size() == kFollowedEditsMax) settle(scratch);
   if (is_split_ && !is_selected) return apply({&edit, 1}, false, scratch);
   pending_.push_back(edit);
   pending_is_selected_ = is_selected;

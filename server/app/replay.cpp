@@ -11,7 +11,6 @@ namespace runstone {
 
 namespace {
 
-constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
 constexpr Sequence kProgressEdits = 1024;
 constexpr const char* kKeyframe = "keyframe";
 
@@ -54,25 +53,16 @@ void Replayer::check(const ChunkKey& key, const Expected& expected, const Chunk&
   differs({expected.source, key, expected.version, rebuilt.version, expected.digest, rebuilt.digest});
 }
 
-void Replayer::apply(const ChunkKey& key, Rebuilt& rebuilt) {
-  if (rebuilt.stack.empty()) return;
-  const VoxelPos origin = origin_of(key.at, edge_);
-  report_.stack_depths.add(rebuilt.stack.size());
-  report_.voxels_changed +=
-      apply_stack(rebuilt.chunk.voxels, rebuilt.chunk.digest, origin, rebuilt.stack, scratch_).voxels_changed;
-  rebuilt.stack.clear();
-}
-
-StoreResult<void> Replayer::compare(const ChunkKey& key, Rebuilt& rebuilt) {
-  const Version version = rebuilt.chunk.version;
+StoreResult<void> Replayer::compare(const ChunkKey& key, FollowedChunk& rebuilt) {
+  const Version version = rebuilt.chunk().version;
   if (const auto snapshot = snapshots_.find(key);
       snapshot != snapshots_.end() && snapshot->second == version) {
-    apply(key, rebuilt);
+    rebuilt.settle(scratch_);
     const auto stored = store_.load_snapshot(key);
     if (!stored) return Unexpected<StoreError>{stored.error()};
     // A server that runs meanwhile may have replaced it; then there is nothing to compare at this version.
     if (stored->has_value() && (*stored)->version == version) {
-      check(key, {"snapshot", version, (*stored)->digest}, rebuilt.chunk);
+      check(key, {"snapshot", version, (*stored)->digest}, rebuilt.chunk());
       ++report_.snapshots_compared;
     } else {
       ++report_.not_compared;
@@ -82,9 +72,9 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, Rebuilt& rebuilt) {
   const auto listed = listed_.find(key);
   if (listed == listed_.end()) return {};
   const auto [first, last] = listed->second.equal_range(version);
-  if (first != last) apply(key, rebuilt);
+  if (first != last) rebuilt.settle(scratch_);
   for (auto row = first; row != last; ++row) {
-    check(key, row->second, rebuilt.chunk);
+    check(key, row->second, rebuilt.chunk());
     count(row->second);
   }
   listed->second.erase(first, last);
@@ -98,13 +88,11 @@ StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
     if (found == chunks_.end()) {
       auto base = base_chunk(store_, generator_, key);
       if (!base) return Unexpected<StoreError>{base.error()};
-      found = chunks_.emplace(key, Rebuilt{*std::move(base), {}}).first;
+      found = chunks_.emplace(key, FollowedChunk(*std::move(base), origin_of(at, edge_))).first;
       if (auto compared = compare(key, found->second); !compared) return compared;
     }
-    Rebuilt& rebuilt = found->second;
-    rebuilt.stack.push_back(record.edit);
-    rebuilt.chunk.version = record.version;
-    if (rebuilt.stack.size() == kStackMax) apply(key, rebuilt);
+    FollowedChunk& rebuilt = found->second;
+    rebuilt.add(record.edit, record.version, scratch_);
     if (auto compared = compare(key, rebuilt); !compared) return compared;
   }
   ++report_.edits;
@@ -146,7 +134,7 @@ StoreResult<void> Replayer::compare_rest() {
 StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expected& expected) {
   // Either no edit touched the chunk, or the log passed the version without meeting it: check() sees which.
   if (const auto found = chunks_.find(key); found != chunks_.end()) {
-    check(key, expected, found->second.chunk);
+    check(key, expected, found->second.chunk());
     return {};
   }
   const auto base = base_chunk(store_, generator_, key);
@@ -174,7 +162,9 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
       if (stored.version == Version{}) continue;
       auto chunk = base_chunk(store_, generator_, stored.key);
       if (!chunk) return Unexpected<StoreError>{chunk.error()};
-      const auto found = chunks_.emplace(stored.key, Rebuilt{*std::move(chunk), {}}).first;
+      const auto found =
+          chunks_.emplace(stored.key, FollowedChunk(*std::move(chunk), origin_of(stored.key.at, edge_)))
+              .first;
       if (auto compared = compare(stored.key, found->second); !compared)
         return Unexpected<StoreError>{compared.error()};
     }
@@ -190,13 +180,16 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   if (!replayed) return Unexpected<StoreError>{replayed.error()};
 
   for (auto& [key, rebuilt] : chunks_) {
-    apply(key, rebuilt);
+    rebuilt.settle(scratch_);
+    const Chunk& chunk = rebuilt.chunk();
     // The digest followed every edit; recomputed from the runs it must be the same.
-    check(key, {"followed digest", rebuilt.chunk.version, digest_of(rebuilt.chunk.voxels)}, rebuilt.chunk);
-    report_.digests.push_back({key, rebuilt.chunk.version, rebuilt.chunk.digest});
-    report_.world_digest = report_.world_digest + world_digest_term(key, rebuilt.chunk.digest);
+    check(key, {"followed digest", chunk.version, digest_of(chunk.voxels)}, chunk);
+    report_.digests.push_back({key, chunk.version, chunk.digest});
+    report_.world_digest = report_.world_digest + world_digest_term(key, chunk.digest);
   }
   if (const auto compared = compare_rest(); !compared) return Unexpected<StoreError>{compared.error()};
+  report_.voxels_changed = scratch_.voxels_changed;
+  report_.stack_depths = scratch_.depths;
   return std::move(report_);
 }
 

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/edits/edit_stack.hpp"
-#include "common/edits/stack_depths.hpp"
+#include "common/edits/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/store/store.hpp"
@@ -63,10 +62,6 @@ class Replayer {
   StoreResult<ReplayReport> run(Sequence at, const Progress& progress = {});
 
  private:
-  struct Rebuilt {
-    Chunk chunk;
-    std::vector<EditDescriptor> stack;  // not applied yet; chunk.version counts them already
-  };
   struct Expected {
     std::string source;
     Version version;
@@ -74,10 +69,9 @@ class Replayer {
   };
 
   StoreResult<void> replay_edit(const EditRecord& record);
-  void apply(const ChunkKey& key, Rebuilt& rebuilt);
   StoreResult<void> expect_snapshots();
   /// Compares with all that is expected of this chunk at its present version and forgets that.
-  StoreResult<void> compare(const ChunkKey& key, Rebuilt& rebuilt);
+  StoreResult<void> compare(const ChunkKey& key, FollowedChunk& rebuilt);
   /// What was not met on the way: chunks that no edit touched, versions beyond the end, versions that never
   /// were.
   StoreResult<void> compare_rest();
@@ -89,10 +83,10 @@ class Replayer {
   Store& store_;
   const Generator& generator_;
   const std::int32_t edge_;
-  std::map<ChunkKey, Rebuilt> chunks_;
+  std::map<ChunkKey, FollowedChunk> chunks_;
   std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
   std::map<ChunkKey, Version> snapshots_;
-  ApplyScratch scratch_;
+  FollowScratch scratch_;
   ReplayReport report_;
 };
 

@@ -9,9 +9,8 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
-constexpr int kSurfaceDepth = 8;       // chunks below the surface of a column that are looked at, at most
-constexpr int kSamples = 5;            // places a side of a column where its surface is looked at
+constexpr int kSurfaceDepth = 8;  // chunks below the surface of a column that are looked at, at most
+constexpr int kSamples = 5;       // places a side of a column where its surface is looked at
 
 VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
   if (a.empty()) return b;
@@ -43,7 +42,6 @@ StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
     return true;
   };
   if (const auto read = reader_->read_log(at_ + 1, to, take); !read) return read;
-  for (const ChunkKey& key : edited_chunks_) moving_.try_emplace(key);
   if (!edited_chunks_.empty()) return {};
   // Nothing moves: then what moved before is what is to be seen.
   for (const ChunkKey& key : start_.edited()) {
@@ -136,17 +134,10 @@ StoreResult<void> TimelapseWorld::begin(const Each& each) {
     auto chunk = start_.chunk(key);
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (!is_empty(chunk->voxels) && !each(key, chunk->voxels)) return {};
-    if (const auto moves = moving_.find(key); moves != moving_.end()) moves->second.chunk = *std::move(chunk);
+    if (edited_chunks_.contains(key))
+      moving_.emplace(key, FollowedChunk(*std::move(chunk), origin_of(key.at, edge_)));
   }
   return {};
-}
-
-void TimelapseWorld::apply(const ChunkKey& key, Moving& moving) {
-  const VoxelPos origin = origin_of(key.at, edge_);
-  const ApplyResult result =
-      apply_stack(moving.chunk.voxels, moving.chunk.digest, origin, moving.stack, scratch_);
-  moving.changed = moving.changed || result.changed;
-  moving.stack.clear();
 }
 
 StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
@@ -155,9 +146,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   const auto read = reader_->read_log(at_ + 1, seq, [&](const EditRecord& record) {
     for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) {
       const ChunkKey key{0, at};
-      Moving& moving = moving_.at(key);
-      moving.stack.push_back(record.edit);
-      if (moving.stack.size() == kStackMax) apply(key, moving);
+      moving_.at(key).add(record.edit, record.version, scratch_);
       touched.insert(key);
     }
     read_to = record.version.seq;
@@ -170,9 +159,9 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   }
   at_ = seq;
   for (const ChunkKey& key : touched) {
-    Moving& moving = moving_.at(key);
-    apply(key, moving);
-    if (std::exchange(moving.changed, false) && !each(key, moving.chunk.voxels)) return {};
+    FollowedChunk& moving = moving_.at(key);
+    moving.settle(scratch_);
+    if (moving.take_changed() && !each(key, moving.chunk().voxels)) return {};
   }
   return {};
 }

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/edit_stack.hpp"
+#include "common/edits/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/history/world_at.hpp"
 #include "server/store/store.hpp"
@@ -49,11 +49,6 @@ class TimelapseWorld {
 
  private:
   using Column = std::pair<std::int32_t, std::int32_t>;  // x, z of its chunks
-  struct Moving {
-    Chunk chunk;
-    std::vector<EditDescriptor> stack;  // not applied yet
-    bool changed = false;               // since each() had it
-  };
 
   TimelapseWorld(Store& reader, const Generator& generator, WorldAt start)
       : reader_(&reader), generator_(&generator), edge_(reader.meta().chunk_edge), start_(std::move(start)) {}
@@ -63,7 +58,6 @@ class TimelapseWorld {
   void put_on_stage(ChunkCoord at);
   void add_surface(const Column& column);
   Unexpected<StoreError> too_large() const;
-  void apply(const ChunkKey& key, Moving& moving);
 
   Store* reader_;
   const Generator* generator_;
@@ -71,10 +65,10 @@ class TimelapseWorld {
   WorldAt start_;
   VoxelBox edited_;
   std::set<ChunkKey> stage_;
-  std::set<ChunkKey> edited_chunks_;   // on the way; before it, if there are none
-  std::map<ChunkKey, Moving> moving_;  // that edits touch on the way
+  std::set<ChunkKey> edited_chunks_;          // on the way; before it, if there are none
+  std::map<ChunkKey, FollowedChunk> moving_;  // edited_chunks_, from begin() on
   Sequence at_ = 0;
-  ApplyScratch scratch_;
+  FollowScratch scratch_;
 };
 
 }  // namespace runstone

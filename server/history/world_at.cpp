@@ -14,7 +14,6 @@ namespace runstone {
 
 namespace {
 
-constexpr std::size_t kSliceEdits = 64;  // applied in one sweep; more gain little
 constexpr Sequence kProgressEdits = 1024;
 constexpr const char* kCompacted = "was compacted while it was read; open the moment again";
 
@@ -133,18 +132,11 @@ StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
   const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
   auto chunk = start_of(key, edited);
   if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
-  const VoxelPos origin = origin_of(key.at, edge_);
-  const std::vector<std::uint32_t>& edits = edited->edits;
-  for (std::size_t first = 0; first < edits.size(); first += kSliceEdits) {
-    slice_.clear();
-    for (std::size_t i = first; i < std::min(edits.size(), first + kSliceEdits); ++i) {
-      slice_.push_back(edits_[edits[i]]);
-    }
-    apply_stack(chunk->voxels, chunk->digest, origin, slice_, scratch_, result_);
-  }
-  chunk->version = versions_[edits.back()];
-  chunk->voxels = in_cheapest_order(std::move(chunk->voxels));
-  return chunk;
+  FollowedChunk followed(*std::move(chunk), origin_of(key.at, edge_));
+  for (const std::uint32_t edit : edited->edits) followed.add(edits_[edit], versions_[edit], scratch_);
+  followed.settle(scratch_);
+  followed.chunk().voxels = in_cheapest_order(std::move(followed.chunk().voxels));
+  return std::move(followed.chunk());
 }
 
 }  // namespace runstone

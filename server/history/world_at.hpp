@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/edits/edit_stack.hpp"
+#include "common/edits/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/store/store.hpp"
 
@@ -71,9 +71,7 @@ class WorldAt {
   std::vector<EditDescriptor> edits_;
   std::vector<Version> versions_;  // of edits_
   std::map<ChunkKey, Edited> chunks_;
-  ApplyScratch scratch_;
-  ApplyResult result_;                 // nobody reads it; kept for its memory
-  std::vector<EditDescriptor> slice_;  // of one chunk's edits
+  FollowScratch scratch_;
 };
 
 }  // namespace runstone

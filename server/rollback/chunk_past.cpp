@@ -1,18 +1,14 @@
 #include "server/rollback/chunk_past.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "common/core/key_text.hpp"
 #include "common/edits/edit_geometry.hpp"
-#include "common/edits/edit_stack.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/history/base_chunk.hpp"
 
 namespace runstone {
 namespace {
-
-constexpr std::size_t kStackMax = 64;  // bounds memory; a sweep over more edits gains little
 
 StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at) {
   auto newest = reader.load_kept(key, at);
@@ -38,31 +34,22 @@ StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const 
 }  // namespace
 
 StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
-                              ApplyScratch& scratch) {
-  auto chunk = stored_form(reader, generator, key, at);
-  if (!chunk || chunk->version.seq >= at) return chunk;
+                              FollowScratch& scratch) {
+  auto start = stored_form(reader, generator, key, at);
+  if (!start || start->version.seq >= at) return start;
   const std::int32_t edge = reader.meta().chunk_edge;
-  const VoxelPos origin = origin_of(key.at, edge);
-  std::vector<EditDescriptor> stack;
-  ApplyResult result;
-  const auto apply = [&] {
-    apply_stack(chunk->voxels, chunk->digest, origin, stack, scratch, result);
-    stack.clear();
-  };
   LogQuery query;
   query.box = box_of(key.at, edge);
-  query.first = chunk->version.seq + 1;
+  query.first = start->version.seq + 1;
   query.last = at;
+  FollowedChunk followed(*std::move(start), origin_of(key.at, edge));
   const auto read = reader.query_log(query, [&](const EditRecord& record) {
-    if (!touches(record.edit, *query.box)) return true;
-    stack.push_back(record.edit);
-    chunk->version = record.version;
-    if (stack.size() == kStackMax) apply();
+    if (touches(record.edit, *query.box)) followed.add(record.edit, record.version, scratch);
     return true;
   });
   if (!read) return Unexpected<StoreError>{read.error()};
-  apply();
-  return chunk;
+  followed.settle(scratch);
+  return std::move(followed.chunk());
 }
 
 }  // namespace runstone

@@ -2,7 +2,7 @@
 // younger (snapshot, keyframe, base or generator), and the edits that touched the chunk since, by the log's
 // index of places. Blocks on the disk.
 #pragma once
-#include "common/edits/apply_scratch.hpp"
+#include "common/edits/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/store/store.hpp"
@@ -13,6 +13,6 @@ namespace runstone {
 /// edit up to `at` that touched it. Fails with what the store says, and (bad_request) if the chunk's base is younger
 /// than `at`: the log before it was compacted. Requires lod 0.
 StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
-                              ApplyScratch& scratch);
+                              FollowScratch& scratch);
 
 }  // namespace runstone

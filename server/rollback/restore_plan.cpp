@@ -48,12 +48,12 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
       ++plan.edits;
       plan.subject = record.version.seq;
     }
-    restore.add(record.edit, is_selected, scratch_);
+    restore.add(record.edit, is_selected, scratch_.apply);
     plan.version = record.version;
     return true;
   });
   if (!read) return Unexpected<StoreError>{read.error()};
-  restore.settle(scratch_);
+  restore.settle(scratch_.apply);
   plan.now = restore.now();
   plan.restored = restore.restored();
   append_differences(plan.now, plan.restored, plan.differences);
@@ -66,7 +66,7 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
     std::vector<Change> changes;
     changes.reserve(plan.differences.size());
     for (const Difference& d : plan.differences) changes.push_back({d.first, d.last, d.restored});
-    write_changes(plan.restored, changes, scratch_);
+    write_changes(plan.restored, changes, scratch_.apply);
   }
   for (const Difference& d : plan.differences) plan.voxels += d.last - d.first;
   return plan;

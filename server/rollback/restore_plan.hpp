@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/edits/followed_chunk.hpp"
 #include "common/edits/restore.hpp"
 #include "common/generate/generator.hpp"
 #include "server/store/store.hpp"
@@ -39,7 +40,7 @@ class RestorePlanner {
  private:
   Store& reader_;
   const Generator& generator_;
-  ApplyScratch scratch_;
+  FollowScratch scratch_;
 };
 
 }  // namespace runstone
