@@ -4,15 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/key_text.hpp"
+
 namespace runstone {
 namespace {
 
 constexpr TimeUs kWalkStepUs = 20'000;  // often enough to look smooth to others
 constexpr double kUsPerSecond = 1e6;
-
-std::string to_text(VoxelPos at) {
-  return std::to_string(at.x) + " " + std::to_string(at.y) + " " + std::to_string(at.z);
-}
 
 VoxelPos voxel_of(const WorldPos& at) {
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
@@ -335,9 +333,9 @@ ScriptRunner::Progress ScriptRunner::run(const script::Expect& c) {
   if (!at || !expected) return Progress::stop;
   const auto present = host_.shown_at(*at);
   if (!present) {
-    fail("expected " + c.material + " at " + to_text(*at) + ", but its chunk is not here");
+    fail("expected " + c.material + " at " + text_of(*at) + ", but its chunk is not here");
   } else if (*present != *expected) {
-    fail("expected " + c.material + " at " + to_text(*at) + ", found material " + std::to_string(*present));
+    fail("expected " + c.material + " at " + text_of(*at) + ", found material " + std::to_string(*present));
   }
   return Progress::done;
 }

@@ -2,6 +2,10 @@
 
 namespace runstone {
 
+std::string text_of(const VoxelPos& at) {
+  return std::to_string(at.x) + " " + std::to_string(at.y) + " " + std::to_string(at.z);
+}
+
 std::string text_of(const ChunkKey& key) {
   std::string text =
       std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," + std::to_string(key.at.z);

@@ -254,4 +254,10 @@ std::string command_help(bool is_operator) {
          "  until likewise, box X Y Z X Y Z, cause player|console|rollback|undo|redo|import";
 }
 
+std::string_view name_of(Cause cause) {
+  const auto found =
+      std::find_if(kCauses.begin(), kCauses.end(), [&](const auto& c) { return c.cause == cause; });
+  return found == kCauses.end() ? "?" : found->name;
+}
+
 }  // namespace runstone

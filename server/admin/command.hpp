@@ -80,4 +80,7 @@ bool is_for_everybody(const Command& command);
 /// The commands, one a line: for everybody, or all of them.
 std::string command_help(bool is_operator);
 
+/// As filters and answers spell it: "player", "rollback", ...
+std::string_view name_of(Cause cause);
+
 }  // namespace runstone

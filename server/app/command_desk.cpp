@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "common/core/hex.hpp"
-#include "common/core/utc_text.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/core/key_text.hpp"
+#include "server/app/author_names.hpp"
+#include "server/app/log_line.hpp"
 #include "server/app/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
 
@@ -15,78 +16,6 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kPlayersTold = 500;  // of those who are not here: anybody can make keys
-
-void refuse(const DeskReply& reply, std::string text) { reply({std::move(text), true, false}); }
-
-std::string text_of_pos(const VoxelPos& p) {
-  return std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
-}
-
-const char* name_of(Cause cause) {
-  switch (cause) {
-    case Cause::player:
-      return "player";
-    case Cause::console:
-      return "console";
-    case Cause::rollback:
-      return "rollback";
-    case Cause::undo:
-      return "undo";
-    case Cause::redo:
-      return "redo";
-    case Cause::import:
-      return "import";
-  }
-  return "?";
-}
-
-const char* name_of(EditKind kind) {
-  switch (kind) {
-    case EditKind::set_voxel:
-      return "voxel";
-    case EditKind::fill_box:
-      return "box";
-    case EditKind::fill_sphere:
-      return "sphere";
-    case EditKind::fill_stroke:
-      return "stroke";
-    case EditKind::paste:
-      return "paste";
-  }
-  return "?";
-}
-
-/// "9120 2026-11-21T23:57:42Z ana #3 player box 1 2 3 to 4 5 6 := stone"
-std::string line_of(const EditRecord& record, const std::string& author, const MaterialTable& materials) {
-  const VoxelBox box = bounding_box(record.edit);
-  const EditKind kind = kind_of(record.edit);
-  std::string line = std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author +
-                     " " + name_of(record.cause);
-  if (record.subject != 0) line += " of " + std::to_string(record.subject);
-  line += std::string(" ") + name_of(kind) + " " + text_of_pos(box.min);
-  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
-  if (last != box.min) line += " to " + text_of_pos(last);
-  if (kind != EditKind::paste && materials.knows(record.edit.material)) {
-    line += " := " + materials[record.edit.material].name;
-  }
-  return line;
-}
-
-/// Names of authors, "ana #3"; the server's own is the server.
-class AuthorNames {
- public:
-  explicit AuthorNames(const std::vector<PlayerRow>& rows) {
-    for (const PlayerRow& row : rows) names_[row.author] = row.name;
-  }
-  std::string of(AuthorId author) const {
-    if (author == 0) return "the server";
-    const auto found = names_.find(author);
-    return (found == names_.end() ? "" : found->second + " ") + "#" + std::to_string(author);
-  }
-
- private:
-  std::map<AuthorId, std::string> names_;
-};
 
 }  // namespace
 
@@ -166,8 +95,8 @@ void CommandDesk::players(const DeskReply& reply) {
         for (const auto& [author, player] : here) {
           lines[author] =
               player.name + " #" + std::to_string(author) + " key " + to_hex(player.key) + " is here, at " +
-              text_of_pos({static_cast<std::int32_t>(player.at.x), static_cast<std::int32_t>(player.at.y),
-                           static_cast<std::int32_t>(player.at.z)});
+              text_of(VoxelPos{static_cast<std::int32_t>(player.at.x), static_cast<std::int32_t>(player.at.y),
+                               static_cast<std::int32_t>(player.at.z)});
         }
         std::string text = lines.empty() ? "nobody has ever been here\n" : "";
         std::size_t told = 0;
@@ -200,25 +129,14 @@ void CommandDesk::resolve(const CommandFilter& filter, const std::string& comman
                [rows, out, filter, command, reply, go_on](const std::string& error) mutable {
                  if (!error.empty()) return refuse(reply, command + ": " + error);
                  if (!*rows) return refuse(reply, command + ": " + rows->error().message());
+                 const AuthorNames names(**rows);
                  for (const CommandFilter::Author& author : filter.authors) {
                    if (author.number) continue;
-                   std::vector<AuthorId> named;
-                   for (const PlayerRow& row : **rows) {
-                     if (row.name == author.name) named.push_back(row.author);
+                   const auto named = names.find(author.name);
+                   if (!named) {
+                     return refuse(reply, command + " author \"" + author.name + "\": " + named.error());
                    }
-                   if (named.empty()) {
-                     return refuse(reply, command + " author \"" + author.name +
-                                              "\": nobody of that name has ever built (players lists them)");
-                   }
-                   // Names are not unique, keys are: to take back somebody else's work by mistake is worse than
-                   // to ask.
-                   if (named.size() > 1) {
-                     std::string numbers;
-                     for (const AuthorId number : named) numbers += " #" + std::to_string(number);
-                     return refuse(reply, command + " author \"" + author.name +
-                                              "\": several players have that name:" + numbers);
-                   }
-                   out.authors.push_back(named.front());
+                   out.authors.push_back(*named);
                  }
                  go_on(out);
                });
@@ -240,7 +158,7 @@ void CommandDesk::log(const LogCommand& command, const Now& now, const DeskReply
           if (!wrong->empty()) return;
           const AuthorNames names(*rows);
           for (const EditRecord& record : *newest) {
-            *text += line_of(record, names.of(record.op.author), materials) + "\n";
+            *text += log_line(record, names.of(record.op.author), materials) + "\n";
           }
         },
         [text, wrong, reply](const std::string& error) {

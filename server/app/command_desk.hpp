@@ -3,7 +3,6 @@
 // runs on the rollback desk's workers.
 #pragma once
 #include <functional>
-#include <set>
 #include <string>
 
 #include "server/admin/command.hpp"

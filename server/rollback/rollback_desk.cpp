@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "common/core/key_text.hpp"
 #include "common/core/utc_text.hpp"
 #include "server/rollback/own_history.hpp"
 #include "server/rollback/rollback_groups.hpp"
@@ -14,19 +15,14 @@ constexpr std::size_t kPreviewsMax = 16;  // selections are large: the oldest on
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 
-std::string text_of_pos(const VoxelPos& p) {
-  return std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
-}
 /// Both corners inside, as commands take a box.
 std::string text_of_box(const VoxelBox& box) {
-  return text_of_pos(box.min) + " to " + text_of_pos({box.max.x - 1, box.max.y - 1, box.max.z - 1});
+  return text_of(box.min) + " to " + text_of(VoxelPos{box.max.x - 1, box.max.y - 1, box.max.z - 1});
 }
 
 std::string counted(std::uint64_t count, const char* one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
-
-void refuse(const DeskReply& reply, std::string text) { reply({std::move(text), true, false}); }
 
 }  // namespace
 

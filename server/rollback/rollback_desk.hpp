@@ -14,20 +14,13 @@
 #include <utility>
 #include <vector>
 
+#include "server/rollback/desk_reply.hpp"
 #include "server/rollback/restore_job.hpp"
 #include "server/rollback/restore_plan.hpp"
 #include "server/rollback/selection.hpp"
 #include "server/world/world_config.hpp"
 
 namespace runstone {
-
-/// One answer: text of one or more lines without a final line break. The last one of a request is done.
-struct DeskAnswer {
-  std::string text;
-  bool is_done = true;
-  bool is_ok = true;  // of the last one
-};
-using DeskReply = std::function<void(const DeskAnswer&)>;
 
 class RollbackDesk {
  public:

@@ -103,4 +103,11 @@ TEST_CASE("everybody may undo, redo and ask for help; the rest is for operators"
   CHECK(command_help(false).find("rollback") == std::string::npos);
 }
 
+TEST_CASE("causes are spelt as filters take them", "[admin][command]") {
+  for (const Cause cause :
+       {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import}) {
+    CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);
+  }
+}
+
 }  // namespace runstone
