@@ -31,8 +31,16 @@ class PassingFolder {
   PassingFolder() {
     std::error_code none;
     const auto parent = std::filesystem::temp_directory_path(none);
-    std::string pattern = ((none ? "/tmp" : parent) / "runstone-play-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) != nullptr) path_ = pattern;
+    if (none) {
+      error_ = "no folder for temporary files, see TMPDIR: " + none.message();
+      return;
+    }
+    std::string pattern = (parent / "runstone-play-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) != nullptr) {
+      path_ = pattern;
+    } else {
+      error_ = parent.string() + ": no temporary folder can be made: " + std::strerror(errno);
+    }
   }
   ~PassingFolder() {
     std::error_code ignored;  // nothing is left to do about it
@@ -40,11 +48,12 @@ class PassingFolder {
   }
   PassingFolder(const PassingFolder&) = delete;
   PassingFolder& operator=(const PassingFolder&) = delete;
-  /// Empty: none could be made.
   const std::string& path() const { return path_; }
+  /// Why there is none; empty: there is one.
+  const std::string& error() const { return error_; }
 
  private:
-  std::string path_;
+  std::string path_, error_;
 };
 
 volatile std::sig_atomic_t signal_caught = 0;
@@ -82,7 +91,7 @@ class NotedSignals {
 Result<int, std::string> play_into(const ReplayOptions& options) {
   const NotedSignals signals;
   const PassingFolder folder;
-  if (folder.path().empty()) return failure(std::string("no temporary folder: ") + std::strerror(errno));
+  if (!folder.error().empty()) return failure(folder.error());
   const std::string file = folder.path() + "/log.rlog";
   {
     auto store = open_world(options.world, StoreAccess::read_only);

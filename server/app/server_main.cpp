@@ -107,9 +107,11 @@ int run(const ServerOptions& options) {
   if (!server) return cannot_start(server.error());
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
-    auto opened = Console::open(main_loop, [&server](const std::string& line, DeskReply reply) {
+    const auto run_line = [&server](const std::string& line, DeskReply reply) {
       (*server)->command(line, std::move(reply));
-    });
+    };
+    auto opened = Console::open(main_loop, run_line,
+                                [](const std::string& failure) { logger("app").error("{}", failure); });
     if (opened) console = *opened;
     if (!opened) logger("app").error("{}", opened.error());
   }

@@ -92,3 +92,20 @@ TEST_CASE("what stands in the way of a play is the program's exit code; no file 
   CHECK(into("old", script("trap 'exit 5' TERM; kill -TERM $PPID; while :; do sleep 0.05; done")).code == 5);
   CHECK(files.none_left());
 }
+
+TEST_CASE("a log is not played where no temporary folder can be made", "[bots][play]") {
+  const TempFolder folder;
+  make_world(folder / "old", 1);
+  const auto error_with = [&](const std::string& temporary) {
+    ::setenv("TMPDIR", temporary.c_str(), 1);
+    const auto played =
+        run_replay({"--world", folder / "old", "--into", "127.0.0.1:1", "--bot", RUNSTONE_BOT_PROGRAM});
+    ::unsetenv("TMPDIR");
+    CHECK(played.code == 2);
+    return played.err;
+  };
+  CHECK(error_with(folder / "nowhere").find("no folder for temporary files, see TMPDIR: ") !=
+        std::string::npos);
+  // A folder in which nobody can make anything, root included.
+  CHECK(error_with("/proc").find("/proc: no temporary folder can be made: ") != std::string::npos);
+}

@@ -147,4 +147,9 @@ TEST_CASE("a file that is missing is named", "[bots][play]") {
   const auto log = read_recorded_file("/nowhere/at-all.rlog");
   REQUIRE_FALSE(log.has_value());
   CHECK(log.error().find("/nowhere/at-all.rlog: cannot be read: ") == 0);
+  const TempFolder folder;
+  const auto no_file = read_recorded_file(folder.path());
+  REQUIRE_FALSE(no_file.has_value());
+  CHECK(no_file.error().find(folder.path() + ": ") == 0);
+  CHECK(no_file.error().find("cannot be read") != std::string::npos);
 }

@@ -14,7 +14,8 @@ TEST_CASE("a line of the log says when, who, why, what, where and of which mater
   record.edit = {FillBox{{{1, 2, -3}, {5, 6, 7}}}, {}, *stone};
   CHECK(log_line(record, "ana #3", materials) ==
         "9120 2026-11-21T23:57:42Z ana #3 player box 1 2 -3 to 4 5 6 := stone");
-  record.edit = {SetVoxel{{7, 8, 9}}, {}, static_cast<Material>(materials.size())};  // a material nobody knows
+  record.edit = {
+      SetVoxel{{7, 8, 9}}, {}, static_cast<Material>(materials.size())};  // a material nobody knows
   record.cause = Cause::undo;
   record.subject = 9100;
   CHECK(log_line(record, "#5", materials) == "9120 2026-11-21T23:57:42Z #5 undo of 9100 voxel 7 8 9");
