@@ -76,8 +76,7 @@ TEST_CASE("the console takes lines in whatever pieces they come, and answers", "
   pipe.hang_up();
   bench.turn();
   CHECK(bench.lines.size() == 3);  // it might have been p12
-  CHECK(bench.out.str() ==
-        "did status\ndid players\ndid log\nthe last line has no end, and is left out\n");
+  CHECK(bench.out.str() == "did status\ndid players\ndid log\nthe last line has no end, and is left out\n");
   CHECK(bench.failures.empty());
 }
 
@@ -97,7 +96,8 @@ TEST_CASE("a line that is too long is left out, and those behind it are not", "[
   CHECK(bench.lines == std::vector<std::string>{longest, "status", "players"});
   const std::string said = bench.out.str();
   CHECK(said.find(kTooLong) != said.rfind(kTooLong));
-  CHECK(said.size() == 2 * kTooLong.size() + std::string("did \ndid status\ndid players\n").size() + longest.size());
+  CHECK(said.size() ==
+        2 * kTooLong.size() + std::string("did \ndid status\ndid players\n").size() + longest.size());
   CHECK(bench.failures.empty());
 }
 
