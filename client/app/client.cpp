@@ -251,6 +251,7 @@ void Client::follow_player(TimeUs now_us) {
     session_.set_view({centre, options_.view_radius, options_.view_radius_v});
     picture_.view_changed();
   }
+  picture_.joined(session_.view(), started_us_);
   picture_.set_eye(centre);
 }
 
@@ -348,6 +349,7 @@ ClientReport Client::report() const {
   out.renderer = picture_.renderer_name();
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
   out.latency = picture_.recorder().report();
+  out.join = picture_.join();
   out.chunks = chunk_stats_;
   picture_.report(out.chunks, out.frames);
   const NetStats& net = net_->stats();

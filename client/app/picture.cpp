@@ -30,6 +30,7 @@ void Picture::set_materials(const MaterialTable& materials) {
 void Picture::take(const ReplicaNews& news, const ClockOffset& clock, TimeUs now_us) {
   recorder_.take(news, clock, now_us);
   planner_.take(news.chunks);
+  for (const auto& [key, reason] : news.unavailable) join_.done(key, now_us);
   if (!draw_thread_) return;
   for (const ChunkNews& chunk : news.chunks) {
     if (!chunk.removed) continue;
@@ -70,6 +71,7 @@ void Picture::take_results() {
     (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
     if (!planner_.finish(result.key, result.number, result.mesh)) continue;
     recorder_.meshed(result.key, result.serial, result.meshed_us);
+    join_.done(result.key, result.meshed_us);
     if (!draw_thread_) continue;
     draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
     changed_ = uploads_waiting_ = true;

@@ -13,6 +13,7 @@
 #include "client/app/draw_thread.hpp"
 #include "client/app/report.hpp"
 #include "client/replica/client_session.hpp"
+#include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "client/schedule/mesh_pool.hpp"
@@ -65,6 +66,9 @@ class Picture {
   std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
   const LatencyRecorder& recorder() const { return recorder_; }
+  /// The world's first view, by a client that began to connect then.
+  void joined(const View& view, TimeUs began_us) { join_.begin(view, began_us); }
+  const JoinReport& join() const { return join_.report(); }
   /// Adds what was meshed and drawn.
   void report(ChunkStats& chunks, FrameStats& frames) const;
 
@@ -83,6 +87,7 @@ class Picture {
   const unsigned workers_;
   const std::function<void()> wake_;
   LatencyRecorder recorder_;
+  JoinRecorder join_;
   MeshPlanner planner_;
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;

@@ -52,6 +52,17 @@ Json way_json(const WayReport& way) {
   return out;
 }
 
+Json part_json(const JoinedPart& part) {
+  const auto ms = [](const std::optional<TimeUs>& us) {
+    return us ? Json(static_cast<double>(*us) / 1000) : Json(nullptr);
+  };
+  return Json{{"chunks", part.chunks},
+              {"meshed", part.done},
+              {"first_ms", ms(part.first_us)},
+              {"most_ms", ms(part.most_us)},
+              {"all_ms", ms(part.all_us)}};
+}
+
 Json replica_json(const Replica& replica) {
   const ReplicaCounters& c = replica.counters();
   return Json{{"confirmed_chunks", replica.confirmed_count()},
@@ -125,6 +136,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   latency["own_rejected"] = report.latency.rejected;
   latency["own_unseen"] = report.latency.unseen;
   out["latency_us"] = std::move(latency);
+  out["join"] = Json{{"near", part_json(report.join.near)}, {"view", part_json(report.join.view)}};
   const ChunkStats& chunks = report.chunks;
   const char* encoding = "none";
   if (session.welcome()) encoding = session.welcome()->encoding == ChunkEncoding::raw ? "raw" : "packed";

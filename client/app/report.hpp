@@ -5,6 +5,7 @@
 
 #include "client/replica/client_session.hpp"
 #include "client/schedule/histogram.hpp"
+#include "client/schedule/join_recorder.hpp"
 #include "client/schedule/latency_recorder.hpp"
 
 namespace runstone {
@@ -38,6 +39,7 @@ struct ClientReport {
   std::string renderer;  // "none" or the context's name
   double seconds = 0;
   LatencyReport latency;
+  JoinReport join;
   ChunkStats chunks;
   FrameStats frames;
   NetCounts net;

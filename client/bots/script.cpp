@@ -218,6 +218,11 @@ script::Step step_of(std::string_view verb, Words& words) {
     walk.speed = number<double>(words, "SPEED", 0.001, 1e6);
     return walk;
   }
+  if (verb == "roam") {
+    script::Roam roam{position(words), 0};
+    roam.speed = number<double>(words, "SPEED", 0.001, 1e6);
+    return roam;
+  }
   if (verb == "look") {
     script::Look look;
     look.yaw = number<double>(words, "YAW", -360, 360);

@@ -38,6 +38,11 @@ struct Walk {
   ScriptPosition to;
   double speed = 1;
 };  // voxels a second
+/// To and fro between here and there, while later commands run, until the next Move, Walk or Roam.
+struct Roam {
+  ScriptPosition to;
+  double speed = 1;
+};  // voxels a second
 struct Look {
   double yaw = 0, pitch = 0;
 };  // degrees
@@ -124,8 +129,9 @@ struct Command {
 };
 struct Quit {};
 
-using Step = std::variant<Move, Walk, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
-                          WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Command, Quit>;
+using Step =
+    std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
+                 WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Command, Quit>;
 
 }  // namespace script
 

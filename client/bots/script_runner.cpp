@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "common/core/key_text.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr TimeUs kWalkStepUs = 20'000;  // often enough to look smooth to others
+constexpr TimeUs kWalkStepUs = 20'000;  // often enough to look smooth to others, of a walk and a roam
 constexpr double kUsPerSecond = 1e6;
 
 VoxelPos voxel_of(const WorldPos& at) {
@@ -32,6 +33,12 @@ void ScriptRunner::step(TimeUs now_us) {
   now_us_ = now_us;
   due_us_.reset();
   if (finished_ || !host_.ready()) return;
+  roam();
+  run_commands();
+  if (roaming_ && !finished_) due_us_ = std::min(due_us_.value_or(INT64_MAX), now_us_ + kWalkStepUs);
+}
+
+void ScriptRunner::run_commands() {
   for (int i = 0; i < kStepCommandsMax; ++i) {
     if (next_ >= script_.commands.size()) {
       finished_ = true;
@@ -50,7 +57,7 @@ void ScriptRunner::step(TimeUs now_us) {
       return;
     }
   }
-  due_us_ = now_us;  // more to do at once
+  due_us_ = now_us_;  // more to do at once
 }
 
 void ScriptRunner::fail(const std::string& what) {
@@ -125,8 +132,22 @@ ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
 ScriptRunner::Progress ScriptRunner::run(const script::Move& c) {
   const auto to = resolve(c.to);
   if (!to) return Progress::stop;
+  roaming_.reset();
   host_.move_to(*to);
   return Progress::done;
+}
+
+bool ScriptRunner::go(const WorldPos& to, double distance) {
+  const WorldPos from = host_.eye();
+  const double dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
+  const double left = std::sqrt(dx * dx + dy * dy + dz * dz);
+  if (distance >= left) {
+    host_.move_to(to);
+    return true;
+  }
+  const double share = distance / left;
+  host_.move_to({from.x + dx * share, from.y + dy * share, from.z + dz * share});
+  return false;
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Walk& c) {
@@ -135,21 +156,27 @@ ScriptRunner::Progress ScriptRunner::run(const script::Walk& c) {
     const auto to = resolve(c.to);  // once: `~` means the player at the start
     if (!to) return Progress::stop;
     state_.centre = *to;
+    roaming_.reset();
   }
-  const WorldPos from = host_.eye();
-  const WorldPos to = state_.centre;
-  const double dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
-  const double left = std::sqrt(dx * dx + dy * dy + dz * dz);
-  const double reach = c.speed * static_cast<double>(now_us_ - state_.last_us) / kUsPerSecond;
+  const double distance = c.speed * static_cast<double>(now_us_ - state_.last_us) / kUsPerSecond;
   state_.last_us = now_us_;
-  if (reach >= left) {
-    host_.move_to(to);
-    return Progress::done;
-  }
-  const double share = reach / left;
-  host_.move_to({from.x + dx * share, from.y + dy * share, from.z + dz * share});
+  if (go(state_.centre, distance)) return Progress::done;
   due_us_ = now_us_ + kWalkStepUs;
   return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Roam& c) {
+  const auto to = resolve(c.to);
+  if (!to) return Progress::stop;
+  roaming_ = Roaming{*to, host_.eye(), c.speed, now_us_};
+  return Progress::done;
+}
+
+void ScriptRunner::roam() {
+  if (!roaming_) return;
+  const double distance = roaming_->speed * static_cast<double>(now_us_ - roaming_->last_us) / kUsPerSecond;
+  roaming_->last_us = now_us_;
+  if (go(roaming_->to, distance)) std::swap(roaming_->to, roaming_->back);
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Look& c) {

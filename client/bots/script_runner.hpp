@@ -42,6 +42,7 @@ class ScriptRunner {
 
   Progress run(const script::Move& c);
   Progress run(const script::Walk& c);
+  Progress run(const script::Roam& c);
   Progress run(const script::Look& c);
   Progress run(const script::LookAt& c);
   Progress run(const script::Set& c);
@@ -64,6 +65,7 @@ class ScriptRunner {
   Progress run(const script::Command& c);
   Progress run(const script::Quit& c);
 
+  void run_commands();
   void fail(const std::string& what);
   /// A command that cannot run ends the script.
   Progress give_up(const std::string& what);
@@ -73,6 +75,10 @@ class ScriptRunner {
   std::optional<Material> resolve_material(const std::string& name);
   std::optional<Mask> resolve_mask(const ScriptMask& mask);
   void start();
+  /// Takes the player along the way of a roam, if there is one.
+  void roam();
+  /// Straight towards `to`. Returns whether it is there.
+  bool go(const WorldPos& to, double distance);
 
   const Script& script_;
   ScriptHost& host_;
@@ -82,6 +88,12 @@ class ScriptRunner {
   Started state_;
   std::vector<std::uint32_t> turns_left_;  // of the open repeats, innermost last
   std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
+  struct Roaming {
+    WorldPos to, back;
+    double speed = 0;  // voxels a second
+    TimeUs last_us = 0;
+  };
+  std::optional<Roaming> roaming_;
   TimeUs now_us_ = 0;
   std::optional<TimeUs> due_us_;
   bool finished_ = false;

@@ -196,6 +196,31 @@ TEST_CASE_METHOD(Fixture, "walking takes its time and ends where it should", "[b
   CHECK(host.at == WorldPos{14, 20, 30});
 }
 
+TEST_CASE_METHOD(Fixture,
+                 "roaming goes to and fro while the script goes on, and a burst stays where it began",
+                 "[bots]") {
+  load("roam ~10 ~ ~ 10\nburst 4 1 0 1 stone\nmove 0 0 0\nwait 1");
+  runner->step(1'000'000);
+  CHECK(host.at == WorldPos{10, 20, 30});
+  CHECK(runner->due_us().value() < 1'100'000);
+  runner->step(1'400'000);
+  CHECK(host.at.x == Approx(14));
+  runner->step(2'000'000);
+  CHECK(host.at == WorldPos{20, 20, 30});
+  runner->step(2'300'000);
+  CHECK(host.at.x == Approx(17));
+  runner->step(3'500'000);  // one turn at most a step
+  CHECK(host.at == WorldPos{10, 20, 30});
+  runner->step(4'000'000);
+  REQUIRE(host.edits.size() == 4);
+  for (const auto& edit : host.edits) CHECK(edit.edit == EditDescriptor{SetVoxel{{10, 20, 30}}, {}, 5});
+  CHECK(host.at == WorldPos{0, 0, 0});
+  runner->step(4'500'000);
+  CHECK(host.at == WorldPos{0, 0, 0});
+  runner->step(5'000'000);
+  CHECK(runner->finished());
+}
+
 TEST_CASE_METHOD(Fixture, "digging and placing go through the picked voxel", "[bots]") {
   host.hit = RayHit{{4, 5, 6}, 3, Direction::pos_y, 2};
   run("dig\nplace sand");

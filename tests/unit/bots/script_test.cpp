@@ -39,6 +39,7 @@ TEST_CASE("every command is read with its values", "[bots]") {
   CHECK(move.to[2].offset == 0);
   CHECK(only<script::Move>("move 1 ^+1 2").to[1].base == Base::surface);
   CHECK(only<script::Walk>("walk 1 2 3 4.5").speed == 4.5);
+  CHECK(only<script::Roam>("roam ~64 ~ ~ 320").speed == 320);
   CHECK(only<script::Look>("look 90 -30").pitch == -30);
   CHECK(only<script::LookAt>("lookat 1 2 3").at[2].offset == 3);
   CHECK(only<script::Set>("set 1 2 3 stone").material == "stone");

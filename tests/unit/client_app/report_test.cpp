@@ -50,6 +50,18 @@ TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
   CHECK(out["replica"]["drifted"] == 0);
 }
 
+TEST_CASE("the report says when which part of the first view was meshed", "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  ClientReport report = sample();
+  report.join.near = {203, 190, 12'500, 80'000, std::nullopt};
+  const json near = json::parse(to_json(report, session))["join"]["near"];
+  CHECK(near["chunks"] == 203);
+  CHECK(near["meshed"] == 190);
+  CHECK(near["first_ms"] == 12.5);
+  CHECK(near["most_ms"] == 80);
+  CHECK(near["all_ms"].is_null());
+}
+
 TEST_CASE("frames stand in the report with their durations, and in the table of a client that draws",
           "[client_app]") {
   const ClientSession session(SessionConfig{});
