@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
+#include "common/edits/edit_geometry.hpp"
 #include "server/rollback/restore_paste.hpp"
 #include "server/rollback/restore_plan.hpp"
 
@@ -33,7 +34,8 @@ std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& genera
   return out;
 }
 
-RestoreJob::RestoreJob(RestoreOrder order, RestoreLimits limits) : order_(std::move(order)), limits_(limits) {
+RestoreJob::RestoreJob(RestoreOrder order, RestoreLimits limits)
+    : order_(std::move(order)), limits_(limits), next_seq_(order_.first_seq) {
   for (const auto& [key, edits] : order_.selection->chunks) waiting_.push_back(key);
   progress_.chunks = waiting_.size();
   end_if_done();
@@ -83,6 +85,7 @@ void RestoreJob::computed(std::vector<RestoredChunk> chunks) {
       if (progress_.error.empty()) progress_.error = chunk.error;
     } else if (chunk.edits.empty()) {
       ++progress_.chunks_done;
+      begun_.erase(chunk.key);
     } else {
       planned_.push_back(std::move(chunk));
     }
@@ -133,19 +136,44 @@ void RestoreJob::step(WorldServer& world, const Now& now) {
   }
   if (slice.empty()) return;
   const Sequence before = world.head();
-  const auto answer = world.order_own(offers, now);
-  if (answer != WorldServer::OwnEdits::ordered) {
-    for (auto chunk = slice.rbegin(); chunk != slice.rend(); ++chunk) planned_.push_front(std::move(*chunk));
-    return;  // busy: again on the next step, with the versions of then
+  const WorldServer::OwnEdits answer = world.order_own(offers, order_.payer, now);
+  if (answer.state == WorldServer::OwnEdits::State::taken) {
+    state_ = State::failed;
+    progress_.error = "a client has come under the server's instance and taken its client sequences";
+    return;
   }
-  next_seq_ = seq;
-  progress_.chunks_done += slice.size();
-  progress_.chunks_changed += slice.size();
-  progress_.edits += offers.size();
-  progress_.voxels += voxels;
-  if (progress_.first == 0) progress_.first = before + 1;
-  progress_.last = world.head();
+  progress_.waits_for = answer.reason;
+  if (answer.count > 0) {
+    next_seq_ += answer.count;
+    progress_.edits += answer.count;
+    if (progress_.first == 0) progress_.first = before + 1;
+    progress_.last = world.head();
+  }
+  take_written(std::move(slice), answer.count, world);
   end_if_done();
+}
+
+void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t count, const WorldServer& world) {
+  auto chunk = slice.begin();
+  for (; chunk != slice.end() && count > 0; ++chunk) {
+    const std::size_t mine = std::min(count, chunk->edits.size());
+    const auto end = chunk->edits.begin() + static_cast<std::ptrdiff_t>(mine);
+    for (auto edit = chunk->edits.begin(); edit != end; ++edit) {
+      progress_.voxels += counted_voxels(*edit);
+      chunk->voxels -= counted_voxels(*edit);
+    }
+    count -= mine;
+    chunk->edits.erase(chunk->edits.begin(), end);
+    if (begun_.insert(chunk->key).second) ++progress_.chunks_changed;
+    if (!chunk->edits.empty()) {
+      chunk->version = world.chunk_version(chunk->key);  // nobody came between: the rest of the plan holds
+      break;
+    }
+    ++progress_.chunks_done;
+    begun_.erase(chunk->key);
+  }
+  // Again on the next step, with the versions of then.
+  for (auto rest = slice.end(); rest != chunk;) planned_.push_front(std::move(*--rest));
 }
 
 }  // namespace runstone

@@ -3,6 +3,8 @@
 // made for. If somebody has built there meanwhile, the chunk is planned again; after kCollisionsMax times its
 // edits are masked so that they leave alone whatever was changed since (restore_paste.hpp), and go in without
 // that comparison. A slice of a few chunks is written per step, so other people's edits come in between.
+// As much of a slice is written as the log has room for, and as the author can pay for if the order says that
+// somebody pays; the rest goes into later ones.
 // What is written is ordinary edits: ordered, logged, sent. So a job that is cancelled, or whose server
 // stops, leaves a world in which some chunks are restored and the others are not; and the job itself can be
 // taken back like any other edits, by its author and client instance.
@@ -13,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,8 +25,10 @@
 namespace runstone {
 
 struct RestoreOrder {
-  AuthorId author = 0;          // of the edits it writes; 0: the server itself
-  ClientInstance instance = 0;  // new for each job
+  AuthorId author = 0;  // of the edits it writes; 0: the server itself
+  ClientInstance instance = 0;
+  ClientSequence first_seq = 1;  // of its edits, which count on from there
+  AuthorId payer = 0;            // as for WorldServer::order_own()
   Cause cause = Cause::rollback;
   Sequence subject = 0;  // of each edit; 0: the newest selected edit of its chunk
   std::shared_ptr<const Selection> selection;
@@ -44,9 +49,9 @@ struct RestoreWork {
 struct RestoredChunk {
   ChunkKey key;
   Version version;
-  Sequence subject = 0;  // newest selected edit in the chunk
-  std::uint64_t voxels = 0;
-  std::vector<EditDescriptor> edits;  // empty: nothing to change
+  Sequence subject = 0;               // newest selected edit in the chunk
+  std::uint64_t voxels = 0;           // that the edits change
+  std::vector<EditDescriptor> edits;  // disjoint; empty: nothing to change
   std::string error;                  // not empty: the chunk cannot be planned, and why
 };
 /// Does the work. Any thread that owns the reader.
@@ -88,11 +93,14 @@ class RestoreJob {
     std::uint64_t collisions = 0;         // plans that came too late
     Sequence first = 0, last = 0;         // of the edits written; 0 without one
     std::string error;                    // the first
+    std::string waits_for;                // the limit that cut the last slice short; empty: none
   };
   const Progress& progress() const { return progress_; }
 
  private:
   void end_if_done();
+  /// The first `count` edits of the slice are written: counts them, and puts the others back to be written next.
+  void take_written(std::vector<RestoredChunk> slice, std::size_t count, const WorldServer& world);
   bool is_careful(const ChunkKey& key) const;
 
   RestoreOrder order_;
@@ -101,8 +109,9 @@ class RestoreJob {
   std::deque<ChunkKey> waiting_;       // to be planned
   bool is_working_ = false;            // a worker plans some
   std::deque<RestoredChunk> planned_;  // to be written
+  std::set<ChunkKey> begun_;           // of which some edits are written, but not all
   std::map<ChunkKey, int> collisions_, passes_;
-  ClientSequence next_seq_ = 1;
+  ClientSequence next_seq_;
   Progress progress_;
 };
 

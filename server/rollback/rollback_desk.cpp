@@ -47,10 +47,16 @@ struct RollbackDesk::Job {
   std::optional<TimeUs> wrote_us;         // when it last wrote a slice, steady clock
   std::shared_ptr<Preview> preview;       // of a rollback
   std::optional<AuthorId> own_change_of;  // of an undo or redo
+  bool has_told_wait = false;
+  /// Empty: nothing holds it up.
+  std::string wait_text() const {
+    const std::string& limit = job.progress().waits_for;
+    return limit.empty() ? limit : "waits: " + limit;
+  }
 };
 
 RollbackDesk::RollbackDesk(WorldServer& world, Workers& workers, RandomBytes random)
-    : world_(world), workers_(workers), random_(std::move(random)) {}
+    : world_(world), workers_(workers), random_(std::move(random)), own_instance_(new_instance()) {}
 RollbackDesk::~RollbackDesk() = default;
 
 void RollbackDesk::stop() {
@@ -76,11 +82,19 @@ void RollbackDesk::when_durable(const Now& now, const DeskReply& reply, std::fun
 // ---- undo and redo
 // -----------------------------------------------------------------------------------------------
 
+std::string RollbackDesk::busy_text(AuthorId author) const {
+  std::string text = "one of yours is still under way";
+  for (const auto& job : jobs_) {
+    if (job->own_change_of == author && !job->wait_text().empty()) text += ", and " + job->wait_text();
+  }
+  return text;
+}
+
 void RollbackDesk::change_own(AuthorId author, Cause cause, const Now& now, DeskReply reply) {
   const std::string name = cause == Cause::undo ? "undo" : "redo";
-  if (own_changes_.contains(author)) return refuse(reply, name + ": one of yours is still under way");
+  if (own_changes_.contains(author)) return refuse(reply, name + ": " + busy_text(author));
   when_durable(now, reply, [this, author, cause, name, reply] {
-    if (!own_changes_.insert(author).second) return refuse(reply, name + ": one of yours is still under way");
+    if (!own_changes_.insert(author).second) return refuse(reply, name + ": " + busy_text(author));
     auto found = std::make_shared<StoreResult<std::optional<OwnChange>>>(std::optional<OwnChange>());
     workers_.run(
         [found, author, cause, end = world_.durable()](Store& reader, const Generator& generator) {
@@ -94,7 +108,9 @@ void RollbackDesk::change_own(AuthorId author, Cause cause, const Now& now, Desk
           OwnChange& change = *found->value();
           RestoreOrder order;
           order.author = author;
-          order.instance = new_instance();
+          order.instance = own_instance_;
+          order.first_seq = std::max(world_.decided(author, own_instance_), kGroupBegins) + 1;
+          order.payer = author;
           order.cause = cause;
           order.subject = change.action;
           order.selection = std::make_shared<const Selection>(std::move(change.selection));
@@ -283,7 +299,9 @@ void RollbackDesk::list(DeskReply reply) {
   for (const auto& job : jobs_) {
     const RestoreJob::Progress& p = job->job.progress();
     text += job->name + " is being applied: " + std::to_string(p.chunks_done) + " of " +
-            counted(p.chunks, "chunk") + "\n";
+            counted(p.chunks, "chunk");
+    if (!job->wait_text().empty()) text += " (" + job->wait_text() + ")";
+    text += "\n";
   }
   auto groups = std::make_shared<StoreResult<std::vector<RollbackGroup>>>(std::vector<RollbackGroup>());
   workers_.run([groups](Store& reader, const Generator&) { *groups = rollback_groups(reader, kListedMax); },
@@ -335,6 +353,12 @@ void RollbackDesk::step(Job& job, const Now& now) {
       });
 }
 
+void RollbackDesk::tell_wait(Job& job) const {
+  if (!job.own_change_of || job.has_told_wait || job.wait_text().empty()) return;
+  job.has_told_wait = true;
+  job.reply({job.name + " " + job.wait_text(), false, true});
+}
+
 bool RollbackDesk::answer_if_ended(Job& job) {
   const RestoreJob::Progress& p = job.job.progress();
   const RestoreJob::State state = job.job.state();
@@ -382,7 +406,10 @@ void RollbackDesk::tick(const Now& now) {
     }
   }
   const std::vector<std::shared_ptr<Job>> jobs(jobs_.begin(), jobs_.end());
-  for (const auto& job : jobs) step(*job, now);
+  for (const auto& job : jobs) {
+    step(*job, now);
+    tell_wait(*job);
+  }
   std::erase_if(jobs_, [this](const auto& job) { return answer_if_ended(*job); });
 }
 

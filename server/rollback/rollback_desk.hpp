@@ -86,7 +86,10 @@ class RollbackDesk {
   void when_durable(const Now& now, const DeskReply& reply, std::function<void()> begin);
   Job& start_job(RestoreOrder order, std::string name, DeskReply reply);
   void step(Job& job, const Now& now);
+  void tell_wait(Job& job) const;
   bool answer_if_ended(Job& job);
+  /// Why the author cannot have another undo or redo now.
+  std::string busy_text(AuthorId author) const;
   Preview* find_preview(const std::string& id);
   ClientInstance new_instance();
 
@@ -97,6 +100,9 @@ class RollbackDesk {
   std::list<std::shared_ptr<Job>> jobs_;
   std::vector<Waiting> waiting_;
   std::set<AuthorId> own_changes_;  // authors with an undo or redo under way
+  /// Of all undo and redo in this run, each author counting on by itself: an instance leaves a mark for good
+  /// (DecidedMarks).
+  const ClientInstance own_instance_;
   std::uint64_t next_preview_ = 1;
 };
 

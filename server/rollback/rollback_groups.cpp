@@ -13,7 +13,7 @@ StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id) {
   const auto first = reader.read_log(id, id, [&](const EditRecord& record) {
     const bool is_own =
         record.cause == Cause::rollback || record.cause == Cause::undo || record.cause == Cause::redo;
-    begins = is_own && record.op.seq == 1;
+    begins = is_own && record.op.seq == kGroupBegins;
     group.id = id;
     group.op = record.op;
     group.cause = record.cause;
@@ -59,7 +59,7 @@ StoreResult<std::vector<RollbackGroup>> rollback_groups(Store& reader, std::size
   std::optional<OperationId> undo;
   Sequence undo_id = 0;
   read = reader.query_log(query, [&](const EditRecord& record) {
-    if (record.op.seq == 1) {
+    if (record.op.seq == kGroupBegins) {
       undo = record.op;
       undo_id = record.version.seq;
     }

@@ -1,12 +1,15 @@
 // RollbackGroups: the rollbacks that the log holds. A rollback, and the undo of one, is a *group*: the edits of one
-// author and client instance with one cause, with client sequences from 1. Its id is the sequence of its first
-// edit. Blocks on the disk.
+// author and client instance with one cause, with client sequences from kGroupBegins. Its id is the sequence of its
+// first edit. A player's own undo and redo are no groups: their client sequences lie above. Blocks on the disk.
 #pragma once
 #include <vector>
 
 #include "server/store/store.hpp"
 
 namespace runstone {
+
+/// The client sequence that begins a group.
+inline constexpr ClientSequence kGroupBegins = 1;
 
 struct RollbackGroup {
   Sequence id = 0;

@@ -1,5 +1,6 @@
 #include "server/world/world_server.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "server/world/broadcast.hpp"
 #include "server/world/command_steps.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/edit_check.hpp"
 #include "server/world/handshake_steps.hpp"
 #include "server/world/request_steps.hpp"
 #include "server/world/time_travel.hpp"
@@ -125,18 +127,41 @@ void WorldServer::drained(SessionId session, const Now& now) {
 
 void WorldServer::commit(const Now& now) { commit_and_broadcast(*state_, now); }
 
-WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offers, const Now& now) {
+WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offers, AuthorId payer,
+                                             const Now& now) {
+  using State = OwnEdits::State;
   WorldState& world = *state_;
   commit(now);
-  if (!world.accepts_edits) return OwnEdits::closed;
-  if (!world.ports.log_has_room(offers.size())) return OwnEdits::busy;
+  if (!world.accepts_edits) return {State::closed};
+  if (offers.empty()) return {};
+  // Anybody sees the instance of an edit, so the author's own client can come under it and take numbers.
+  if (world.authority.decided().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
+    return {State::taken};
+  std::vector<WorldSession*> purses;
+  for (auto& [id, session] : world.sessions) {
+    const bool pays = payer != 0 && session.state == SessionState::open && session.author == payer;
+    if (pays) purses.push_back(&session);
+  }
+  OwnEdits out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
+    if (!world.ports.log_has_room(out.count + 1)) {
+      out.reason = "the log is full (log_queue_records)";
+      break;
+    }
+    const std::uint64_t tokens = std::min(edit_tokens(offer.edit), world.config.edit_burst);
+    const auto can_pay = [&](WorldSession* s) { return s->edits.take(tokens, now.steady_us); };
+    if (!purses.empty() && std::none_of(purses.begin(), purses.end(), can_pay)) {
+      out.reason = "the author's edits per second are used up (edits_per_second)";
+      break;
+    }
     const auto refusal = world.authority.submit(offer, true);
     RUNSTONE_ASSERT(!refusal);
+    ++out.count;
   }
+  if (out.count < offers.size()) out.state = State::busy;
   commit(now);
-  return OwnEdits::ordered;
+  return out;
 }
 
 void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done,
@@ -256,6 +281,9 @@ bool WorldServer::is_settled() const {
 bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
 Epoch WorldServer::epoch() const { return state_->authority.epoch(); }
 Sequence WorldServer::head() const { return state_->authority.head(); }
+ClientSequence WorldServer::decided(AuthorId author, ClientInstance instance) const {
+  return state_->authority.decided().of(author, instance);
+}
 Sequence WorldServer::durable() const { return state_->durable; }
 Sequence WorldServer::checkpoint() const { return state_->keeper.checkpoint(); }
 std::size_t WorldServer::session_count() const { return state_->sessions.size(); }

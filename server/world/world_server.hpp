@@ -47,14 +47,22 @@ class WorldServer {
   void tick(const Now& now);
 
   // ---- the server's own edits: rollback, undo, redo
-  enum class OwnEdits {
-    ordered,
-    busy,    // the log has no room now; nothing was taken, try again
-    closed,  // the server stops, or the log cannot be written any more; nothing was taken
+  struct OwnEdits {
+    enum class State {
+      ordered,  // all
+      busy,     // the first `count`; a limit holds the next one for now: try again
+      closed,   // none: the server stops, or the log cannot be written any more
+      taken,    // none: a client of the author has used these client sequences
+    };
+    State state = State::ordered;
+    std::size_t count = 0;    // how many were ordered, from the first on
+    const char* reason = "";  // of busy: names the limit
   };
-  /// Orders the offers at once, behind all that is queued. Their edits must pass check_own_edit(), their client
-  /// sequences must be new, and their cause is not player.
-  OwnEdits order_own(const std::vector<EditOffer>& offers, const Now& now);
+  /// Orders the offers at once and in order, behind all that is queued, as far as the log has room. Their edits must
+  /// pass check_own_edit(), their client sequences ascend, of one author and instance, and their cause is not
+  /// player. `payer`: the author who pays edit_tokens() for each of them, from the first of their sessions that can; an
+  /// edit dearer than edit_burst costs a full bucket. Without a session, or if 0, nobody pays.
+  OwnEdits order_own(const std::vector<EditOffer>& offers, AuthorId payer, const Now& now);
 
   // ---- commands
   /// Output of the session's command under way, as lines; the last one is done. Ignored if the session is gone.
@@ -96,6 +104,8 @@ class WorldServer {
   bool accepts_edits() const;  // neither stopping nor failed
   Epoch epoch() const;
   Sequence head() const;
+  /// The highest client sequence of the instance that was ever decided; 0: none.
+  ClientSequence decided(AuthorId author, ClientInstance instance) const;
   Sequence durable() const;
   Sequence checkpoint() const;
   std::size_t session_count() const;  // in any state

@@ -19,8 +19,8 @@ namespace runstone::test {
 
 class DeskBench : public RollbackDesk::Workers {
  public:
-  DeskBench()
-      : desk(bench.server, *this, [this](std::span<std::uint8_t> out) {
+  explicit DeskBench(WorldConfig c = config())
+      : bench(std::move(c)), desk(bench.server, *this, [this](std::span<std::uint8_t> out) {
           for (auto& byte : out) byte = static_cast<std::uint8_t>(++random_);
         }) {
     WorldMeta meta = sample_meta();
@@ -55,7 +55,7 @@ class DeskBench : public RollbackDesk::Workers {
       const auto done = store->append(std::exchange(bench.ports.players, {}), fresh);
       INFO((done ? "" : done.error().message()));
       REQUIRE(done.has_value());
-      written = records.size();
+      written = bench.ports.log_written = records.size();
       bench.server.durable(records.back().version.seq, bench.now());
     }
   }

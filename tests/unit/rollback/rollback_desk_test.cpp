@@ -327,4 +327,109 @@ TEST_CASE("one undo of a player at a time; it waits until the edit is on disk", 
   CHECK(bench.at({1, 1, 1}) == kEmpty);
 }
 
+TEST_CASE("a rollback goes on where the log holds fewer edits than a slice has", "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.bench.ports.log_records_max = 3;
+  night.desk.apply(id, 0, night.reply());
+  night.settle();
+  CHECK(night.answer().is_ok);
+  CHECK(night.digests() == night.before);
+}
+
+TEST_CASE("undo and redo cost of the player's edits a second, and say when they wait for them",
+          "[rollback][undo]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 10;
+  slow.edit_burst = 12;
+  DeskBench bench(slow);
+  const AuthorId ana = bench.join(kBuilder);
+  bench.join(kGriefer);
+  bench.fill(kBuilder, kGrief, 1);  // in 16 chunks: as many pastes, two tokens each
+  bench.write_log();
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.tick();
+  while (bench.work()) bench.tick();
+  while (bench.work()) bench.tick();
+  const std::size_t written = bench.bench.ports.records.size();
+  CHECK(written > 1);
+  CHECK(written < 17);
+  CHECK(bench.answers.back().text ==
+        "undo waits: the author's edits per second are used up (edits_per_second)");
+  CHECK_FALSE(bench.answers.back().is_done);
+  bench.set(kBuilder, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).back().reason == RejectReason::rate_limited);
+  bench.set(kGriefer, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kGriefer, kEdge).empty());
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  CHECK(bench.answers.back().text.find("one of yours is still under way, and waits: the author's edits") !=
+        std::string::npos);
+  bench.desk.list(bench.reply());
+  bench.work();
+  CHECK(bench.answers.back().text.find("(waits: the author's edits per second are used up") !=
+        std::string::npos);
+  const std::size_t told = bench.answers.size();
+  const TimeUs began = bench.bench.time_us;
+  bench.settle();
+  CHECK(bench.answer().text == "undo: 6400 voxels in 16 chunks");
+  CHECK(bench.answers.size() == told + 1);  // it says once that it waits
+  CHECK(bench.bench.time_us - began >= 1'500'000);
+  CHECK(bench.at({-1, 0, 0}) == kEmpty);
+}
+
+TEST_CASE("a rollback costs nobody's edits a second", "[rollback]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 1;
+  slow.edit_burst = 2;
+  DeskBench bench(slow);
+  const AuthorId ana = bench.join(kBuilder);
+  bench.fill(kBuilder, kGrief, 1);
+  bench.write_log();
+  bench.desk.preview(of_author(ana), bench.bench.now(), bench.reply());
+  bench.settle();
+  bench.desk.apply("p1", ana, bench.reply());
+  const TimeUs began = bench.bench.time_us;
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.bench.time_us - began < 1'000'000);
+  bench.set(kBuilder, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).empty());
+}
+
+TEST_CASE("the undos of one run are one client instance of each author, and no rollbacks",
+          "[rollback][undo]") {
+  DeskBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  const AuthorId ben = bench.join(kGriefer);
+  for (int i = 0; i < 3; ++i) bench.set(kBuilder, {i, 0, 0}, 1);
+  bench.set(kGriefer, {0, 5, 0}, 1);
+  const auto last = [&] { return bench.bench.ports.records.back(); };
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  const EditRecord first = last();
+  CHECK(first.op.seq == 2);
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ana, first.op.instance, 3});
+  bench.desk.redo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ana, first.op.instance, 4});
+  bench.desk.undo(ben, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ben, first.op.instance, 2});
+
+  bench.desk.undo_rollback(std::to_string(first.version.seq), 0, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text.find("no rollback begins there") != std::string::npos);
+
+  // A client of hers that comes under that instance pushes the numbers up, no more.
+  bench.bench.join(9, static_cast<std::uint8_t>(kBuilder), first.op.instance);
+  bench.bench.edit(9, 1000, SetVoxel{{9, 9, 9}});
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(last().op == OperationId{ana, first.op.instance, 1001});
+}
+
 }  // namespace runstone::test

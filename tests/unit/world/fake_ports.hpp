@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -54,6 +55,8 @@ class FakePorts : public WorldPorts {
   std::set<SessionId> refuse_edits;                // sends of the edits class are
   std::map<SessionId, std::size_t> snapshot_room;  // snapshots left; absent: no bound
   bool log_room = true;
+  std::size_t log_records_max = std::numeric_limits<std::size_t>::max();  // that are not written yet
+  std::size_t log_written = 0;                                            // of `records`
 
   bool send(SessionId session, const EncodedMessage& message) override {
     if (full.contains(session)) return false;
@@ -75,7 +78,9 @@ class FakePorts : public WorldPorts {
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override {
     closed.push_back({session, reason, text});
   }
-  bool log_has_room(std::size_t /*records*/) const override { return log_room; }
+  bool log_has_room(std::size_t more) const override {
+    return log_room && more <= log_records_max && records.size() - log_written <= log_records_max - more;
+  }
   void log_append(std::vector<PlayerRow> new_players, std::vector<EditRecord> new_records) override {
     players.insert(players.end(), new_players.begin(), new_players.end());
     records.insert(records.end(), new_records.begin(), new_records.end());
