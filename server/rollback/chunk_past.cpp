@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
-#include "common/edits/edit_geometry.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/history/base_chunk.hpp"
 
@@ -35,18 +34,18 @@ StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const 
 
 StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
                               FollowScratch& scratch) {
+  ChunkLogs logs(reader);
+  return chunk_past(reader, generator, logs, key, at, scratch);
+}
+
+StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, ChunkLogs& logs, const ChunkKey& key,
+                              Sequence at, FollowScratch& scratch) {
   auto start = stored_form(reader, generator, key, at);
   if (!start || start->version.seq >= at) return start;
-  const std::int32_t edge = reader.meta().chunk_edge;
-  LogQuery query;
-  query.box = box_of(key.at, edge);
-  query.first = start->version.seq + 1;
-  query.last = at;
-  FollowedChunk followed(*std::move(start), origin_of(key.at, edge));
-  const auto read = reader.query_log(query, [&](const EditRecord& record) {
-    if (touches(record.edit, *query.box)) followed.add(record.edit, record.version, scratch);
-    return true;
-  });
+  const Sequence first = start->version.seq + 1;
+  FollowedChunk followed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
+  const auto read = logs.visit(
+      key, first, at, [&](const EditRecord& record) { followed.add(record.edit, record.version, scratch); });
   if (!read) return Unexpected<StoreError>{read.error()};
   followed.settle(scratch);
   return std::move(followed.chunk());

@@ -5,6 +5,7 @@
 #include "common/edits/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "common/runs/chunk.hpp"
+#include "server/rollback/chunk_logs.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -14,5 +15,8 @@ namespace runstone {
 /// than `at`: the log before it was compacted. Requires lod 0.
 StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
                               FollowScratch& scratch);
+/// The same, with the log through `logs`, a view of the same reader.
+StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, ChunkLogs& logs, const ChunkKey& key,
+                              Sequence at, FollowScratch& scratch);
 
 }  // namespace runstone

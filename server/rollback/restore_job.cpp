@@ -10,9 +10,9 @@
 
 namespace runstone {
 
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
-                                          const RestoreWork& work) {
-  RestorePlanner planner(reader, generator);
+std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator, const RestoreWork& work,
+                                          const GoesOn& goes_on) {
+  RestorePlanner planner(reader, generator, goes_on);
   std::vector<RestoredChunk> out;
   for (const RestoreWork::Item& item : work.items) {
     RestoredChunk chunk;

@@ -54,8 +54,9 @@ struct RestoredChunk {
   std::vector<EditDescriptor> edits;  // disjoint; empty: nothing to change
   std::string error;                  // not empty: the chunk cannot be planned, and why
 };
-/// Does the work. Any thread that owns the reader.
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator, const RestoreWork& work);
+/// Does the work. Any thread that owns the reader. Chunks that are not wanted any more come back with an error.
+std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator, const RestoreWork& work,
+                                          const GoesOn& goes_on = {});
 
 struct RestoreLimits {
   std::size_t slice_chunks = 16;         // written per step

@@ -27,7 +27,8 @@ std::vector<Difference> inside(const std::vector<Difference>& all, const std::ve
 
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
-  auto before = chunk_past(reader_, generator_, key, selected.front() - 1, scratch_);
+  if (goes_on_ && !goes_on_()) return cancelled(reader_);
+  auto before = chunk_past(reader_, generator_, logs_, key, selected.front() - 1, scratch_);
   if (!before) return Unexpected<StoreError>{before.error()};
   const std::int32_t edge = reader_.meta().chunk_edge;
   const VoxelPos origin = origin_of(key.at, edge);
@@ -35,13 +36,9 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
   plan.key = key;
   plan.version = before->version;
   ChunkRestore restore(std::move(before->voxels), origin);
-  LogQuery query;
-  query.box = box_of(key.at, edge);
-  query.first = selected.front();
-  query.last = end;
+  const VoxelBox here = box_of(key.at, edge);
   auto next = selected.begin();
-  const auto read = reader_.query_log(query, [&](const EditRecord& record) {
-    if (!touches(record.edit, *query.box)) return true;
+  const auto read = logs_.visit(key, selected.front(), end, [&](const EditRecord& record) {
     while (next != selected.end() && *next < record.version.seq) ++next;
     const bool is_selected = next != selected.end() && *next == record.version.seq;
     if (is_selected) {
@@ -50,16 +47,15 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
     }
     restore.add(record.edit, is_selected, scratch_.apply);
     plan.version = record.version;
-    return true;
   });
   if (!read) return Unexpected<StoreError>{read.error()};
   restore.settle(scratch_.apply);
   plan.now = restore.now();
   plan.restored = restore.restored();
   append_differences(plan.now, plan.restored, plan.differences);
-  if (box && intersect(*box, *query.box) != *query.box && !plan.differences.empty()) {
+  if (box && intersect(*box, here) != here && !plan.differences.empty()) {
     std::vector<IndexSpan> spans;
-    append_spans({FillBox{intersect(*box, *query.box)}, {}, kEmpty}, origin, plan.now.extent, plan.now.order,
+    append_spans({FillBox{intersect(*box, here)}, {}, kEmpty}, origin, plan.now.extent, plan.now.order,
                  spans);
     plan.differences = inside(plan.differences, spans);
     plan.restored = plan.now;

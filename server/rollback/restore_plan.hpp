@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/edits/followed_chunk.hpp"
 #include "common/edits/restore.hpp"
 #include "common/generate/generator.hpp"
+#include "server/rollback/chunk_logs.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -29,10 +31,16 @@ struct RestorePlan {
 class RestorePlanner {
  public:
   /// All must outlive the planner. One thread, which alone uses the reader.
-  RestorePlanner(Store& reader, const Generator& generator) : reader_(reader), generator_(generator) {}
+  /// `kept_bytes_max`: as in ChunkLogs, for who plans a chunk several times.
+  RestorePlanner(Store& reader, const Generator& generator, GoesOn goes_on = {},
+                 std::size_t kept_bytes_max = 0)
+      : reader_(reader),
+        generator_(generator),
+        goes_on_(goes_on),
+        logs_(reader, std::move(goes_on), kept_bytes_max) {}
 
   /// `selected`: edits that touch the chunk, ascending, at least one. `box`: voxels outside stay. Reads the log up
-  /// to `end`, which must be durable. O(edits that touched the chunk since its newest stored form from before the
+  /// to `end`, which must be durable. Fails with what the store says, and with cancelled. O(edits that touched the chunk since its newest stored form from before the
   /// first selected one).
   StoreResult<RestorePlan> plan(const ChunkKey& key, std::span<const Sequence> selected,
                                 const std::optional<VoxelBox>& box, Sequence end);
@@ -40,6 +48,8 @@ class RestorePlanner {
  private:
   Store& reader_;
   const Generator& generator_;
+  GoesOn goes_on_;
+  ChunkLogs logs_;
   FollowScratch scratch_;
 };
 

@@ -60,6 +60,7 @@ RollbackDesk::RollbackDesk(WorldServer& world, Workers& workers, RandomBytes ran
 RollbackDesk::~RollbackDesk() = default;
 
 void RollbackDesk::stop() {
+  goes_on_->store(false);
   for (auto& [number, preview] : previews_) preview->is_wanted->store(false);
 }
 
@@ -95,17 +96,28 @@ void RollbackDesk::change_own(AuthorId author, Cause cause, const Now& now, Desk
   if (own_changes_.contains(author)) return refuse(reply, name + ": " + busy_text(author));
   when_durable(now, reply, [this, author, cause, name, reply] {
     if (!own_changes_.insert(author).second) return refuse(reply, name + ": " + busy_text(author));
-    auto found = std::make_shared<StoreResult<std::optional<OwnChange>>>(std::optional<OwnChange>());
+    auto found = std::make_shared<StoreResult<OwnSearch>>(OwnSearch());
     workers_.run(
-        [found, author, cause, end = world_.durable()](Store& reader, const Generator& generator) {
-          *found = next_own_change(reader, generator, author, cause, end);
+        [found, author, cause, end = world_.durable(), goes_on = goes_on()](Store& reader,
+                                                                            const Generator& generator) {
+          *found = next_own_change(reader, generator, author, cause, end, goes_on);
         },
         [this, found, author, cause, name, reply](const std::string& error) {
           own_changes_.erase(author);
           if (!error.empty()) return refuse(reply, name + ": " + error);
-          if (!*found) return refuse(reply, name + ": " + found->error().message());
-          if (!found->value()) return refuse(reply, "nothing to " + name);
-          OwnChange& change = *found->value();
+          if (!*found) {
+            return refuse(reply, found->error().kind == StoreError::Kind::cancelled
+                                     ? name + ": not now: the server stops"
+                                     : name + ": " + found->error().message());
+          }
+          std::optional<OwnChange>& next = found->value().change;
+          if (!next && found->value().has_given_up) {
+            return refuse(reply, name + ": nothing is left of the " + std::to_string(kPassedActionsMax) +
+                                     " edits that are next: others have built over them, or they changed "
+                                     "nothing; it looks no further back");
+          }
+          if (!next) return refuse(reply, "nothing to " + name);
+          OwnChange& change = *next;
           RestoreOrder order;
           order.author = author;
           order.instance = own_instance_;
@@ -144,7 +156,7 @@ void RollbackDesk::preview(const SelectionFilter& filter, const Now& now, DeskRe
         return;
       }
       preview->selection = std::make_shared<const Selection>(*std::move(selection));
-      RestorePlanner planner(reader, generator);
+      RestorePlanner planner(reader, generator, goes_on);
       for (const auto& [key, edits] : preview->selection->chunks) {
         if (!goes_on()) {
           preview->error = "cancelled";
@@ -269,9 +281,9 @@ void RollbackDesk::undo_rollback(const std::string& id, AuthorId author, const N
     if (seq > world_.head()) return refuse(reply, "rollback undo: there is no edit " + std::to_string(seq));
     auto found = std::make_shared<StoreResult<Selection>>(Selection());
     workers_.run(
-        [found, seq](Store& reader, const Generator&) {
+        [found, seq, goes_on = goes_on()](Store& reader, const Generator&) {
           const auto group = rollback_group(reader, seq);
-          *found = group ? select_edits(reader, group->edits)
+          *found = group ? select_edits(reader, group->edits, goes_on)
                          : StoreResult<Selection>(Unexpected<StoreError>{group.error()});
         },
         [this, found, seq, author, reply](const std::string& error) {
@@ -344,8 +356,8 @@ void RollbackDesk::step(Job& job, const Now& now) {
   const auto self = std::find_if(jobs_.begin(), jobs_.end(), [&](const auto& j) { return j.get() == &job; });
   auto chunks = std::make_shared<std::vector<RestoredChunk>>();
   workers_.run(
-      [chunks, work = *std::move(work)](Store& reader, const Generator& generator) {
-        *chunks = restore_chunks(reader, generator, work);
+      [chunks, work = *std::move(work), goes_on = goes_on()](Store& reader, const Generator& generator) {
+        *chunks = restore_chunks(reader, generator, work, goes_on);
       },
       [held = *self, chunks](const std::string& error) {
         if (!error.empty()) return held->job.work_failed(error);

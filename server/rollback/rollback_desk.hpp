@@ -68,7 +68,7 @@ class RollbackDesk {
   /// On every tick, and whenever the log became durable or a worker answered: begins what waited for the disk,
   /// lets jobs write, answers.
   void tick(const Now& now);
-  /// Workers end soon what they compute for previews: the server stops.
+  /// Workers end soon what they read: the server stops.
   void stop();
   /// Jobs that write or are about to.
   std::size_t running() const { return jobs_.size(); }
@@ -92,6 +92,10 @@ class RollbackDesk {
   std::string busy_text(AuthorId author) const;
   Preview* find_preview(const std::string& id);
   ClientInstance new_instance();
+  /// For workers; may outlive the desk.
+  GoesOn goes_on() const {
+    return [flag = goes_on_] { return flag->load(); };
+  }
 
   WorldServer& world_;
   Workers& workers_;
@@ -103,6 +107,7 @@ class RollbackDesk {
   /// Of all undo and redo in this run, each author counting on by itself: an instance leaves a mark for good
   /// (DecidedMarks).
   const ClientInstance own_instance_;
+  const std::shared_ptr<std::atomic<bool>> goes_on_ = std::make_shared<std::atomic<bool>>(true);
   std::uint64_t next_preview_ = 1;
 };
 

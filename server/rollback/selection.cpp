@@ -8,8 +8,6 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint64_t kAskEdits = 1024;
-
 /// Puts records into a selection, in any order.
 class Collector {
  public:
@@ -74,8 +72,7 @@ std::optional<VoxelBox> Selection::area() const {
   return all && box ? intersect(*all, *box) : all;
 }
 
-StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter,
-                                    const std::function<bool()>& goes_on) {
+StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter, const GoesOn& goes_on) {
   LogQuery query;
   query.from_us = filter.from_us;
   query.until_us = filter.until_us;
@@ -86,12 +83,11 @@ StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter
   Collector collector(reader);
   collector.keep_inside(filter.box);
   std::set<AuthorId> authors(filter.authors.begin(), filter.authors.end());
-  std::uint64_t read = 0;
   bool has_room = true;
   bool is_wanted = true;
   const auto run = [&]() {
     return reader.query_log(query, [&](const EditRecord& record) {
-      if (goes_on && read++ % kAskEdits == 0) is_wanted = goes_on();
+      is_wanted = !goes_on || goes_on();
       if (is_wanted) has_room = collector.take(record);
       return is_wanted && has_room;
     });
@@ -103,35 +99,25 @@ StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter
     if (done && has_room && is_wanted) done = run();
   }
   if (!done) return Unexpected<StoreError>{done.error()};
-  if (!is_wanted) {
-    return Unexpected<StoreError>{{StoreError::Kind::cancelled, reader.file(), "edit_log", "cancelled"}};
-  }
+  if (!is_wanted) return cancelled(reader);
   if (!has_room) return collector.too_large();
   return collector.finish();
 }
 
 StoreResult<Selection> select_edits(Store& reader, const std::vector<Sequence>& edits,
-                                    const std::vector<Sequence>& written_by) {
+                                    const GoesOn& goes_on) {
   Collector collector(reader);
-  std::set<ChunkKey> kept;
   bool has_room = true;
   for (const Sequence seq : edits) {
-    const bool names_chunks = std::binary_search(written_by.begin(), written_by.end(), seq);
+    if (goes_on && !goes_on()) return cancelled(reader);
     const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
       has_room = has_room && collector.take(record);
-      if (names_chunks) {
-        for (const ChunkCoord at : touched_chunks(record.edit, reader.meta().chunk_edge))
-          kept.insert({0, at});
-      }
       return true;
     });
     if (!read) return Unexpected<StoreError>{read.error()};
     if (!has_room) return collector.too_large();
   }
-  Selection selection = collector.finish();
-  if (!written_by.empty())
-    std::erase_if(selection.chunks, [&](const auto& c) { return !kept.contains(c.first); });
-  return selection;
+  return collector.finish();
 }
 
 }  // namespace runstone

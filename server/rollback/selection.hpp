@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "server/rollback/goes_on.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {
@@ -37,14 +38,11 @@ struct Selection {
 inline constexpr std::uint64_t kSelectionTouchesMax = 16'000'000;
 
 /// Asks the log. Fails with what the store says, with bad_request if the selection is too large, and with
-/// cancelled once `goes_on`, which is asked now and then, says no. O(edits of the answer * chunks they touch).
-StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter,
-                                    const std::function<bool()>& goes_on = {});
+/// cancelled once `goes_on` says no. O(edits of the answer * chunks they touch).
+StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter, const GoesOn& goes_on = {});
 
-/// Exactly these edits, ascending; those that the log does not hold are left out. Only chunks that edits of
-/// `written_by` touch are kept, if it is not empty: what is to be changed lies there, the other edits only
-/// say which writers count.
+/// Exactly these edits, ascending; those that the log does not hold are left out. Fails likewise.
 StoreResult<Selection> select_edits(Store& reader, const std::vector<Sequence>& edits,
-                                    const std::vector<Sequence>& written_by = {});
+                                    const GoesOn& goes_on = {});
 
 }  // namespace runstone
