@@ -11,6 +11,8 @@
 #include "common/core/hash.hpp"
 #include "common/edits/edit_geometry.hpp"
 #include "server/history/keyframe_maker.hpp"
+#include "server/rollback/restore_plan.hpp"
+#include "server/rollback/selection.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "tests/bench/statistics.hpp"
 #include "tests/support/builder_session.hpp"
@@ -193,6 +195,39 @@ Result<LogMoments, std::string> visit(const std::string& folder, const Generator
   return result;
 }
 
+Result<LogPreview, std::string> preview(Store& store, const Generator& generator, AuthorId author,
+                                        unsigned repetitions) {
+  const auto range = store.log_range();
+  if (!range) return failure(range.error());
+  SelectionFilter filter;
+  filter.authors = {author};
+  filter.from_us = range->last.time_us - 60 * kMinute;
+  LogPreview result;
+  std::vector<double> select_ms, plan_ms;
+  for (unsigned i = 0; i < repetitions; ++i) {
+    const auto selecting = Clock::now();
+    const auto selection = select_edits(store, filter);
+    if (!selection) return failure(selection.error());
+    select_ms.push_back(ms_since(selecting));
+    result.edits = selection->edits;
+    result.chunks = selection->chunks.size();
+    result.voxels = 0;
+    const auto planning = Clock::now();
+    RestorePlanner planner(store, generator);
+    for (const auto& [key, edits] : selection->chunks) {
+      const auto plan = planner.plan(key, edits, std::nullopt, range->last.version.seq);
+      if (!plan) return failure(plan.error());
+      result.voxels += plan->voxels;
+    }
+    plan_ms.push_back(ms_since(planning));
+  }
+  result.select_ms = median(select_ms);
+  result.select_slowest_ms = quantile(select_ms, 1);
+  result.plan_ms = median(plan_ms);
+  result.plan_slowest_ms = quantile(plan_ms, 1);
+  return result;
+}
+
 }  // namespace
 
 Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::ostream& progress) {
@@ -238,6 +273,10 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
   if (auto opened = reopen(store, folder.path()); !opened) return Unexpected<std::string>{opened.error()};
   bench.keyframe_bytes = (bytes_of(folder.path()) - plain) / static_cast<double>(options.edits);
   if (auto visited = visit_moments(); !visited) return Unexpected<std::string>{visited.error()};
+  fmt::print(progress, "moments with keyframes are done\n");
+  const auto previewed = preview(*store, **generator, sampled->records.back().op.author, options.repetitions);
+  if (!previewed) return Unexpected<std::string>{previewed.error()};
+  bench.preview = *previewed;
   return bench;
 }
 
@@ -261,6 +300,11 @@ void write_table(const LogBench& bench, std::ostream& out) {
                m.keyframes, m.moments, m.edits_read, m.chunks, m.open_ms, m.open_slowest_ms, m.view_ms,
                m.view_slowest_ms, m.all_ms, m.all_slowest_ms);
   }
+  const LogPreview& p = bench.preview;
+  fmt::print(out,
+             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; selected in {:.1f} ms "
+             "(slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
+             p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms, p.plan_slowest_ms);
 }
 
 void write_json(const LogBench& bench, std::ostream& out) {
@@ -286,6 +330,14 @@ void write_json(const LogBench& bench, std::ostream& out) {
                                {"all_ms", m.all_ms},
                                {"all_slowest_ms", m.all_slowest_ms}});
   }
+  const LogPreview& p = bench.preview;
+  json["preview"] = {{"edits", p.edits},
+                     {"chunks", p.chunks},
+                     {"voxels", p.voxels},
+                     {"select_ms", p.select_ms},
+                     {"select_slowest_ms", p.select_slowest_ms},
+                     {"plan_ms", p.plan_ms},
+                     {"plan_slowest_ms", p.plan_slowest_ms}};
   out << json.dump(1) << '\n';
 }
 

@@ -1,4 +1,4 @@
-// What a long log costs: questions to it, keyframes, and opening the world at moments of it.
+// What a long log costs: questions to it, keyframes, opening the world at moments of it, previews of a rollback.
 #pragma once
 #include <cstdint>
 #include <iosfwd>
@@ -25,6 +25,13 @@ struct LogMoments {
   double all_ms = 0, all_slowest_ms = 0;    // opening, and all edited chunks
 };
 
+/// Of the preview of a rollback: one author's last hour, planned with the keyframes there are, without a picture.
+struct LogPreview {
+  std::uint64_t edits = 0, chunks = 0, voxels = 0;  // selected, touched, that would change
+  double select_ms = 0, select_slowest_ms = 0;
+  double plan_ms = 0, plan_slowest_ms = 0;
+};
+
 struct LogBench {
   std::uint64_t edits = 0;
   double append_us = 0;          // an edit, 64 a commit, fsync off
@@ -34,10 +41,12 @@ struct LogBench {
   std::uint64_t keyframe_chunks = 0;
   std::vector<LogQuestion> questions;
   std::vector<LogMoments> moments;
+  LogPreview preview;
 };
 
 /// A world of options.edits edits of eight builders over terrain (synthetic: tests/support/builder_session.hpp), in a folder that
-/// is gone afterwards. options.repetitions questions of each sort, spread over the log, and as many moments at random.
+/// is gone afterwards. options.repetitions questions of each sort, spread over the log, and as many moments at random,
+/// and as many previews, which are alike.
 Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::ostream& progress);
 
 void write_table(const LogBench& bench, std::ostream& out);

@@ -225,7 +225,7 @@ TEST_CASE("runstone-bench edits has a row for every case and judges every bar", 
   for (const auto& bar : bars) CHECK(bar.at("verdict") != "not measured");
 }
 
-TEST_CASE("runstone-bench log opens moments with keyframes and without", "[bench]") {
+TEST_CASE("runstone-bench log opens moments with keyframes and without, and previews a rollback", "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "log.json";
   const Output output = run({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
@@ -242,4 +242,7 @@ TEST_CASE("runstone-bench log opens moments with keyframes and without", "[bench
   CHECK(document.at("moments")[1].at("chunks") == document.at("moments")[0].at("chunks"));
   CHECK(document.at("moments")[1].at("edits_read") <= document.at("moments")[0].at("edits_read"));
   CHECK(document.at("questions").size() == 6);
+  CHECK(document.at("preview").at("edits") > 1'000);
+  CHECK(document.at("preview").at("chunks") > 1);
+  CHECK(document.at("preview").at("voxels") > 100);
 }
