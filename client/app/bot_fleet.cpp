@@ -4,25 +4,20 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <asio/io_context.hpp>
-#include <asio/steady_timer.hpp>
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "client/app/session_link.hpp"
+#include "client/app/fleet.hpp"
+#include "client/app/own_latency.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
 #include "common/core/hash.hpp"
 
 namespace runstone {
 namespace {
-
-constexpr auto kStepInterval = std::chrono::milliseconds(5);
-constexpr std::int64_t kGoodbyeMs = 1'000;
 
 BotConfig config_of(const BotOptions& options, std::size_t index) {
   BotConfig config;
@@ -43,25 +38,7 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
   return config;
 }
 
-/// A bot and its link.
-class Member {
- public:
-  Member(asio::io_context& io, BotConfig config, const NetConfig& net)
-      : bot_(std::move(config)), link_(io, bot_.session(), bot_.config().session.name, net) {}
-
-  Bot& bot() { return bot_; }
-  const SessionLink& link() const { return link_; }
-
-  void step(TimeUs now_us) {
-    bot_.step(now_us);
-    link_.flush();
-  }
-  void leave() { link_.leave(kGoodbyeMs); }
-
- private:
-  Bot bot_;
-  SessionLink link_;
-};
+using Member = FleetMember<Bot>;
 
 void add_up(BotCounts& sum, const BotCounts& one) {
   sum.due += one.due;
@@ -77,11 +54,11 @@ void add_up(BotCounts& sum, const BotCounts& one) {
 
 }  // namespace
 
-struct BotFleet::Parts {
+struct BotFleet::Parts : Fleet<Bot> {
   explicit Parts(const BotOptions& fleet_options) : options(fleet_options) {
     const NetConfig net{.host = options.host, .port = options.port};
     for (std::size_t i = 0; i < options.count; ++i) {
-      members.push_back(std::make_unique<Member>(io, config_of(options, i), net));
+      add(net, config_of(options, i));
     }
   }
 
@@ -94,7 +71,7 @@ struct BotFleet::Parts {
       for (const auto& member : members) member->step(now_us);
       if (done()) return true;
       if (now_us >= end_us) return false;
-      io.run_for(kStepInterval);
+      run_links();
     }
     return false;
   }
@@ -105,16 +82,12 @@ struct BotFleet::Parts {
   /// What is wrong with the first bot that is not as it should be.
   std::string explain(const std::string& what, const std::function<bool(Member&)>& holds) const {
     for (const auto& member : members) {
-      if (holds(*member)) continue;
-      const std::string& why = member->link().last_failure();
-      return member->bot().config().session.name + " " + what + (why.empty() ? "" : ": " + why);
+      if (!holds(*member)) return member->failure(what);
     }
     return {};
   }
 
   const BotOptions options;
-  asio::io_context io{1};
-  std::vector<std::unique_ptr<Member>> members;
 };
 
 BotFleet::BotFleet(const BotOptions& options) : parts_(std::make_unique<Parts>(options)) {}
@@ -157,14 +130,12 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
     report.bytes_received += member->link().stats().bytes_received.load();
     report.bytes_sent += member->link().stats().bytes_sent.load();
   }
-  for (const auto& member : fleet.members) member->leave();
-  fleet.io.run_for(std::chrono::milliseconds(2 * kGoodbyeMs));
+  fleet.leave();
   return report;
 }
 
 std::string to_json(const FleetReport& report) {
   const BotCounts& c = report.counts;
-  const auto percentile = [&c](double share) { return c.own_us.percentile(share).value_or(0); };
   const nlohmann::ordered_json json = {{"bots", report.bots},
                                        {"seconds", report.seconds},
                                        {"failure", report.failure},
@@ -177,11 +148,7 @@ std::string to_json(const FleetReport& report) {
                                          {"rejected", c.rejected},
                                          {"durable", c.durable},
                                          {"of_others", c.others}}},
-                                       {"own_us",
-                                        {{"p50", percentile(0.5)},
-                                         {"p90", percentile(0.9)},
-                                         {"p99", percentile(0.99)},
-                                         {"max", percentile(1)}}},
+                                       {"own_us", own_latency_json(c.own_us)},
                                        {"standing",
                                         {{"held", report.standing.held},
                                          {"intact", report.standing.intact},
@@ -196,18 +163,14 @@ std::string to_json(const FleetReport& report) {
 
 std::string to_table(const FleetReport& report) {
   const BotCounts& c = report.counts;
-  const auto ms = [&c](double share) {
-    return static_cast<double>(c.own_us.percentile(share).value_or(0)) / 1000;
-  };
   return fmt::format(
       "bots {}: {} edits due in {:.1f} s, {} submitted, {} confirmed, {} rejected, {} durable; {} not ready, "
-      "{} "
-      "refused\n"
-      "due to confirmed, ms: p50 {:.2f} p90 {:.2f} p99 {:.2f} max {:.2f}\n"
+      "{} refused\n"
+      "{}"
       "voxels set and not set again: {}, of them {} intact, {} changed, {} out of sight\n"
       "edits of others seen {}; drift: {} of {} chunk digests\n",
       report.bots, c.due, report.seconds, c.submitted, c.confirmed, c.rejected, c.durable, c.not_ready,
-      c.refused, ms(0.5), ms(0.9), ms(0.99), ms(1), report.standing.held, report.standing.intact,
+      c.refused, own_latency_line(c.own_us), report.standing.held, report.standing.intact,
       report.standing.changed, report.standing.unseen, c.others, report.drifted, report.audited);
 }
 

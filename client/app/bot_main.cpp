@@ -8,51 +8,48 @@
 #include <exception>
 
 #include "client/app/bot_fleet.hpp"
-#include "client/app/client.hpp"
+#include "client/app/exit_code.hpp"
 #include "client/app/play_fleet.hpp"
 #include "client/app/recorded_file.hpp"
 #include "client/app/report.hpp"
+#include "client/app/stop_signals.hpp"
 
 namespace {
 
-volatile std::sig_atomic_t stop_requested = 0;
+/// Prints what a fleet did and writes the report that was asked for. Returns `code`, or the one for a report that cannot
+/// be written.
+template <class Report>
+int tell(const Report& report, const runstone::BotOptions& options, int code) {
+  using namespace runstone;
+  std::fputs(to_table(report).c_str(), stdout);
+  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+  if (options.report.empty() || write_text(options.report, to_json(report))) return code;
+  std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
+  return kExitFailed;
+}
 
-void request_stop(int) { stop_requested = stop_requested + 1; }
-
-int play(const runstone::BotOptions& options) {
+int play(const runstone::BotOptions& options, const volatile std::sig_atomic_t& stop) {
   using namespace runstone;
   const auto log = read_recorded_file(options.play);
   if (!log) {
     std::fprintf(stderr, "runstone-bot: %s\n", log.error().c_str());
     return kExitNoStart;
   }
-  const PlayReport report = PlayFleet(options, *log).run(stop_requested);
+  const PlayReport report = PlayFleet(options, *log).run(stop);
   if (!report.started) {
     std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
     return kExitNoStart;
   }
-  std::fputs(to_table(report).c_str(), stdout);
-  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
-  if (!options.report.empty() && !write_text(options.report, to_json(report))) {
-    std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
-    return kExitFailed;
-  }
-  return report.is_complete() ? kExitOk : kExitFailed;
+  return tell(report, options, report.is_complete() ? kExitOk : kExitFailed);
 }
 
-int run(const runstone::BotOptions& options) {
+int run(const runstone::BotOptions& options, const volatile std::sig_atomic_t& stop) {
   using namespace runstone;
-  if (!options.play.empty()) return play(options);
-  BotFleet fleet(options);
-  const FleetReport report = fleet.run(stop_requested);
-  std::fputs(to_table(report).c_str(), stdout);
-  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
-  if (!options.report.empty() && !write_text(options.report, to_json(report))) {
-    std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
-    return kExitFailed;
-  }
-  if (!report.failure.empty()) return report.counts.due == 0 ? kExitNoStart : kExitFailed;
-  return report.drifted == 0 ? kExitOk : kExitFailed;
+  if (!options.play.empty()) return play(options, stop);
+  const FleetReport report = BotFleet(options).run(stop);
+  int code = report.drifted == 0 ? kExitOk : kExitFailed;
+  if (!report.failure.empty()) code = report.counts.due == 0 ? kExitNoStart : kExitFailed;
+  return tell(report, options, code);
 }
 
 }  // namespace
@@ -62,13 +59,10 @@ int main(int argc, char** argv) {
   if (!parsed.options) return parsed.exit_code;
   spdlog::set_default_logger(spdlog::stderr_logger_mt("bot"));  // standard output is for the table
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
-  struct sigaction action{};
-  action.sa_handler = request_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();
   int code = runstone::kExitNoStart;
   try {
-    code = run(*parsed.options);
+    code = run(*parsed.options, stop);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "runstone-bot: %s\n", error.what());
   }

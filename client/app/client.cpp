@@ -109,6 +109,7 @@ int Client::play(const volatile std::sig_atomic_t& stop) {
     const TimeUs now_us = steady_now_us();
     take_input(now_us);
     picture_.take_drawn();
+    see_completeness(now_us);
     if (runner_) runner_->step(now_us);
     follow_player(now_us);
     session_.tick(now_us);
@@ -241,6 +242,14 @@ void Client::scrub(int steps) {
     travel.seq = scrubbed_to_ = to;
   }
   static_cast<void>(session_.travel(travel));
+}
+
+void Client::see_completeness(TimeUs now_us) {
+  if (!is_complete()) {
+    complete_us_.reset();
+  } else if (!complete_us_) {
+    complete_us_ = now_us;
+  }
 }
 
 void Client::follow_player(TimeUs now_us) {
@@ -436,19 +445,14 @@ bool Client::view_has_followed() const {
 }
 
 bool Client::loaded() const {
-  if (!view_has_followed() || !session_.loaded()) {
-    complete_us_.reset();
-    return false;
-  }
-  if (!complete_us_) complete_us_ = steady_now_us();
+  if (!is_complete()) return false;
   // Where others never stop editing there is always a mesh to make: then what was drawn meanwhile is the picture.
-  return picture_.is_settled() || steady_now_us() - *complete_us_ >= kSettleUsMax;
+  return picture_.is_settled() || (complete_us_ && steady_now_us() - *complete_us_ >= kSettleUsMax);
 }
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.
-  return view_has_followed() && session_.loaded() && session_.pongs() >= mark + 2 &&
-         session_.replica().own_edits().unanswered().empty();
+  return is_complete() && session_.pongs() >= mark + 2 && session_.replica().own_edits().unanswered().empty();
 }
 
 bool Client::screenshot(const std::string& file) {

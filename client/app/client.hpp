@@ -47,6 +47,7 @@ class Client final : private ScriptHost {
   void on_disconnected(const NetDisconnected& event);
   void world_opened();
   void take_input(TimeUs now_us);
+  void see_completeness(TimeUs now_us);
   void follow_player(TimeUs now_us);
   void flush();
   void take_news();
@@ -59,6 +60,8 @@ class Client final : private ScriptHost {
 
   /// The view is where the player is: what is said about chunks in view holds for what surrounds them.
   bool view_has_followed() const;
+  /// Every chunk in view is here.
+  bool is_complete() const { return view_has_followed() && session_.loaded(); }
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
   std::vector<Marker> markers() const;
   ClientReport report() const;
@@ -109,11 +112,11 @@ class Client final : private ScriptHost {
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t openings_seen_ = 0;
   TimeUs started_us_ = 0;
-  std::optional<TimeUs> lost_us_;              // without a session since
-  std::string last_failure_;                   // why the last attempt to connect failed
-  mutable std::optional<TimeUs> complete_us_;  // everything in view is here since
-  Sequence scrubbed_to_ = 0;                   // while the past is shown or asked for
-  std::optional<int> wish_to_end_;             // the user or the server ends the program
+  std::optional<TimeUs> lost_us_;      // without a session since
+  std::string last_failure_;           // why the last attempt to connect failed
+  std::optional<TimeUs> complete_us_;  // everything in view is here since
+  Sequence scrubbed_to_ = 0;           // while the past is shown or asked for
+  std::optional<int> wish_to_end_;     // the user or the server ends the program
 
   TimeUs input_us_ = 0, title_us_ = 0;
   std::uint64_t title_frames_ = 0;  // presented when the title was set

@@ -15,12 +15,9 @@
 
 #include "client/app/client.hpp"
 #include "client/app/draw_program.hpp"
+#include "client/app/stop_signals.hpp"
 
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-
-void request_stop(int) { stop_requested = 1; }
 
 std::atomic<bool> client_runs{false};
 
@@ -30,7 +27,7 @@ void correct_exit() {
   if (client_runs) std::_Exit(runstone::kExitNoStart);
 }
 
-int run(runstone::ClientOptions options) {
+int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop) {
   using namespace runstone;
   std::optional<Script> script;
   if (!options.script.empty()) {
@@ -46,7 +43,7 @@ int run(runstone::ClientOptions options) {
   Client client(std::move(options), script ? &*script : nullptr);
   client_runs = true;
   std::atexit(correct_exit);  // after the driver is loaded: the newest comes first, and the driver's may hang
-  const int code = client.run(stop_requested);
+  const int code = client.run(stop);
   client_runs = false;
   return code;
 }
@@ -63,13 +60,10 @@ int main(int argc, char** argv) {
   // Standard output is for the table.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("client"));
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
-  struct sigaction action{};
-  action.sa_handler = request_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();
   int code = runstone::kExitNoStart;
   try {
-    code = run(std::move(*parsed.options));
+    code = run(std::move(*parsed.options), stop);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "runstone-client: %s\n", error.what());
   }

@@ -4,22 +4,18 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <asio/io_context.hpp>
-#include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "client/app/session_link.hpp"
+#include "client/app/fleet.hpp"
+#include "client/app/own_latency.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
 
 namespace runstone {
 namespace {
-
-constexpr auto kStepInterval = std::chrono::milliseconds(5);
-constexpr std::int64_t kGoodbyeMs = 1'000;
 
 SessionConfig new_player() {
   SessionConfig config;
@@ -29,25 +25,7 @@ SessionConfig new_player() {
   return config;
 }
 
-/// A bot and its link.
-class Member {
- public:
-  Member(asio::io_context& io, const RecordedAuthor& recorded, double speed, const NetConfig& net)
-      : bot_(recorded, new_player(), speed), link_(io, bot_.session(), bot_.name(), net) {}
-
-  PlayBot& bot() { return bot_; }
-  const SessionLink& link() const { return link_; }
-
-  void step(TimeUs now_us) {
-    bot_.step(now_us);
-    link_.flush();
-  }
-  void leave() { link_.leave(kGoodbyeMs); }
-
- private:
-  PlayBot bot_;
-  SessionLink link_;
-};
+using Member = FleetMember<PlayBot>;
 
 void add_up(PlayCounts& sum, const PlayCounts& one) {
   sum.due += one.due;
@@ -69,12 +47,12 @@ std::uint64_t total(const std::map<std::string, std::uint64_t>& by_reason) {
 
 }  // namespace
 
-struct PlayFleet::Parts {
+struct PlayFleet::Parts : Fleet<PlayBot> {
   Parts(const BotOptions& fleet_options, const RecordedLog& recorded)
       : options(fleet_options), log(recorded) {
     const NetConfig net{.host = options.host, .port = options.port};
     for (const RecordedAuthor& author : log.authors) {
-      members.push_back(std::make_unique<Member>(io, author, options.speed, net));
+      add(net, author, new_player(), options.speed);
     }
   }
 
@@ -94,7 +72,7 @@ struct PlayFleet::Parts {
         moves_now += counts.confirmed + counts.durable + total(counts.rejected) + counts.unseen +
                      member->bot().session().openings();
         if (done(*member)) continue;
-        if (member->link().is_final()) return failure_of(*member, "was sent away");
+        if (member->link().is_final()) return member->failure("was sent away");
         if (open == nullptr) open = member.get();
         if (waiting == nullptr && member->bot().waits()) waiting = member.get();
       }
@@ -102,22 +80,15 @@ struct PlayFleet::Parts {
       if (stop != 0) return "stopped";
       if (moves_now != std::exchange(moves, moves_now) || waiting == nullptr) moved_us = now_us;
       if (now_us - moved_us >= patience_us) {
-        return failure_of(*waiting, waiting->bot().session().is_open() ? "has edits without an answer"
-                                                                       : "has no connection");
+        return waiting->failure(waiting->bot().session().is_open() ? "has edits without an answer"
+                                                                   : "has no connection");
       }
-      io.run_for(kStepInterval);
+      run_links();
     }
-  }
-
-  static std::string failure_of(Member& member, const std::string& what) {
-    const std::string& why = member.link().last_failure();
-    return member.bot().name() + " " + what + (why.empty() ? "" : ": " + why);
   }
 
   const BotOptions options;
   const RecordedLog& log;
-  asio::io_context io{1};
-  std::vector<std::unique_ptr<Member>> members;
 };
 
 PlayFleet::PlayFleet(const BotOptions& options, const RecordedLog& log)
@@ -143,17 +114,13 @@ PlayReport PlayFleet::run(const volatile std::sig_atomic_t& stop) {
     report.failure = fleet.play_until([](Member& member) { return member.bot().settled(); }, stop);
     report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
   }
-  for (const auto& member : fleet.members) {
-    add_up(report.counts, member->bot().counts());
-    member->leave();
-  }
-  fleet.io.run_for(std::chrono::milliseconds(2 * kGoodbyeMs));
+  for (const auto& member : fleet.members) add_up(report.counts, member->bot().counts());
+  fleet.leave();
   return report;
 }
 
 std::string to_json(const PlayReport& report) {
   const PlayCounts& c = report.counts;
-  const auto percentile = [&c](double share) { return c.own_us.percentile(share).value_or(0); };
   const nlohmann::ordered_json json = {{"bots", report.bots},
                                        {"seconds", report.seconds},
                                        {"failure", report.failure},
@@ -167,26 +134,17 @@ std::string to_json(const PlayReport& report) {
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us",
-                                        {{"p50", percentile(0.5)},
-                                         {"p90", percentile(0.9)},
-                                         {"p99", percentile(0.99)},
-                                         {"max", percentile(1)}}}};
+                                       {"own_us", own_latency_json(c.own_us)}};
   return json.dump(1) + "\n";
 }
 
 std::string to_table(const PlayReport& report) {
   const PlayCounts& c = report.counts;
-  const auto ms = [&c](double share) {
-    return static_cast<double>(c.own_us.percentile(share).value_or(0)) / 1000;
-  };
   std::string table = fmt::format(
       "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} offered "
-      "again, "
-      "{} rejected, {} refused here, {} without an answer\n"
-      "due to confirmed, ms: p50 {:.2f} p90 {:.2f} p99 {:.2f} max {:.2f}\n",
+      "again, {} rejected, {} refused here, {} without an answer\n{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable, c.again,
-      total(c.rejected), total(c.refused), c.unseen, ms(0.5), ms(0.9), ms(0.99), ms(1));
+      total(c.rejected), total(c.refused), c.unseen, own_latency_line(c.own_us));
   for (const auto& [reason, count] : c.rejected) table += fmt::format("rejected: {} {}\n", count, reason);
   for (const auto& [reason, count] : c.refused) table += fmt::format("refused: {} {}\n", count, reason);
   return table;

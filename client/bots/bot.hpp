@@ -41,6 +41,7 @@ class Bot {
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
   const BotConfig& config() const { return config_; }
+  const std::string& name() const { return config_.session.name; }
 
   /// Everything in view is here.
   bool loaded() const { return session_.loaded(); }

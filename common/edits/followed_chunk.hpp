@@ -20,7 +20,8 @@ struct FollowScratch {
   ApplyScratch apply;
   ApplyResult result;
   StackDepths depths;
-  std::uint64_t voxels_changed = 0;  // summed over sweeps: what an edit of one sweep sets and a later one resets is not in it
+  std::uint64_t voxels_changed =
+      0;  // summed over sweeps: what an edit of one sweep sets and a later one resets is not in it
 };
 
 class FollowedChunk {
