@@ -308,15 +308,16 @@ bool ClientSession::loaded() const {
 }
 
 void ClientSession::on_roster(const Roster& roster) {
-  std::map<AuthorId, OtherPlayer> present;
+  std::map<AuthorId, OtherPlayer> known = std::exchange(others_, {});
+  if (roster.is_change) std::swap(known, others_);
+  for (const AuthorId author : roster.left) others_.erase(author);
   for (const PlayerName& player : roster.players) {
     if (player.author == author_) continue;
-    OtherPlayer& other = present[player.author];
+    OtherPlayer& other = others_[player.author];
     other.name = player.name;
-    if (const auto known = others_.find(player.author); known != others_.end())
-      other.pose = known->second.pose;
+    if (const auto before = known.find(player.author); before != known.end())
+      other.pose = before->second.pose;
   }
-  others_ = std::move(present);
 }
 
 void ClientSession::on_poses(const PlayerPoses& poses) {

@@ -316,6 +316,10 @@ struct BodyReader {
         return bad("player name is not 1 .. 32 bytes of text");
       }
     }
+    m.is_change = t.change();
+    const auto gone = t.left() == nullptr ? std::optional<std::uint32_t>(0) : count_of(t.left(), kPlayersMax);
+    if (!gone || (*gone != 0 && !m.is_change)) return bad("too many players left, or from a whole roster");
+    if (*gone != 0) m.left.assign(t.left()->begin(), t.left()->end());
     return m;
   }
 

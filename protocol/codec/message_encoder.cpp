@@ -142,7 +142,8 @@ struct BodyBuilder {
     players.reserve(m.players.size());
     for (const PlayerName& p : m.players)
       players.push_back(wire::CreatePlayerName(b, p.author, b.CreateString(p.name)));
-    return wire::CreateRoster(b, b.CreateVector(players));
+    return wire::CreateRoster(b, b.CreateVector(players), m.is_change,
+                              m.is_change ? b.CreateVector(m.left) : 0);
   }
   Offset<wire::Ping> operator()(const Ping& m) { return wire::CreatePing(b, m.sent_us); }
   Offset<wire::Pong> operator()(const Pong& m) { return wire::CreatePong(b, m.sent_us, m.server_us); }

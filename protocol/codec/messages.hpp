@@ -217,8 +217,11 @@ struct PlayerName {
   std::string name;
   friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
+/// Who is here: everybody, or what changed since the last roster.
 struct Roster {
-  std::vector<PlayerName> players;
+  std::vector<PlayerName> players;  // of a change: who came or has another name
+  bool is_change = false;
+  std::vector<AuthorId> left;  // of a change only
   friend bool operator==(const Roster&, const Roster&) = default;
 };
 struct Ping {

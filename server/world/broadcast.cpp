@@ -1,10 +1,8 @@
 #include "server/world/broadcast.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
-#include "common/core/key_text.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
@@ -18,7 +16,8 @@ std::vector<PlayerRow> unsaved_players_of(WorldState& world, const std::vector<E
   return players;
 }
 
-std::vector<SessionId> receivers_of(const WorldState& world, const OrderedBatch& batch) {
+/// Also notes whose edits these are.
+std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch) {
   std::set<std::pair<AuthorId, ClientInstance>> authors;
   for (const OrderedEdit& edit : batch.commit.edits) authors.emplace(edit.op.author, edit.op.instance);
   std::vector<SessionId> receivers;
@@ -26,9 +25,10 @@ std::vector<SessionId> receivers_of(const WorldState& world, const OrderedBatch&
     const auto subscribers = world.interest.subscribers(key);
     receivers.insert(receivers.end(), subscribers.begin(), subscribers.end());
   }
-  for (const auto& [id, session] : world.sessions) {
+  for (auto& [id, session] : world.sessions) {
     if (session.state == SessionState::open && authors.contains({session.author, session.instance})) {
       receivers.push_back(id);
+      session.awaits_durable = world.authority.head();
     }
   }
   std::sort(receivers.begin(), receivers.end());
@@ -49,14 +49,6 @@ void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& b
            {edit.op.seq, RejectReason::already_decided, "applied; its commit did not fit the queue",
             batch.commit.first + i});
   }
-}
-
-std::vector<SessionId> open_sessions(const WorldState& world) {
-  std::vector<SessionId> open;
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open) open.push_back(id);
-  }
-  return open;
 }
 
 }  // namespace
@@ -83,68 +75,19 @@ void commit_and_broadcast(WorldState& world, const Now& now) {
   }
 }
 
-void broadcast_durable(WorldState& world) {
+void tell_durable_to_authors(WorldState& world) {
   const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
-  for (const SessionId session : open_sessions(world)) {
-    if (!send_or_skip(world, session, encoded)) world.find(session)->owes_durable = true;
+  for (const SessionId session : world.open_sessions()) {
+    const WorldSession& mine = *world.find(session);
+    if (mine.durable_told < mine.awaits_durable) tell_durable(world, session, encoded);
   }
 }
 
-void broadcast_roster(WorldState& world) {
-  if (!world.roster_changed) return;
-  world.roster_changed = false;
-  std::map<AuthorId, std::string> names;  // two clients of one player are one line
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open) names[session.author] = session.name;
-  }
-  Roster roster;
-  for (const auto& [author, name] : names) roster.players.push_back({author, name});
-  const EncodedMessage encoded = encode_message(roster);
-  for (const SessionId session : open_sessions(world)) {
-    if (!send_or_skip(world, session, encoded)) world.roster_changed = true;  // once more, next time
-  }
-}
-
-void broadcast_poses(WorldState& world) {
-  PlayerPoses poses;
-  for (auto& [id, session] : world.sessions) {
-    if (session.state != SessionState::open || !session.pose_changed) continue;
-    session.pose_changed = false;
-    poses.players.push_back({session.author, session.pose});
-  }
-  if (poses.players.empty()) return;
-  const EncodedMessage encoded = encode_message(poses);
-  for (const SessionId session : open_sessions(world)) send_or_skip(world, session, encoded);
-}
-
-void send_all_poses_to(WorldState& world, SessionId session) {
-  PlayerPoses poses;
-  for (const auto& [id, other] : world.sessions) {
-    if (other.state == SessionState::open) poses.players.push_back({other.author, other.pose});
-  }
-  send_or_skip(world, session, encode_message(poses));
-}
-
-void send_audits(WorldState& world) {
-  for (const SessionId session : open_sessions(world)) {
-    Audit audit;
-    std::set<ChunkKey> seen;
-    while (audit.entries.size() < world.config.audit_chunks) {
-      const auto key = world.interest.next_for_audit(session);
-      if (!key || !seen.insert(*key).second) break;
-      const ChunkPtr chunk = world.authority.chunks().find(*key);
-      if (chunk == nullptr) continue;
-      const Digest digest = digest_of(chunk->voxels);
-      if (digest != chunk->digest) {
-        ++world.counters.audit_mismatches;
-        world.ports.log(WorldLogLevel::error, "chunk=" + text_of(*key) + " digest of runs " + to_hex(digest) +
-                                                  " is not the one kept " + to_hex(chunk->digest));
-      }
-      audit.entries.push_back({*key, chunk->version, digest});
-    }
-    if (audit.entries.empty()) continue;
-    if (send_or_skip(world, session, encode_message(audit))) ++world.counters.audits_sent;
-  }
+void broadcast_durable(WorldState& world, const Now& now) {
+  if (now.steady_us - world.durable_us < world.config.durable_interval_us) return;
+  world.durable_us = now.steady_us;
+  const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
+  for (const SessionId session : world.open_sessions()) tell_durable(world, session, encoded);
 }
 
 }  // namespace runstone

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "server/world/broadcast.hpp"
+#include "server/world/people.hpp"
 
 namespace runstone {
 namespace {
@@ -99,8 +99,6 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
                                            std::to_string(mine.author) + " name=\"" + mine.name + "\"");
   world.roster_changed = true;
   const Ready ready{mine.author, world.authority.decided().of(mine.author, mine.instance)};
-  // It may have risen since the welcome, and the world may rest from now on.
-  mine.owes_durable = world.durable != mine.durable_told;
   if (send_or_close(world, session, ready)) send_all_poses_to(world, session);
 }
 

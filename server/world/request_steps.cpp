@@ -1,5 +1,7 @@
 #include "server/world/request_steps.hpp"
 
+#include <algorithm>
+
 #include "server/world/delivery.hpp"
 #include "server/world/edit_check.hpp"
 
@@ -40,8 +42,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   if (!refusal) return;
   ++world.counters.edits_rejected;
   const bool maybe_applied = *refusal == RejectReason::already_decided;
-  answer(world, session,
-         {request.client_seq, *refusal, "", maybe_applied ? world.authority.sequence_bound() : 0});
+  const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
+  mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
+  answer(world, session, {request.client_seq, *refusal, "", applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

@@ -39,7 +39,8 @@ struct WorldConfig {
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
   ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers both
   // Rhythm.
-  TimeUs pose_interval_us = 100'000;
+  TimeUs pose_interval_us = 100'000;       // at least; longer in a crowd (people.hpp)
+  TimeUs durable_interval_us = 1'000'000;  // of the watermark, to sessions without edits of their own
   TimeUs audit_interval_us = 1'000'000;
   std::size_t audit_chunks = 8;            // per session and interval
   TimeUs retry_interval_us = 100'000;      // after a full queue, unless drained() comes first

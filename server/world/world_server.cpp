@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
+#include "server/world/audit_turns.hpp"
 #include "server/world/broadcast.hpp"
 #include "server/world/command_steps.hpp"
 #include "server/world/delivery.hpp"
 #include "server/world/edit_check.hpp"
 #include "server/world/handshake_steps.hpp"
+#include "server/world/people.hpp"
 #include "server/world/request_steps.hpp"
 #include "server/world/time_travel.hpp"
 #include "server/world/view_turns.hpp"
@@ -58,11 +60,7 @@ void close_silent_sessions(WorldState& world, const Now& now) {
 }
 
 void retry_owed(WorldState& world, const Now& now) {
-  std::vector<SessionId> open;
-  for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open) open.push_back(id);
-  }
-  for (const SessionId id : open) {
+  for (const SessionId id : world.open_sessions()) {
     send_owed(world, id);
     deliver(world, id, now);
   }
@@ -191,14 +189,9 @@ void WorldServer::tick(const Now& now) {
   close_silent_sessions(world, now);
   give_view_turns(world, now);
   broadcast_roster(world);
-  if (now.steady_us - world.poses_us >= world.config.pose_interval_us) {
-    world.poses_us = now.steady_us;
-    broadcast_poses(world);
-  }
-  if (now.steady_us - world.audits_us >= world.config.audit_interval_us) {
-    world.audits_us = now.steady_us;
-    send_audits(world);
-  }
+  broadcast_poses(world, now);
+  broadcast_durable(world, now);
+  give_audit_turns(world, now);
   open_waiting_moments(world);
   retry_owed(world, now);
   step_keeper(now);
@@ -249,7 +242,7 @@ void WorldServer::durable(Sequence seq, const Now& now) {
   RUNSTONE_ASSERT(seq <= world.authority.head());
   if (seq <= world.durable) return;
   world.durable = seq;
-  broadcast_durable(world);
+  tell_durable_to_authors(world);
   step_keeper(now);
 }
 

@@ -39,10 +39,11 @@ struct WorldSession {
   Bytes proof_transcript;  // what the client has to sign; empty outside of awaits_proof
   AuthorId author = 0;     // from open on
   Pose pose;
-  bool pose_changed = false;  // since the last poses
-  Sequence durable_told = 0;  // the watermark in its welcome; later ones go to open sessions
-  bool owes_durable = false;  // the watermark did not reach it: again on the next tick
-  std::vector<Reject> owed;   // answers that did not fit its queue, in order: again when it drains
+  bool pose_changed = false;    // since the last poses
+  bool has_roster = false;      // it knows who was here when the roster was last told
+  Sequence durable_told = 0;    // the last watermark it got, by welcome at first
+  Sequence awaits_durable = 0;  // its own edits reach up to here: it is told at once when that is on disk
+  std::vector<Reject> owed;     // answers that did not fit its queue, in order: again when it drains
   TokenBucket edits{0, 0};
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the one under way

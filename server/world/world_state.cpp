@@ -97,10 +97,15 @@ void send_owed(WorldState& world, SessionId session) {
   std::size_t sent = 0;
   while (sent < mine->owed.size() && send_or_skip(world, session, encode_message(mine->owed[sent]))) ++sent;
   mine->owed.erase(mine->owed.begin(), mine->owed.begin() + static_cast<std::ptrdiff_t>(sent));
-  if (mine->owed.empty() && mine->owes_durable) {
-    const Durable durable{world.authority.epoch(), world.durable};
-    mine->owes_durable = !send_or_skip(world, session, encode_message(durable));
+  if (mine->durable_told < world.durable && mine->durable_told < mine->awaits_durable) {
+    tell_durable(world, session, encode_message(Durable{world.authority.epoch(), world.durable}));
   }
+}
+
+void tell_durable(WorldState& world, SessionId session, const EncodedMessage& encoded) {
+  WorldSession* mine = world.find(session);
+  if (mine == nullptr || !mine->owed.empty() || mine->durable_told == world.durable) return;
+  if (send_or_skip(world, session, encoded)) mine->durable_told = world.durable;
 }
 
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message) {

@@ -35,13 +35,24 @@ struct WorldState {
   bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
   bool is_stopping = false;
   bool roster_changed = false;
-  TimeUs poses_us = 0, audits_us = 0;  // when last sent
-  std::size_t view_chunks_left;        // of this tick's
-  bool views_wait = false;             // some had to be left for the next tick
-  std::uint32_t visits = 0;            // to the past, ever
-  std::size_t moments_opening = 0;     // by workers (time_travel.hpp)
-  SessionId view_served = 0;           // whose view took effect last on a tick
+  std::map<AuthorId, std::string> roster;  // as it was told
+  TimeUs poses_us = 0, durable_us = 0;     // when everybody was told
+  SessionId pose_served = 0;               // whose pose was told last
+  TimeUs audits_us = 0;                    // of the last turn
+  SessionId audit_served = 0;              // whose turn that was
+  std::size_t view_chunks_left;            // of this tick's
+  bool views_wait = false;                 // some had to be left for the next tick
+  std::uint32_t visits = 0;                // to the past, ever
+  std::size_t moments_opening = 0;         // by workers (time_travel.hpp)
+  SessionId view_served = 0;               // whose view took effect last on a tick
 
+  std::vector<SessionId> open_sessions() const {
+    std::vector<SessionId> open;
+    for (const auto& [id, session] : sessions) {
+      if (session.state == SessionState::open) open.push_back(id);
+    }
+    return open;
+  }
   WorldSession* find(SessionId session) {
     const auto found = sessions.find(session);
     return found == sessions.end() ? nullptr : &found->second;
@@ -59,8 +70,11 @@ bool send_or_close(WorldState& world, SessionId session, const Message& message)
 /// Answers an edit. What does not fit is owed and sent later, in order; a session that is owed too much is
 /// closed.
 void answer(WorldState& world, SessionId session, Reject reject);
-/// Sends what the session is owed, as far as it fits: answers, then the durable watermark.
+/// Sends what the session is owed, as far as it fits: answers, then the durable watermark if it waits for it.
 void send_owed(WorldState& world, SessionId session);
+/// Tells the session what is on disk; `encoded` says it. Not before the answers it is owed: the watermark speaks of
+/// them. What does not fit is sent by a later turn.
+void tell_durable(WorldState& world, SessionId session, const EncodedMessage& encoded);
 /// Sends a message that a later one of its kind replaces: a full queue only counts.
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message);
 

@@ -240,6 +240,9 @@ Roster any_roster(SplitMix64& rng) {
   Roster m;
   m.players.resize(rng.below(20));
   for (PlayerName& p : m.players) p = {rng.below(1000), any_text(rng, 1, kPlayerNameBytesMax)};
+  m.is_change = rng.below(2) == 0;
+  if (m.is_change) m.left.resize(rng.below(20));
+  for (AuthorId& author : m.left) author = rng.below(1000);
   return m;
 }
 

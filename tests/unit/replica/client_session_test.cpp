@@ -387,7 +387,7 @@ TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a secon
 
 TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses", "[replica]") {
   static_cast<void>(open());
-  receive(Roster{{{6, "ada"}, {7, "bob"}}});
+  receive(Roster{{{6, "ada"}, {7, "bob"}}, false, {}});
   REQUIRE(session.others().size() == 1);
   CHECK(session.others().at(7).name == "bob");
   Pose pose;
@@ -395,9 +395,17 @@ TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their p
   receive(PlayerPoses{{{7, pose}, {6, pose}}});
   CHECK(session.others().at(7).pose == pose);
   CHECK(session.others().size() == 1);
-  receive(Roster{{{6, "ada"}, {7, "bob"}, {8, "eve"}}});
+  receive(Roster{{{6, "ada"}, {7, "bob"}, {8, "eve"}}, false, {}});
   CHECK(session.others().at(7).pose == pose);
-  receive(Roster{{{6, "ada"}}});
+  receive(Roster{{{9, "mallory"}, {8, "eva"}}, true, {7}});
+  REQUIRE(session.others().size() == 2);
+  CHECK(session.others().at(8).name == "eva");
+  CHECK(session.others().at(9).name == "mallory");
+  receive(PlayerPoses{{{9, pose}}});
+  receive(Roster{{{9, "trudy"}}, true, {}});
+  CHECK(session.others().at(9).pose == pose);
+  CHECK(session.others().size() == 2);
+  receive(Roster{{{6, "ada"}}, false, {}});
   CHECK(session.others().empty());
 }
 

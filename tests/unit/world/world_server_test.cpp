@@ -382,23 +382,48 @@ TEST_CASE("an author who never edited is forgotten with its last session, and it
   CHECK(bench.join(6, 6).author == 3);
 }
 
-TEST_CASE("the durable watermark goes to every open session, and again if it did not fit", "[world]") {
+TEST_CASE("the durable watermark goes to the authors of edits at once, and again if it did not fit",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.join(2, 2);
+  bench.join(3, 3);
+  bench.tick();  // everybody has heard what there is
   bench.edit(1, 1, kAtOrigin);
+  bench.edit(2, 1, kAtOrigin);
   bench.server.commit(bench.now());
   bench.ports.full.insert(2);
-  bench.server.durable(1, bench.now());
-  bench.server.durable(1, bench.now());  // no news
+  bench.server.durable(2, bench.now());
+  bench.server.durable(2, bench.now());  // no news
   CHECK(bench.ports.messages<Durable>(1, kEdge).size() == 1);
   CHECK(bench.ports.messages<Durable>(2, kEdge).empty());
   bench.ports.full.clear();
   bench.tick();
   const auto later = bench.ports.messages<Durable>(2, kEdge);
   REQUIRE(later.size() == 1);
-  CHECK(later[0].seq == 1);
+  CHECK(later[0].seq == 2);
   CHECK(later[0].epoch == 1);
+  // Who has no edit under way hears it once a second.
+  CHECK(bench.ports.messages<Durable>(3, kEdge).empty());
+  bench.tick(1'000'000);
+  bench.tick(1'000'000);
+  CHECK(bench.ports.messages<Durable>(1, kEdge).size() == 1);
+  CHECK(bench.ports.messages<Durable>(3, kEdge).size() == 1);
+}
+
+TEST_CASE("an edit offered again is told to be durable at once, also in a session that opened since",
+          "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.tick();
+  bench.edit(1, 1, kAtOrigin);
+  bench.server.commit(bench.now());
+  bench.server.disconnected(1);
+  bench.join(2, 1);
+  bench.edit(2, 1, kAtOrigin);
+  REQUIRE(bench.ports.messages<Reject>(2, kEdge).at(0).reason == RejectReason::already_decided);
+  bench.server.durable(1, bench.now());
+  CHECK(bench.ports.messages<Durable>(2, kEdge).size() == 1);
 }
 
 TEST_CASE("a full session loses commits, gets fresh snapshots later and an answer for its own edits",
@@ -566,28 +591,6 @@ TEST_CASE("features are in force that both sides know; others are ignored", "[wo
   CHECK(welcome.features == 0b0010);
   bench.server.received(1, bench.proof(1, hello, welcome), bench.now());
   CHECK(bench.ports.messages<Ready>(1, kEdge).size() == 1);
-}
-
-TEST_CASE("poses go to everyone when they changed, ten times a second at most", "[world]") {
-  Bench bench;
-  bench.join(1, 1);
-  bench.join(2, 2);
-  bench.tick(100'000);
-  const std::size_t before = bench.ports.messages<PlayerPoses>(1, kEdge).size();
-  bench.tick(100'000);
-  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
-  Pose pose;
-  pose.at = {1, 2, 3};
-  bench.server.received(2, Move{pose}, bench.now());
-  bench.server.received(2, Move{pose}, bench.now());
-  bench.tick(50'000);
-  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
-  bench.tick(50'000);
-  const auto poses = bench.ports.messages<PlayerPoses>(1, kEdge);
-  REQUIRE(poses.size() == before + 1);
-  REQUIRE(poses.back().players.size() == 1);
-  CHECK(poses.back().players[0].author == 2);
-  CHECK(poses.back().players[0].pose == pose);
 }
 
 TEST_CASE("audits carry version and digest of chunks the session has", "[world]") {
