@@ -60,6 +60,7 @@ ServerCore::ServerCore(asio::io_context& io, asio::thread_pool& workers, const S
       on_failure_(std::move(on_failure)),
       strand_(asio::make_strand(io)),
       tick_(strand_),
+      gather_(strand_),
       listener_(std::make_shared<Listener>(io, net_limits(config), store.meta().chunk_edge, *this)),
       on_stop_(std::move(on_stop)) {}
 
@@ -206,12 +207,21 @@ void ServerCore::start() {
 // ---------------------------------------------------------------------------------
 
 void ServerCore::schedule_commit() {
-  // Runs behind everything that is queued on the strand now: edits that arrived together become one commit.
-  if (std::exchange(commit_posted_, true)) return;
-  asio::post(strand_, [this] {
-    commit_posted_ = false;
-    world_->commit(now());
-  });
+  if (!world_->has_queued() || std::exchange(commit_posted_, true)) return;
+  const TimeUs now_us = steady_us();
+  const TimeUs due_us = commit_pace_.due(now_us, listener_->counters().commit_send_ns.load() / 1'000);
+  if (due_us <= now_us) {
+    // Runs behind everything that is queued on the strand now: edits that arrived together become one commit.
+    asio::post(strand_, [this] { commit_now(); });
+    return;
+  }
+  gather_.expires_after(std::chrono::microseconds(due_us - now_us));
+  gather_.async_wait(asio::bind_executor(strand_, [this](const asio::error_code&) { commit_now(); }));
+}
+
+void ServerCore::commit_now() {
+  commit_posted_ = false;
+  world_->commit(now());
 }
 
 void ServerCore::schedule_tick() {
@@ -244,13 +254,14 @@ void ServerCore::log_counters() {
         "chunks_resident={} "
         "resident_bytes={} chunks_failed={} snapshots_sent={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
-        "audit_mismatches={} bytes_in={} bytes_out={} stack_depths=\"{}\" dense_expansions={}",
+        "audit_mismatches={} commit_send_ms={} bytes_in={} bytes_out={} stack_depths=\"{}\" "
+        "dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
         world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale,
-        w.queue_full, w.audits_sent, w.audit_mismatches, n.bytes_in.load(), n.bytes_out.load(),
-        world_->stack_depths().text(), dense_expansions());
+        w.queue_full, w.audits_sent, w.audit_mismatches, n.commit_send_ns.load() / 1'000'000,
+        n.bytes_in.load(), n.bytes_out.load(), world_->stack_depths().text(), dense_expansions());
   });
 }
 

@@ -25,6 +25,7 @@
 #include "server/history/moments.hpp"
 #include "server/net/listener.hpp"
 #include "server/store/log_writer.hpp"
+#include "server/world/commit_pace.hpp"
 #include "server/world/token_bucket.hpp"
 #include "server/world/world_server.hpp"
 
@@ -102,6 +103,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   Result<WorldStart, std::string> read_start();
   void start_writer(const std::string& folder);
   void schedule_commit();
+  void commit_now();
   void schedule_tick();
   void check_settled();
   NetSession* find(SessionId session);
@@ -113,7 +115,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   std::function<void()> on_failure_;
   PeerLines warnings_, infos_;  // of the world strand
   asio::strand<asio::io_context::executor_type> strand_;
-  asio::steady_timer tick_;
+  asio::steady_timer tick_, gather_;
   std::shared_ptr<Listener> listener_;
   std::unique_ptr<ChunkSource> chunks_;
   std::unique_ptr<Moments> moments_;
@@ -136,6 +138,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   // On the world strand from here on.
   std::unordered_map<SessionId, std::shared_ptr<NetSession>> sessions_;
   bool commit_posted_ = false;
+  CommitPace commit_pace_;
   TimeUs counters_us_ = 0;
   std::optional<std::promise<bool>> stopped_;  // while begin_stop() waits for its answer
   bool has_stopped_ = false;

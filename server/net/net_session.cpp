@@ -211,6 +211,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     const IoResult wrote = co_await self->stream_->write(buffers);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
+    if (batch.has_edits) self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
   }
   self->stream_->shutdown_send();
   self->close(GoodbyeReason::closing, "write failed");  // the linger timer ends a reader that waits for ever

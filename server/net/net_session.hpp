@@ -35,6 +35,8 @@ struct NetLimits {
 struct NetCounters {
   std::atomic<std::uint64_t> connections{0}, refused{0}, bytes_in{0}, bytes_out{0}, messages_in{0},
       malformed{0};
+  std::atomic<std::int64_t> commit_send_ns{
+      0};  // in calls that sent edits class bytes (and what went with them)
 };
 
 class NetSession : public std::enable_shared_from_this<NetSession> {

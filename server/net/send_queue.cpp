@@ -62,6 +62,7 @@ bool SendQueue::cut(FrameClass frame_class, Batch& batch) {
   batch.pieces.push_back({frames_.next(frame_class, count, more), body});
   batch.messages.push_back(bytes);
   batch.bytes += kFrameHeaderBytes + count;
+  batch.has_edits = batch.has_edits || frame_class == FrameClass::edits;
   mine.bytes -= count;
   mine.sent += count;
   if (!more) {
@@ -75,6 +76,7 @@ bool SendQueue::take(Batch& batch) {
   batch.messages.clear();
   batch.pieces.clear();
   batch.bytes = 0;
+  batch.has_edits = false;
   while (batch.bytes < limits_.write_bytes) {
     if (cut(FrameClass::edits, batch) || cut(FrameClass::control, batch)) continue;
     cut(FrameClass::chunks, batch);

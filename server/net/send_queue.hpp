@@ -46,6 +46,7 @@ class SendQueue {
     };
     std::vector<Piece> pieces;
     std::size_t bytes = 0;
+    bool has_edits = false;
   };
   /// Takes the next fragments, about `write_bytes` and one fragment of the chunk class at most; false if
   /// there are none. The batch's bytes leave the bounds at once.

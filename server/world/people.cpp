@@ -59,8 +59,8 @@ void broadcast_roster(WorldState& world) {
 
 void broadcast_poses(WorldState& world, const Now& now) {
   const std::vector<SessionId> open = world.open_sessions();
-  const TimeUs interval = std::max(world.config.pose_interval_us,
-                                   kPoseIntervalUsPerSession * static_cast<TimeUs>(open.size()));
+  const TimeUs interval =
+      std::max(world.config.pose_interval_us, kPoseIntervalUsPerSession * static_cast<TimeUs>(open.size()));
   if (now.steady_us - world.poses_us < interval) return;
   world.poses_us = now.steady_us;
   PlayerPoses poses;

@@ -6,8 +6,9 @@
 
 namespace runstone {
 
-inline constexpr std::size_t kPosesMax = 64;              // of a message; the others have the next turn
-inline constexpr TimeUs kPoseIntervalUsPerSession = 500;  // added up: the interval is at least this times the sessions
+inline constexpr std::size_t kPosesMax = 64;  // of a message; the others have the next turn
+inline constexpr TimeUs kPoseIntervalUsPerSession =
+    500;  // added up: the interval is at least this times the sessions
 
 /// Who came and went since the last call, to everybody; the whole list to those who have none yet. A change that did
 /// not fit makes up for it by the whole list on a later call.

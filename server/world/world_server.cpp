@@ -123,6 +123,8 @@ void WorldServer::drained(SessionId session, const Now& now) {
   deliver(*state_, session, now);
 }
 
+bool WorldServer::has_queued() const { return state_->authority.queued() > 0; }
+
 void WorldServer::commit(const Now& now) { commit_and_broadcast(*state_, now); }
 
 WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offers, AuthorId payer,

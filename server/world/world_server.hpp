@@ -41,6 +41,8 @@ class WorldServer {
   void drained(SessionId session, const Now& now);
 
   // ---- turns
+  /// Edits wait for commit().
+  bool has_queued() const;
   /// Orders and sends the edits queued by received(). Cheap when there are none.
   void commit(const Now& now);
   /// Timeouts, poses, roster, audits, snapshot rounds, eviction, retries.

@@ -60,7 +60,8 @@ TEST_CASE("in a crowd poses go out less often and some at a time, and everybody 
   CHECK(seen.size() == kPlayers);
 }
 
-TEST_CASE("the roster is told whole once, then as changes, and whole again after one that did not fit", "[world]") {
+TEST_CASE("the roster is told whole once, then as changes, and whole again after one that did not fit",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.tick();
