@@ -8,6 +8,8 @@
 
 #include "common/core/digest.hpp"
 #include "common/core/ids.hpp"
+#include "common/edits/layer_canvas.hpp"
+#include "common/edits/layer_plan.hpp"
 #include "common/edits/ordered_shape.hpp"
 #include "common/runs/run_chunk.hpp"
 
@@ -71,7 +73,9 @@ struct ApplyScratch {
   std::vector<std::uint32_t> starting;  // chains of edits by the layer where they begin
   std::vector<std::uint32_t> ending;    // ... and end
   std::vector<LineEntry> entries;       // of the layer at hand
-  std::vector<std::uint32_t> program;   // edits to be evaluated over a stretch, bottom first
+  LayerPlan plan;                       // of the layer painter
+  LayerCanvas canvas;
+  std::vector<std::uint32_t> program;  // edits to be evaluated over a stretch, bottom first
   MaterialFactors factors;
 };
 

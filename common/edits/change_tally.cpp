@@ -1,5 +1,7 @@
 #include "common/edits/change_tally.hpp"
 
+#include <algorithm>
+
 #include "common/core/assert.hpp"
 #include "common/core/m61.hpp"
 
@@ -42,6 +44,8 @@ constexpr std::uint64_t reduce_wide(Wide v) {
 
 // A term is below 2^122, so this many fit 128 bits beside a reduced sum.
 constexpr std::uint32_t kTermsPerReduction = 32;
+// The same for factors below 2^62.
+constexpr std::uint32_t kOpenTermsPerReduction = 8;
 
 // Layers first .. last - 1 of `count`, where a `last` beyond the count goes on from 0.
 LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t count) {
@@ -98,6 +102,55 @@ void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material befo
   dirty_[0] = dirty_[0] | bits_between(first, last);
 }
 
+void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts,
+                       const Material* before, const Material* after) {
+  if (s != layer_) {
+    close_layer();
+    layer_ = s;
+  }
+  const VoxelIndex begin = (s * extent_.m + m) * extent_.f;
+  std::array<const std::uint64_t*, kDigestLanes> prefix;
+  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
+    prefix[lane] = sums_.sums[lane][static_cast<std::size_t>(axes_[0])].data();
+  }
+  std::array<Wide, kDigestLanes> sum{};
+  std::uint32_t terms = 0;
+  dirty_[0] = dirty_[0] | changed;
+  dirty_[1] = dirty_[1] | bits_between(m, m + 1);
+  dirty_[2] = dirty_[2] | bits_between(s, s + 1);
+  cuts = cuts | ~changed;
+  while (changed.any()) {
+    const std::uint32_t first = changed.lowest();
+    const std::uint32_t last = std::min((cuts & ~bits_below(first + 1)).lowest(), extent_.f);
+    changed = changed & ~bits_below(last);
+    voxels_ += last - first;
+    note(begin + first, begin + last, after[first]);
+    const MaterialFactors::Lanes was = factors_.of(before[first]);  // by value: both may share a slot
+    const MaterialFactors::Lanes& is = factors_.of(after[first]);
+    for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
+      // Two differences below 2^62, not reduced.
+      const std::uint64_t along = prefix[lane][last] + m61::kPrime - prefix[lane][first];
+      sum[lane] += static_cast<Wide>(along) * (is[lane] + m61::kPrime - was[lane]);
+    }
+    if (++terms % kOpenTermsPerReduction == 0) {
+      for (Wide& lane : sum) lane = reduce_wide(lane);
+    }
+  }
+  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
+    const std::uint64_t at_m = sums_.between(lane, axes_[1], m, m + 1);
+    layer_sum_[lane] = m61::add(layer_sum_[lane], m61::mul(reduce_wide(sum[lane]), at_m));
+  }
+}
+
+// All lines of a layer share the third factor.
+void ChangeTally::close_layer() {
+  for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
+    const std::uint64_t at_s = sums_.between(lane, axes_[2], layer_, layer_ + 1);
+    digest_.lane[lane] = m61::add(digest_.lane[lane], m61::mul(layer_sum_[lane], at_s));
+    layer_sum_[lane] = 0;
+  }
+}
+
 void ChangeTally::across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after) {
   digest_ =
       digest_ - digest_of_span(shape_, first, last, before) + digest_of_span(shape_, first, last, after);
@@ -110,7 +163,10 @@ void ChangeTally::across_lines(VoxelIndex first, VoxelIndex last, Material befor
   dirty_[2] = dirty_[2] | bits_between(line / extent_.m, line_last / extent_.m + 1);
 }
 
-void ChangeTally::finish() { close_line(); }
+void ChangeTally::finish() {
+  close_line();
+  close_layer();
+}
 
 DirtyLayers ChangeTally::dirty() const {
   DirtyLayers out;

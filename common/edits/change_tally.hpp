@@ -24,11 +24,7 @@ class ChangeTally {
   /// Voxels [first, last), all `before`, become `after`. Requires ascending, disjoint stretches that differ.
   void stretch(VoxelIndex first, VoxelIndex last, Material before, Material after) {
     voxels_ += last - first;
-    if (!changes_.empty() && changes_.back().last == first && changes_.back().material == after) {
-      changes_.back().last = last;
-    } else {
-      changes_.push_back({first, last, after});
-    }
+    note(first, last, after);
     if (first >= line_end_) open_line(first);
     if (last <= line_end_) {
       in_line(first - line_begin_, last - line_begin_, before, after);
@@ -36,6 +32,11 @@ class ChangeTally {
       across_lines(first, last, before, after);
     }
   }
+
+  /// The same for what differs in line m of layer s, told at once: changed voxels, and where a stretch of them must
+  /// end since before or after differ from the voxel in front. Requires lines ascending. O(stretches).
+  void line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts, const Material* before,
+            const Material* after);
 
   /// Call once, after the last stretch.
   void finish();
@@ -46,6 +47,14 @@ class ChangeTally {
  private:
   void open_line(VoxelIndex first);
   void close_line();
+  void close_layer();
+  void note(VoxelIndex first, VoxelIndex last, Material after) {
+    if (!changes_.empty() && changes_.back().last == first && changes_.back().material == after) {
+      changes_.back().last = last;
+    } else {
+      changes_.push_back({first, last, after});
+    }
+  }
   void in_line(std::uint32_t first, std::uint32_t last, Material before, Material after);
   void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
 
@@ -59,6 +68,8 @@ class ChangeTally {
   VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line that the last stretch began in
   std::array<Wide, kDigestLanes> line_sum_{};
   std::uint32_t line_terms_ = 0;
+  std::uint32_t layer_ = 0;  // that line() was told of last
+  std::array<std::uint64_t, kDigestLanes> layer_sum_{};
   std::array<LineBits, 3> dirty_{};  // by f, m, s
   Digest digest_;
   std::uint64_t voxels_ = 0;

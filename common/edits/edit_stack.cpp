@@ -1,9 +1,12 @@
 #include "common/edits/edit_stack.hpp"
 
+#include <algorithm>
+
 #include "common/core/assert.hpp"
 #include "common/edits/change_tally.hpp"
 #include "common/edits/edit_stack_strategies.hpp"
 #include "common/edits/edit_sweep.hpp"
+#include "common/edits/layer_painter.hpp"
 #include "common/edits/ordered_shape.hpp"
 
 namespace runstone {
@@ -25,16 +28,31 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
   return count;
 }
 
+// A layer that edits cover whole costs the sweep a look at its runs, however many voxels it has.
+ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk, std::span<const StackedEdit> stack) {
+  if (edits == 1) return ChangeSearch::walk;
+  const OrderedExtent extent = ordered(chunk.extent, chunk.order);
+  const bool whole = std::any_of(stack.begin(), stack.end(),
+                                 [&](const StackedEdit& part) { return part.shape.covers_layers(extent); });
+  return whole ? ChangeSearch::sweep : ChangeSearch::paint;
+}
+
 // Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
 void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest, ApplyScratch& scratch,
                     ApplyResult& result) {
   scratch.changes.clear();
   scratch.runs.clear();
   ChangeTally tally(chunk, scratch.changes, scratch.factors);
-  if (search == ChangeSearch::walk) {
-    walk_changes(chunk, scratch, tally);
-  } else {
-    sweep_changes(chunk, scratch, tally);
+  switch (search) {
+    case ChangeSearch::walk:
+      walk_changes(chunk, scratch, tally);
+      break;
+    case ChangeSearch::sweep:
+      sweep_changes(chunk, scratch, tally);
+      break;
+    case ChangeSearch::paint:
+      paint_changes(chunk, scratch, tally);
+      break;
   }
   tally.finish();
   if (scratch.changes.empty()) return;
@@ -59,8 +77,7 @@ void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<con
   reset(result);
   const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
   if (count == 0) return;
-  const auto search = count == 1 ? ChangeSearch::walk : ChangeSearch::sweep;
-  search_changes(search, chunk, digest, scratch, result);
+  search_changes(cheaper_search(count, chunk, scratch.stack), chunk, digest, scratch, result);
   write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
 }
 
@@ -76,7 +93,7 @@ ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& dige
   ApplyResult result;
   const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
   if (count == 0) return result;
-  RUNSTONE_ASSERT(count == 1 || strategy.search == ChangeSearch::sweep);
+  RUNSTONE_ASSERT(count == 1 || strategy.search != ChangeSearch::walk);
   search_changes(strategy.search, chunk, digest, scratch, result);
   write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
   return result;

@@ -42,8 +42,8 @@ struct ApplyResult {
 /// Applies `edits` (bottom of the stack first) to the chunk whose first voxel is `origin`; the digest
 /// follows. Equal to applying them one after another, voxel by voxel, bit for bit. Edits that miss the chunk
 /// do nothing. The result is canonical. Finds the changes first, in ascending order (one edit: by walking the
-/// runs inside its spans; several: in one sweep, edit_sweep.hpp), then replaces the runs of the edit areas in
-/// place or in one go. Requires a valid chunk and valid edits. Any thread, one scratch each. Cost: O(rows of
+/// runs inside its spans; several: in one pass, edit_sweep.hpp and layer_painter.hpp), then replaces the runs of
+/// the edit areas in place or in one go. Requires a valid chunk and valid edits. Any thread, one scratch each. Cost: O(rows of
 /// the edits + runs crossed + log runs) to search, O(runs behind the first edit area) to write.
 ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                         std::span<const EditDescriptor> edits, ApplyScratch& scratch);

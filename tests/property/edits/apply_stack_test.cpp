@@ -14,6 +14,8 @@ namespace {
 
 constexpr ApplyStrategy kSweepWhole = {ChangeSearch::sweep, PatchWrite::whole};
 constexpr ApplyStrategy kSweepPieces = {ChangeSearch::sweep, PatchWrite::pieces};
+constexpr ApplyStrategy kPaintWhole = {ChangeSearch::paint, PatchWrite::whole};
+constexpr ApplyStrategy kPaintPieces = {ChangeSearch::paint, PatchWrite::pieces};
 constexpr ApplyStrategy kWalkWhole = {ChangeSearch::walk, PatchWrite::whole};
 constexpr ApplyStrategy kWalkPieces = {ChangeSearch::walk, PatchWrite::pieces};
 
@@ -120,7 +122,7 @@ TEST_CASE("a stack equals its edits one after another, by every strategy", "[edi
       Digest first_digest = digest_one_by_one;
       const std::span<const EditDescriptor> single(&edit, 1);
       const ApplyResult result = apply_stack_by(kWalkPieces, first, first_digest, origin, single, scratch);
-      for (const ApplyStrategy strategy : {kWalkWhole, kSweepPieces, kSweepWhole}) {
+      for (const ApplyStrategy strategy : {kWalkWhole, kSweepPieces, kSweepWhole, kPaintWhole}) {
         RunChunk other = one_by_one;
         Digest other_digest = digest_one_by_one;
         REQUIRE(same(apply_stack_by(strategy, other, other_digest, origin, single, scratch), result));
@@ -135,7 +137,7 @@ TEST_CASE("a stack equals its edits one after another, by every strategy", "[edi
     const ApplyResult result = apply_stack(chosen, chosen_digest, origin, edits, scratch);
     REQUIRE(chosen == one_by_one);
     REQUIRE(chosen_digest == digest_one_by_one);
-    for (const ApplyStrategy strategy : {kSweepPieces, kSweepWhole}) {
+    for (const ApplyStrategy strategy : {kSweepPieces, kSweepWhole, kPaintPieces, kPaintWhole}) {
       RunChunk other = start;
       Digest other_digest = digest_of(start);
       REQUIRE(same(apply_stack_by(strategy, other, other_digest, origin, edits, scratch), result));
