@@ -84,6 +84,7 @@ Json replica_json(const Replica& replica) {
               {"gaps", c.gaps},
               {"requests", c.requests},
               {"audited", c.audited},
+              {"fell_behind", c.fell_behind},
               {"drifted", c.drifted},
               {"own_submitted", c.own_submitted},
               {"own_confirmed", c.own_confirmed},

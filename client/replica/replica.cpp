@@ -31,6 +31,7 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
     chunk.inbox.clear();
     chunk.latest = 0;
     chunk.awaiting = false;
+    chunk.audited_at = {};
     if (!chunk.confirmed) continue;
     const Version version = chunk.confirmed->version;
     const bool may_be_lost = version.epoch < opening.epoch && version.seq > kept;
@@ -342,6 +343,15 @@ void Replica::receive(const Audit& audit, TimeUs now_us) {
     TrackedChunk* chunk = find(theirs.key);
     if (chunk == nullptr || !chunk->confirmed || chunk->awaiting) continue;
     const Chunk& ours = *chunk->confirmed;
+    if (ours.version < theirs.version) {
+      // An audit may overtake commits, but not by a whole round: what the last one told has got lost.
+      if (ours.version < chunk->audited_at) {
+        ++counters_.fell_behind;
+        request(theirs.key, *chunk, now_us);
+      }
+      chunk->audited_at = theirs.version;
+      continue;
+    }
     if (ours.version != theirs.version) continue;
     ++counters_.audited;
     // From the runs, not from the digest that followed the edits: the runs are what is meshed.
@@ -360,6 +370,7 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
   if (!from_past || !past) current_count_ = 0;  // from moment to moment, what is not sent again is the same
   for (auto& [key, chunk] : chunks_) {
     chunk.unavailable = chunk.awaiting = false;
+    chunk.audited_at = {};
     if (!from_past || !past) chunk.current = false;
     if (past) {
       chunk.pending.clear();

@@ -104,6 +104,7 @@ struct ReplicaCounters {
   std::uint64_t requests = 0;                      // chunks asked for again
   StackDepths confirmed_stacks, predicted_stacks;  // applied to confirmed runs, and on top of them
   std::uint64_t audited = 0;                       // compared at equal version
+  std::uint64_t fell_behind = 0;                   // by two audits: a commit got lost; repaired likewise
   std::uint64_t drifted = 0;                       // and found different: repaired by a new snapshot
   std::uint64_t own_submitted = 0;
   std::uint64_t own_confirmed = 0;

@@ -48,6 +48,7 @@ struct TrackedChunk {
   std::vector<Inbound> inbox;    // ascending by sequence
   Sequence latest = 0;           // newest edit of this chunk seen on this connection
   bool current = false;          // a snapshot of it came on this connection
+  Version audited_at;            // of the newest audit that told of a version above ours, on this connection
   bool awaiting = false;         // asked for a snapshot: nothing else is taken
   bool unavailable = false;  // said the server on this connection; then nothing is held, shown or kept back
   std::optional<TimeUs> requested_us;

@@ -434,6 +434,35 @@ TEST_CASE_METHOD(Fixture, "an audit finds a chunk whose runs went wrong and the 
   CHECK(replica.counters().drifted == 1);
 }
 
+TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, one does not", "[replica]") {
+  replica.receive(world.snapshot(kHere.at), kNow);
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never comes
+  const auto audit = [&] {
+    replica.receive(Audit{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
+  };
+  audit();  // may have overtaken the commit
+  CHECK(replica.take_requests().empty());
+  audit();
+  CHECK(replica.take_requests() == std::vector{kHere});
+  CHECK(replica.counters().fell_behind == 1);
+  replica.receive(world.snapshot(kHere.at), kNow);
+  require_in_step(kHere);
+  audit();
+  CHECK(replica.counters().fell_behind == 1);
+  CHECK(replica.counters().drifted == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "edits that keep coming are no reason to call a chunk behind", "[replica]") {
+  replica.receive(world.snapshot(kHere.at), kNow);
+  for (ClientSequence i = 1; i <= 3; ++i) {
+    const auto commit = world.commit(other(i), set({1, 1, 1}, static_cast<Material>(1 + i)));
+    replica.receive(Audit{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
+    take(commit);
+  }
+  CHECK(replica.counters().fell_behind == 0);
+  CHECK(replica.take_requests().empty());
+}
+
 TEST_CASE_METHOD(Fixture, "a full inbox is dropped and made good by a newer snapshot", "[replica]") {
   const ChunkSnapshot early = world.snapshot(kHere.at);
   for (ClientSequence i = 1; i <= kInboxEditsMax + 5; ++i) {
