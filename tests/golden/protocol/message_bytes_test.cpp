@@ -151,6 +151,55 @@ TEST_CASE("unavailable chunks of protocol 1 are read", "[protocol][golden]") {
         Message(ChunkUnavailable{{{0, {1, -2, 3}}, {0, {-4, 0, 7}}}, UnavailableReason::damaged}));
 }
 
+TEST_CASE("travel of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::client, FrameClass::control,
+                                 "1400000052554e310000000008000c0007000800080000000000001410000000"
+                                 "0c0014000800070000000c000c000000000000020300000040222018240a0600");
+  CHECK(read_back == Message(Travel{3, TravelTo::time, 0, 1'700'000'000'123'456}));
+}
+
+TEST_CASE("a moment of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::chunks,
+                                 "1400000052554e310000000008000c0007000800080000000000001514000000"
+                                 "10002000080006000700100018000c0010000000000001010300000014000000"
+                                 "2c03000000000000c0fd0e18240a06000000000000000000");
+  CHECK(read_back == Message(Moment{3, MomentPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
+}
+
+TEST_CASE("a refused moment of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::chunks,
+                                 "1000000052554e3108000c000700080008000000000000151400000010001000"
+                                 "080007000000000000000c001000000000000003040000000400000009000000"
+                                 "636f6d706163746564000000");
+  CHECK(read_back == Message(Moment{4, MomentPhase::refused, false, 0, 0, "compacted"}));
+}
+
+TEST_CASE("a command of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::client, FrameClass::control,
+                                 "1000000052554e3108000c000700080008000000000000160c00000008000c00"
+                                 "0400080008000000090000000400000025000000726f6c6c6261636b20707265"
+                                 "7669657720617574686f72206d6f6c652073696e6365203268000000");
+  CHECK(read_back == Message(CommandRequest{9, "rollback preview author mole since 2h"}));
+}
+
+TEST_CASE("the output of a command of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::control,
+                                 "1000000052554e3108000c00070008000800000000000017100000000c001000"
+                                 "08000c00060007000c0000000000010109000000040000000200000018000000"
+                                 "04000000090000003433392065646974730000000b0000007072657669657720"
+                                 "70313a00");
+  CHECK(read_back == Message(CommandOutput{9, {"preview p1:", "439 edits"}, true, true}));
+}
+
+TEST_CASE("a change of the roster of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::control,
+                                 "1000000052554e3108000e0007000800080000000000000f1000000000000a00"
+                                 "1000080007000c000a00000000000001080000000c0000000100000018000000"
+                                 "02000000080000002c01000008000c0004000800080000000700000004000000"
+                                 "03000000626f6200");
+  CHECK(read_back == Message(Roster{{{7, "bob"}}, true, {8, 300}}));
+}
+
 TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]") {
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;
