@@ -21,7 +21,7 @@ std::set<std::string> meshers() {
 ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
                                        std::ostream& err) {
   BenchOptions options;
-  options.luanti = kSmallLuanti;
+  options.luanti = options.net.luanti = kSmallLuanti;
   bool quick = false;
   CLI::App app("Measures meshing and edits, on one core, and prints tables of Markdown.", "runstone-bench");
   app.require_subcommand(1);
@@ -89,6 +89,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   mesh_once->add_option("--times", times, "meshes of each volume")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  CLI::App* net = add_net_command(app, options.net);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -99,6 +100,10 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   if (log->parsed()) {
     options.command = BenchOptions::Command::log;
     options.edits = log_edits;
+  }
+  if (net->parsed()) {
+    options.command = BenchOptions::Command::net;
+    finish_net_options(*net, options.net);
   }
   if (mesh_once->parsed()) {
     options.command = BenchOptions::Command::mesh_once;

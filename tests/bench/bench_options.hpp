@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/net/net_options.hpp"
+
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> meshers;  // contestants; empty: all
@@ -19,6 +21,7 @@ struct BenchOptions {
   std::string csv, json;                                // files; empty: none
   unsigned repetitions = 30;
   std::size_t edits = 200'000;  // of the log that is replayed, or asked
+  NetOptions net;               // of Command::net
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

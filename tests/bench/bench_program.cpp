@@ -11,6 +11,7 @@
 #include "tests/bench/log_bench.hpp"
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/mesh_once.hpp"
+#include "tests/bench/net/net_bench.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -82,6 +83,18 @@ int log(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   return write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err) ? 0 : 1;
 }
 
+int net(const NetOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_net_bench(options, err);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_tables(*result, out);
+  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
+  return csv && json ? 0 : 1;
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -104,6 +117,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return log(*parsed.options, out, err);
     case BenchOptions::Command::edits:
       return edits(*parsed.options, out, err);
+    case BenchOptions::Command::net:
+      return net(parsed.options->net, out, err);
   }
   return 2;
 }

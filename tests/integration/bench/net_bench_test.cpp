@@ -1,0 +1,94 @@
+#ifdef RUNSTONE_CLIENT_PROGRAM  // not where no client is built
+// The network lab as a program: every experiment, small, over links that this process may make. Nothing is said of
+// times.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/bench/bench_program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::bench;
+using nlohmann::json;
+
+namespace {
+
+/// What the lab wrote as JSON; its exit code has to be 0.
+json run_lab(std::vector<std::string> arguments, std::string& tables) {
+  ::setenv("RUNSTONE_SERVER", RUNSTONE_SERVER_PROGRAM, 1);
+  ::setenv("RUNSTONE_CLIENT", RUNSTONE_CLIENT_PROGRAM, 1);
+  ::setenv("RUNSTONE_BOT", RUNSTONE_BOT_PROGRAM, 1);
+  const test::TempFolder folder;
+  const std::string file = folder / "lab.json", csv = folder / "lab.csv";
+  arguments.insert(arguments.begin(), {"net", "--quick", "--edits", "20", "--json", file, "--csv", csv});
+  std::vector<const char*> argv = {"runstone-bench"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  std::ostringstream out, err;
+  const int code = bench_program(static_cast<int>(argv.size()), argv.data(), out, err);
+  INFO(err.str());
+  REQUIRE(code == 0);
+  tables = out.str();
+  json written = json::parse(std::ifstream(file));
+  std::ifstream lines(csv);
+  std::size_t rows = 0;
+  for (std::string line; std::getline(lines, line);) ++rows;
+  CHECK(rows == written["figures"].size() + 1);
+  return written;
+}
+
+double figure(const json& lab, const std::string& experiment, const std::string& what,
+              const std::string& name) {
+  for (const json& it : lab["figures"]) {
+    if (it["experiment"] == experiment && it["case"] == what && it["figure"] == name)
+      return it["value"].get<double>();
+  }
+  FAIL("no figure " << experiment << " " << what << " " << name);
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("the lab measures joins and edits over a link", "[lab]") {
+  std::string tables;
+  const json lab = run_lab({"--experiments", "join,latency", "--profiles", "lan"}, tables);
+  CHECK(figure(lab, "join", "median", "near_most_ms") > 0);
+  CHECK(figure(lab, "join", "median", "near_most_ms") <= figure(lab, "join", "median", "view_all_ms"));
+  for (const char* load : {"idle", "streaming", "streaming 20 clients"}) {
+    CAPTURE(load);
+    CHECK(figure(lab, "latency", load, "remote_edits") > 0);
+    CHECK(figure(lab, "latency", load, "remote_never_meshed") == 0);
+    CHECK(figure(lab, "latency", load, "remote_meshed_p50_ms") > 0);
+    CHECK(figure(lab, "latency", load, "echo_p50_ms") >= 0.4);
+    CHECK(figure(lab, "latency", load, "drifted_chunks") == 0);
+  }
+  CHECK(figure(lab, "latency", "streaming", "terrain_kb_s") > 0);
+  CHECK(tables.find("| another client's: meshed |") != std::string::npos);
+  CHECK_FALSE(lab["bars"].empty());
+}
+
+TEST_CASE("the lab measures transfers without privileges", "[lab]") {
+  std::string tables;
+  const json lab = run_lab(
+      {"--experiments", "transfer", "--profiles", "lan", "--worlds", "terrain", "--link", "shaper"}, tables);
+  CHECK(figure(lab, "transfer", "terrain dense", "bytes") > 64 * 65536);
+  CHECK(figure(lab, "transfer", "terrain packed", "bytes") < figure(lab, "transfer", "terrain raw", "bytes"));
+  CHECK(figure(lab, "transfer", "terrain packed", "complete_ms") >= 0.4);
+  CHECK(lab["figures"][0]["link"] == "shaper");
+  CHECK(tables.find("a TCP proxy on loopback") != std::string::npos);
+}
+
+TEST_CASE("the lab measures crowds", "[lab]") {
+  std::string tables;
+  const json lab = run_lab({"--experiments", "crowd", "--clients", "3", "--crowd-seconds", "1"}, tables);
+  CHECK(figure(lab, "crowd", "3 clients", "samples") > 0);
+  CHECK(figure(lab, "crowd", "3 clients", "disconnects") == 0);
+  CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
+  CHECK(figure(lab, "crowd", "3 clients", "received_kb_s_each") > 0);
+}
+#endif

@@ -1,0 +1,65 @@
+// The four forms of a picture: whatever pieces the stream comes in, they end in the same faces.
+#include "tests/bench/net/picture.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/support/mesh_scene.hpp"
+
+using namespace runstone;
+using namespace runstone::bench;
+
+namespace {
+
+PictureScene scene_of(SplitMix64& rng) {
+  PictureScene out;
+  out.name = "random";
+  out.edge = 16;
+  out.visibility = std::make_shared<const VisibilityTable>(test::mesh_visibility());
+  for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {5, 0, 0}}) {
+    out.chunks[at] = test::scene_of_extent(rng, Extent::cube(16), AxisOrder::yxz).chunk;
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a picture has the same faces in every form and in pieces of any size", "[lab]") {
+  SplitMix64 rng(Catch::rngSeed() + 3);
+  const PictureScene scene = scene_of(rng);
+  // Every chunk by itself, against the oracle.
+  std::uint64_t expected = 0;
+  for (const auto& [at, chunk] : scene.chunks) {
+    test::MeshScene alone{chunk, {}};
+    for (unsigned d = 0; d < kDirectionCount; ++d) {
+      const auto beside = scene.chunks.find(neighbour(at, static_cast<Direction>(d)));
+      if (beside != scene.chunks.end()) alone.neighbours[d] = beside->second;
+    }
+    expected += test::expected_faces(alone).size();
+  }
+  REQUIRE(expected > 0);
+  for (const Transfer transfer : kTransfers) {
+    CAPTURE(name_of(transfer));
+    const Bytes stream = encode_picture(scene, transfer);
+    for (const std::size_t piece : {std::size_t{7}, std::size_t{1000}, stream.size()}) {
+      PictureReceiver receiver(scene, transfer);
+      for (std::size_t at = 0; at < stream.size(); at += piece) {
+        REQUIRE_FALSE(receiver.complete());
+        REQUIRE(receiver.feed(ByteView(stream).subspan(at, std::min(piece, stream.size() - at))));
+      }
+      REQUIRE(receiver.complete());
+      CHECK(receiver.times().faces == expected);
+    }
+  }
+}
+
+TEST_CASE("a stream that is none is refused", "[lab]") {
+  SplitMix64 rng(5);
+  const PictureScene scene = scene_of(rng);
+  const Bytes junk(100'000, 0xff);
+  for (const Transfer transfer : kTransfers) {
+    CAPTURE(name_of(transfer));
+    PictureReceiver receiver(scene, transfer);
+    CHECK_FALSE(receiver.feed(junk));
+  }
+}
