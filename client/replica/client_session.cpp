@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/core/assert.hpp"
 #include "common/core/text.hpp"
 
 namespace runstone {
@@ -15,7 +16,9 @@ bool is_final(GoodbyeReason reason) {
 
 }  // namespace
 
-ClientSession::ClientSession(SessionConfig config) : config_(std::move(config)) {}
+ClientSession::ClientSession(SessionConfig config) : config_(std::move(config)) {
+  if (config_.has_cache) replica_.keep_chunks();
+}
 
 // ---- the connection
 
@@ -39,6 +42,10 @@ void ClientSession::disconnected() {
   outgoing_.clear();
   waiting_.clear();
   view_sent_.reset();
+  view_waits_since_us_.reset();
+  asked_.clear();
+  questions_.clear();
+  answers_stale_ += std::exchange(answers_due_, 0);
   pose_sent_.reset();
   others_.clear();
   travel_request_ = travelled_ = 0;
@@ -63,7 +70,7 @@ void ClientSession::fail_with(GoodbyeReason reason, std::string text, bool final
 
 void ClientSession::receive(Message message, const Arrival& arrival) {
   if (state_ == SessionState::offline || wants_close_) return;
-  heard_us_ = arrival.now_us;
+  heard_us_ = now_us_ = arrival.now_us;
   std::visit(
       [&](auto& m) {
         using T = std::decay_t<decltype(m)>;
@@ -81,6 +88,10 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           fail_with(GoodbyeReason::unexpected_message, "message before ready", false);
         } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
           replica_.receive(std::move(m), arrival);
+        } else if constexpr (std::is_same_v<T, ChunkEdits>) {
+          replica_.receive(m, arrival);
+        } else if constexpr (std::is_same_v<T, Same>) {
+          replica_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
           replica_.receive(m);
         } else if constexpr (std::is_same_v<T, Commit>) {
@@ -153,7 +164,7 @@ void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
                             .decided = ready.decided,
                             .heights = welcome_->heights,
                             .edit_volume_max = welcome_->edit_volume_max});
-  send_view();
+  wish_view();
   tick(now_us);
   for (auto& [message, arrival] : std::exchange(early_, {})) receive(std::move(message), arrival);
 }
@@ -170,7 +181,9 @@ void ClientSession::tick(TimeUs now_us) {
   if (now_us - heard_us_ > kServerSilenceUsMax) {
     return fail_with(GoodbyeReason::timed_out, "server is silent", false);
   }
+  now_us_ = now_us;
   if (!is_open()) return;
+  if (view_waits_since_us_ && now_us - *view_waits_since_us_ >= kCacheWaitUsMax) send_view();
   const TimeUs every = pongs_ < kPingsFirst || !clock_.known() ? kPingEveryFirstUs : kPingEveryUs;
   if (now_us - ping_us_ >= every) {
     outgoing_.push_back(Ping{now_us});
@@ -229,7 +242,7 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
 void ClientSession::set_view(const View& view) {
   config_.view = view;
   replica_.set_view(this->view());
-  if (is_open()) send_view();
+  if (is_open()) wish_view();
 }
 
 Result<void> ClientSession::command(std::string text) {
@@ -284,8 +297,47 @@ View ClientSession::view() const {
   return view;
 }
 
+void ClientSession::wish_view() {
+  if (config_.has_cache) {
+    std::erase_if(asked_, [v = view()](const ChunkKey& key) { return !v.contains(key.at); });
+    for (const ChunkKey& key : replica_.missing()) {
+      if (asked_.insert(key).second) questions_.push_back(key);
+    }
+  }
+  if (questions_.empty() && answers_due_ == 0) return send_view();
+  if (!view_waits_since_us_) view_waits_since_us_ = now_us_;
+}
+
+std::optional<CacheQuestion> ClientSession::take_question() {
+  const auto world = cached_world();
+  if (!world || questions_.empty()) return std::nullopt;
+  ++answers_due_;
+  std::sort(questions_.begin(), questions_.end());
+  return CacheQuestion{*world, std::exchange(questions_, {})};
+}
+
+void ClientSession::answer(std::vector<KeptChunk> found, TimeUs now_us) {
+  if (answers_stale_ != 0) {
+    --answers_stale_;  // to what an earlier connection asked: another server may be there now
+    return;
+  }
+  RUNSTONE_ASSERT(answers_due_ != 0);
+  --answers_due_;
+  now_us_ = now_us;
+  for (auto& [key, chunk] : found) replica_.adopt(key, std::move(chunk), now_us);
+  if (answers_due_ == 0 && questions_.empty()) send_view();
+}
+
+std::optional<CachedWorld> ClientSession::cached_world() const {
+  if (!is_open()) return std::nullopt;
+  return CachedWorld{
+      welcome_->world_id, welcome_->chunk_edge, {welcome_->epoch, replica_.durable(), replica_.newest()}};
+}
+
 void ClientSession::send_view() {
+  view_waits_since_us_.reset();
   const View wished = view();
+  for (Message& held : held_messages(replica_.take_claims())) outgoing_.push_back(std::move(held));
   if (view_sent_ == wished) return;
   outgoing_.push_back(wished);
   view_sent_ = wished;

@@ -10,9 +10,11 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "client/replica/cache_question.hpp"
 #include "client/replica/clock_offset.hpp"
 #include "client/replica/replica.hpp"
 #include "common/core/result.hpp"
@@ -31,6 +33,7 @@ inline constexpr TimeUs kOffsetWaitUsMax =
     1'000'000;  // edits wait this long for the first pong, then go without
 /// Ready travels with the edits; messages of the other classes may overtake it. So many are held back for it.
 inline constexpr std::size_t kEarlyMessagesMax = 4096;
+inline constexpr TimeUs kCacheWaitUsMax = 250'000;      // that a view waits for what a cache has of it
 inline constexpr std::size_t kCommandLinesKept = 4096;  // of one command's output
 inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered by then is offered again
 
@@ -42,6 +45,7 @@ struct SessionConfig {
   std::uint64_t features = kFeaturesKnown;
   View view;                            // wished; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
+  bool has_cache = false;               // somebody answers take_question()
 };
 
 enum class SessionState { offline, greeting, proving, open };
@@ -97,6 +101,13 @@ class ClientSession {
   bool travelling() const { return travelled_ != travel_request_; }
   /// Why the newest wish was refused; empty if it was not.
   const std::string& travel_refusal() const { return travel_refusal_; }
+  /// Chunks to look up before the next view is sent, if the session has a cache; nothing if there are none. The view waits
+  /// for the answer, kCacheWaitUsMax at most.
+  std::optional<CacheQuestion> take_question();
+  /// What the cache has of the oldest question that was not answered; may come late, or after the connection ended.
+  void answer(std::vector<KeptChunk> found, TimeUs now_us);
+  /// The world as its server describes it now; nothing unless open.
+  std::optional<CachedWorld> cached_world() const;
   void set_pose(const Pose& pose) { pose_ = pose; }
 
   SessionState state() const { return state_; }
@@ -133,6 +144,8 @@ class ClientSession {
   void on_poses(const PlayerPoses& poses);
   void on_moment(const Moment& moment);
   void fail_with(GoodbyeReason reason, std::string text, bool final);
+  /// Sends the view, and before it what of it is held; waits for the cache if there is something to ask it.
+  void wish_view();
   void send_view();
   void send_waiting_edits(TimeUs now_us);
 
@@ -159,6 +172,12 @@ class ClientSession {
 
   std::vector<ClientSequence> waiting_;  // own edits to send, ascending
   std::optional<View> view_sent_;
+  // Of this connection: what the cache was or will be asked for, and how many answers are to come.
+  std::set<ChunkKey> asked_;
+  std::vector<ChunkKey> questions_;
+  std::size_t answers_due_ = 0, answers_stale_ = 0;
+  std::optional<TimeUs> view_waits_since_us_;
+  TimeUs now_us_ = 0;  // of the last call that told it
   Pose pose_;
   std::optional<Pose> pose_sent_;
   TimeUs opened_us_ = 0, ping_us_ = 0, heard_us_ = 0, move_us_ = 0;

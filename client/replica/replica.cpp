@@ -13,13 +13,10 @@ namespace runstone {
 
 std::vector<ClientSequence> Replica::open(const Opening& opening) {
   if (opening_ && opening_->chunk_edge != opening.chunk_edge) reset();
-  // Of what the last server ordered, only what we heard to be durable survived its end for sure: by now the
-  // log may have grown past that again, with other edits.
-  const Sequence kept = std::min(durable_, opening.durable);
-  // Neither epochs nor durable sequences go back but where a backup was restored: no number says what is
-  // common then.
-  const bool went_back = opening_ && (opening.epoch < opening_->epoch || opening.durable < durable_ ||
-                                      (opening.epoch == opening_->epoch && opening.head < newest_));
+  std::optional<ServerMark> before;
+  if (opening_) before = ServerMark{opening_->epoch, durable_, newest_};
+  const KeptVersions kept(before, {opening.epoch, opening.durable, opening.head});
+  if (before && before->epoch != opening.epoch) left_.clear();
   past_.reset();
   opening_ = opening;
   durable_ = opening.durable;
@@ -27,15 +24,13 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   requests_.clear();
   current_count_ = unavailable_count_ = 0;
   for (auto& [key, chunk] : chunks_) {
-    chunk.current = chunk.unavailable = false;
+    chunk.current = chunk.unavailable = chunk.claimed = false;
     chunk.inbox.clear();
     chunk.latest = 0;
     chunk.awaiting = false;
     chunk.audited_at = {};
     if (!chunk.confirmed) continue;
-    const Version version = chunk.confirmed->version;
-    const bool may_be_lost = version.epoch < opening.epoch && version.seq > kept;
-    if (may_be_lost || (went_back && version.seq != 0)) {
+    if (!kept.trusts(chunk.confirmed->version)) {
       // The server that ordered this is gone and may not have kept it. What is on the screen stays until the
       // new snapshot.
       chunk.confirmed = nullptr;
@@ -70,6 +65,7 @@ void Replica::reset() {
   confirmed_count_ = current_count_ = unavailable_count_ = 0;
   own_.clear();
   requests_.clear();
+  left_.clear();
   opening_.reset();
 }
 
@@ -80,7 +76,11 @@ void Replica::set_view(const View& view) {
       ++it;
       continue;
     }
-    if (it->second.shown) news_.removed(it->first);
+    const TrackedChunk& chunk = it->second;
+    if (chunk.shown) news_.removed(it->first);
+    if (keeps_ && chunk.is_to_keep() && !past_ && left_.size() < kLeftMax) {
+      left_.emplace_back(it->first, chunk.confirmed);
+    }
     if (it->second.confirmed) --confirmed_count_;
     if (it->second.current) --current_count_;
     if (it->second.unavailable) --unavailable_count_;
@@ -172,9 +172,8 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
     return;
   }
   TrackedChunk& chunk = track(snapshot.key);
-  if (!chunk.current) ++current_count_;
-  chunk.current = true;
-  if (std::exchange(chunk.unavailable, false)) --unavailable_count_;
+  const bool was_current = chunk.current;
+  set_current(chunk);
   if (past_) {
     // Newer or older than what is held: it is what was asked for.
     if (!chunk.confirmed) ++confirmed_count_;
@@ -185,7 +184,12 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   }
   if (chunk.confirmed) {
     const Version held = chunk.confirmed->version;
-    const bool repairs = chunk.awaiting && snapshot.chunk.version == held;
+    // One version has one digest: a copy with another one has drifted.
+    const bool has_drifted =
+        snapshot.chunk.version == held && snapshot.chunk.digest != digest_of(chunk.confirmed->voxels);
+    counters_.repaired += has_drifted && was_current ? 1 : 0;
+    counters_.claims_refuted += has_drifted && !was_current ? 1 : 0;
+    const bool repairs = has_drifted || (chunk.awaiting && snapshot.chunk.version == held);
     if (snapshot.chunk.version <= held && !repairs) {
       if (snapshot.chunk.version < held) ++counters_.snapshots_stale;
       // Nothing new, but what was answered while we could not listen is in here, and so in what we hold.
@@ -207,6 +211,70 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   chunk.awaiting = false;
   chunk.settle_pending(seq);
   settle(snapshot.key, chunk, true, arrival.now_us);
+}
+
+void Replica::set_current(TrackedChunk& chunk) {
+  if (!std::exchange(chunk.current, true)) ++current_count_;
+  if (std::exchange(chunk.unavailable, false)) --unavailable_count_;
+}
+
+/// The server says that what is held was its chunk when it subscribed us: commits since then have come, or will.
+void Replica::vouched_for(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us) {
+  chunk.settle_pending(0);  // answered while we could not listen: it is in here
+  settle(key, chunk, true, now_us);
+}
+
+void Replica::receive(const Same& same, TimeUs now_us) {
+  if (!opening_ || past_) return;
+  for (const SameChunk& said : same.chunks) {
+    if (!view_ || !view_->contains(said.key.at)) continue;
+    TrackedChunk& chunk = track(said.key);
+    set_current(chunk);
+    ++counters_.same_taken;
+    if (chunk.awaiting) continue;
+    if (!chunk.confirmed || chunk.confirmed->version.seq < said.seq) {
+      // It left the view and came back, and the copy that was claimed is gone.
+      request(said.key, chunk, now_us);
+    } else {
+      vouched_for(said.key, chunk, now_us);
+    }
+  }
+}
+
+void Replica::receive(const ChunkEdits& update, const Arrival& arrival) {
+  if (!opening_ || past_) return;
+  if (!view_ || !view_->contains(update.key.at)) {
+    ++counters_.snapshots_outside;
+    return;
+  }
+  TrackedChunk& chunk = track(update.key);
+  set_current(chunk);
+  if (chunk.awaiting) return;
+  if (!chunk.confirmed) return request(update.key, chunk, arrival.now_us);
+  const Sequence held = chunk.confirmed->version.seq;
+  if (held >= update.to.seq) return vouched_for(update.key, chunk, arrival.now_us);
+  // Commits that came for another chunk's sake may have led part of the way.
+  bool fits = held == update.from;
+  std::vector<EditDescriptor> stack;
+  for (const MissingEdit& missing : update.edits) {
+    fits = fits || missing.seq == held;
+    if (missing.seq > held) stack.push_back(missing.edit);
+  }
+  if (!fits) return request(update.key, chunk, arrival.now_us);
+  auto next = std::make_shared<Chunk>(*chunk.confirmed);
+  apply_stack(next->voxels, next->digest, origin(update.key), stack, scratch_);
+  if (digest_of(next->voxels) != update.digest) {
+    ++counters_.claims_refuted;  // what was kept is another server's
+    return request(update.key, chunk, arrival.now_us);
+  }
+  counters_.confirmed_stacks.add(stack.size());
+  ++counters_.updates_taken;
+  next->version = update.to;
+  next->digest = update.digest;
+  newest_ = std::max(newest_, update.to.seq);
+  chunk.confirmed = std::move(next);
+  chunk.settle_pending(update.to.seq);
+  settle(update.key, chunk, true, arrival.now_us);
 }
 
 void Replica::receive(const ChunkUnavailable& unavailable) {
@@ -371,6 +439,7 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
   for (auto& [key, chunk] : chunks_) {
     chunk.unavailable = chunk.awaiting = false;
     chunk.audited_at = {};
+    chunk.kept.reset();
     if (!from_past || !past) chunk.current = false;
     if (past) {
       chunk.pending.clear();
@@ -386,6 +455,70 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
       if (TrackedChunk* chunk = find(key)) chunk->add_pending(seq, own.edit);
     }
   }
+}
+
+// ---- chunks kept for later
+
+void Replica::adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us) {
+  if (!opening_ || past_ || !view_ || !view_->contains(key.at)) return;
+  TrackedChunk& mine = track(key);
+  if (mine.confirmed || mine.current || mine.unavailable) return;
+  mine.kept = chunk->version;
+  mine.confirmed = std::move(chunk);
+  ++confirmed_count_;
+  ++counters_.adopted;
+  settle(key, mine, false, now_us);
+}
+
+std::vector<HeldChunk> Replica::take_claims() {
+  std::vector<HeldChunk> claims;
+  if (!opening_ || past_) return claims;
+  std::size_t waiting = 0;
+  for (const auto& [key, chunk] : chunks_) waiting += chunk.claimed && !chunk.current ? 1 : 0;
+  for (auto& [key, chunk] : chunks_) {
+    if (waiting + claims.size() >= kClaimsMax) break;
+    if (!chunk.confirmed || chunk.current || chunk.claimed || chunk.awaiting) continue;
+    chunk.claimed = true;
+    claims.push_back({key, chunk.confirmed->version, claim_digest(digest_of(chunk.confirmed->voxels))});
+  }
+  counters_.claimed += claims.size();
+  return claims;
+}
+
+std::vector<ChunkKey> Replica::missing() const {
+  std::vector<ChunkKey> keys;
+  if (!opening_ || past_ || !view_) return keys;
+  const std::int32_t limit = kWorldLimit / opening_->chunk_edge;
+  const auto is_inside = [limit](std::int32_t c) { return c >= -limit && c < limit; };
+  const View& v = *view_;
+  const std::int32_t h = v.radius_h, up = v.radius_v;
+  for (std::int32_t x = v.centre.x - h; x <= v.centre.x + h; ++x) {
+    for (std::int32_t y = v.centre.y - up; y <= v.centre.y + up; ++y) {
+      for (std::int32_t z = v.centre.z - h; z <= v.centre.z + h; ++z) {
+        const ChunkKey key{0, {x, y, z}};
+        if (!v.contains(key.at) || !is_inside(x) || !is_inside(y) || !is_inside(z)) continue;
+        const TrackedChunk* chunk = find(key);
+        if (chunk == nullptr || (!chunk->confirmed && !chunk->current && !chunk->unavailable))
+          keys.push_back(key);
+      }
+    }
+  }
+  return keys;
+}
+
+std::vector<std::pair<ChunkKey, ChunkPtr>> Replica::take_unkept(std::size_t count_max) {
+  const std::size_t left = std::min(count_max, left_.size());
+  const auto end = left_.begin() + static_cast<std::ptrdiff_t>(left);
+  std::vector<std::pair<ChunkKey, ChunkPtr>> out(left_.begin(), end);
+  left_.erase(left_.begin(), end);
+  if (past_) return out;
+  for (auto& [key, chunk] : chunks_) {
+    if (out.size() >= count_max) break;
+    if (!chunk.is_to_keep()) continue;
+    chunk.kept = chunk.confirmed->version;
+    out.emplace_back(key, chunk.confirmed);
+  }
+  return out;
 }
 
 void Replica::tick(TimeUs now_us) {

@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "client/replica/kept_versions.hpp"
 #include "client/replica/news_book.hpp"
 #include "client/replica/own_edits.hpp"
 #include "client/replica/replica_news.hpp"
@@ -38,6 +39,11 @@ namespace runstone {
 
 inline constexpr std::size_t kInboxEditsMax = 1024;   // edits held back per chunk
 inline constexpr TimeUs kRequestAgainUs = 2'000'000;  // a chunk asked for is asked for again after this
+
+/// Claims that wait for an answer: half of what a server takes, so that those for the next view fit beside them.
+inline constexpr std::size_t kClaimsMax = kHeldClaimsMax / 2;
+inline constexpr std::size_t kLeftMax =
+    32'768;  // chunks that left the view and wait to be kept; others are forgotten
 
 /// What welcome and ready say about the world and about us.
 struct Opening {
@@ -78,6 +84,10 @@ class Replica {
   void mark_sent(ClientSequence seq, TimeUs now_us);
 
   void receive(ChunkSnapshot snapshot, const Arrival& arrival);
+  /// Claimed chunks are current as they are; where it is not the copy that is held now, the chunk is asked for.
+  void receive(const Same& same, TimeUs now_us);
+  /// As a snapshot at `edits.to`, made of what is held. Asks for the chunk if the two do not fit each other.
+  void receive(const ChunkEdits& edits, const Arrival& arrival);
   /// The server cannot send these chunks: nothing is shown there, and own edits there are refused.
   void receive(const ChunkUnavailable& unavailable);
   /// Fails if the commit contradicts itself (a list of previous sequences that does not fit its edit).
@@ -91,6 +101,21 @@ class Replica {
   void begin_moment(const std::optional<PastMoment>& past);
   /// Asks again for chunks that were asked for kRequestAgainUs ago and have not come.
   void tick(TimeUs now_us);
+
+  /// A chunk of the view from a cache: shown at once, and to be claimed. Ignored where a chunk is held, in the past, and
+  /// outside of the view. Its version must be one that KeptVersions trusts.
+  void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
+  /// What is held without the server knowing it, ascending: to be claimed before the next view. No chunk twice on a
+  /// connection, and no more than kClaimsMax that wait for an answer. The digests are those of the runs, recomputed:
+  /// so a copy that has drifted is found out. O(runs).
+  std::vector<HeldChunk> take_claims();
+  /// Chunks of the view that are neither held nor answered, ascending: a cache may have them.
+  std::vector<ChunkKey> missing() const;
+  /// From now on chunks that leave the view wait for take_unkept().
+  void keep_chunks() { keeps_ = true; }
+  /// Chunks to be kept for later, `count_max` at most: those that left the view, then those that are not as
+  /// they were when they were last taken. Only what the server vouches for on this connection.
+  std::vector<std::pair<ChunkKey, ChunkPtr>> take_unkept(std::size_t count_max);
 
   /// What changed since the last call.
   ReplicaNews take_news() { return news_.take(); }
@@ -138,6 +163,8 @@ class Replica {
   void border_changed(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
                       std::span<EditNews* const> cause);
   void show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause);
+  void vouched_for(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
+  void set_current(TrackedChunk& chunk);
   bool is_own(const OperationId& op) const;
   VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }
 
@@ -156,6 +183,8 @@ class Replica {
   ReplicaCounters counters_;
 
   NewsBook news_;
+  bool keeps_ = false;
+  std::vector<std::pair<ChunkKey, ChunkPtr>> left_;  // the view, to be kept; kLeftMax at most
   std::vector<ChunkKey> requests_;
 };
 

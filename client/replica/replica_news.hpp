@@ -105,7 +105,13 @@ struct ReplicaCounters {
   StackDepths confirmed_stacks, predicted_stacks;  // applied to confirmed runs, and on top of them
   std::uint64_t audited = 0;                       // compared at equal version
   std::uint64_t fell_behind = 0;                   // by two audits: a commit got lost; repaired likewise
-  std::uint64_t drifted = 0;                       // and found different: repaired by a new snapshot
+  std::uint64_t drifted = 0;                       // and found different: a snapshot is asked for
+  std::uint64_t repaired = 0;                      // a snapshot replaced other voxels of its version
+  std::uint64_t claims_refuted = 0;                // kept copies that were not the server's: replaced
+  std::uint64_t adopted = 0;                       // chunks that a cache had
+  std::uint64_t claimed = 0;                       // chunks that the server was told are held
+  std::uint64_t same_taken = 0;                    // they are as the server has them
+  std::uint64_t updates_taken = 0;                 // brought up to date by the edits they lacked
   std::uint64_t own_submitted = 0;
   std::uint64_t own_confirmed = 0;
   std::uint64_t own_rejected = 0;

@@ -50,8 +50,13 @@ struct TrackedChunk {
   bool current = false;          // a snapshot of it came on this connection
   Version audited_at;            // of the newest audit that told of a version above ours, on this connection
   bool awaiting = false;         // asked for a snapshot: nothing else is taken
+  bool claimed = false;          // the server was told on this connection that it is held
   bool unavailable = false;  // said the server on this connection; then nothing is held, shown or kept back
   std::optional<TimeUs> requested_us;
+  std::optional<Version> kept;  // of confirmed, as it was last handed over to be kept
+
+  /// The server vouches for confirmed, and it is not the copy that was kept last.
+  bool is_to_keep() const { return confirmed && current && !awaiting && kept != confirmed->version; }
 
   /// Puts an own edit into the pending stack, at its place, unless it is there.
   void add_pending(ClientSequence seq, const EditDescriptor& edit);

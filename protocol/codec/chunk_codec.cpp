@@ -179,4 +179,8 @@ Result<RunChunk> decode_chunk(ByteView in, Extent expected) { return decode(in, 
 
 std::size_t raw_bytes(const RunChunk& chunk) { return kChunkHeaderBytes + chunk.runs.byte_size(); }
 
+std::size_t chunk_bytes_about(const RunChunk& chunk, ChunkEncoding encoding) {
+  return encoding == ChunkEncoding::raw ? raw_bytes(chunk) : kChunkHeaderBytes + chunk.runs.size() / 2;
+}
+
 }  // namespace runstone

@@ -34,5 +34,7 @@ Result<RunChunk> decode_chunk(ByteView in, Extent expected);
 
 /// Size of the raw bytes without making them.
 std::size_t raw_bytes(const RunChunk& chunk);
+/// Size of the chunk's bytes, for `packed` a rough guess from the runs alone: of terrain a run takes about half a byte.
+std::size_t chunk_bytes_about(const RunChunk& chunk, ChunkEncoding encoding);
 
 }  // namespace runstone

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "common/edits/edit_geometry.hpp"
+#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/wire_fields.hpp"
 
@@ -149,6 +150,32 @@ struct BodyReader {
     if (t.reason() == 0) return bad("unavailable reason is 0");
     m.reason = static_cast<UnavailableReason>(t.reason());  // later reasons are no harm
     return m;
+  }
+
+  Result<Message> read(const wire::Held& t) const {
+    auto chunks = decode_held(view_of(t.chunks()), key_edge());
+    if (!chunks) return Unexpected<Error>{chunks.error()};
+    return Message{Held{*std::move(chunks)}};
+  }
+
+  Result<Message> read(const wire::Same& t) const {
+    auto chunks = decode_same(view_of(t.chunks()), key_edge());
+    if (!chunks) return Unexpected<Error>{chunks.error()};
+    return Message{Same{*std::move(chunks)}};
+  }
+
+  Result<Message> read(const wire::ChunkEdits& t) const {
+    ChunkEdits m;
+    if (!take_key(t.key(), key_edge(), m.key)) return bad("chunk key is missing or outside the world");
+    if (!take_version(t.to(), m.to)) return bad("chunk version is missing or half zero");
+    if (!take_digest(t.digest(), m.digest)) return bad("chunk digest is missing or not reduced");
+    m.from = t.from();
+    if (m.from >= m.to.seq || m.to.seq > kSequenceMax) return bad("missing edits lead back, or too far");
+    auto edits = decode_missing(view_of(t.edits()), m.from);
+    if (!edits) return Unexpected<Error>{edits.error()};
+    m.edits = *std::move(edits);
+    if (m.edits.back().seq != m.to.seq) return bad("missing edits end elsewhere than the chunk's version");
+    return Message{std::move(m)};
   }
 
   Result<Message> read(const wire::Travel& t) const {
@@ -382,6 +409,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Ping:
     case wire::Body::Travel:
     case wire::Body::CommandRequest:
+    case wire::Body::Held:
       return Route{true, false, FrameClass::control};
     case wire::Body::EditRequest:
       return Route{true, false, FrameClass::edits};
@@ -400,6 +428,8 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Chunk:
     case wire::Body::ChunkUnavailable:
     case wire::Body::Moment:
+    case wire::Body::Same:
+    case wire::Body::ChunkEdits:
       return Route{false, true, FrameClass::chunks};
     case wire::Body::Goodbye:
       return Route{true, true, FrameClass::control};
@@ -457,6 +487,12 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_CommandRequest());
     case wire::Body::CommandOutput:
       return reader.read(*message.body_as_CommandOutput());
+    case wire::Body::Held:
+      return reader.read(*message.body_as_Held());
+    case wire::Body::Same:
+      return reader.read(*message.body_as_Same());
+    case wire::Body::ChunkEdits:
+      return reader.read(*message.body_as_ChunkEdits());
     case wire::Body::NONE:
       break;
   }

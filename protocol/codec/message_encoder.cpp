@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/text.hpp"
+#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -75,6 +76,21 @@ struct BodyBuilder {
   Offset<wire::ChunkUnavailable> operator()(const ChunkUnavailable& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kUnavailableKeysMax);
     return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
+  }
+  Offset<wire::Held> operator()(const Held& m) {
+    return wire::CreateHeld(b, bytes_of(b, encode_held(m.chunks)));
+  }
+  Offset<wire::Same> operator()(const Same& m) {
+    return wire::CreateSame(b, bytes_of(b, encode_same(m.chunks)));
+  }
+  Offset<wire::ChunkEdits> operator()(const ChunkEdits& m) {
+    RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kChunkEditsMax);
+    RUNSTONE_ASSERT(m.edits.back().seq == m.to.seq);
+    const auto edits = bytes_of(b, encode_missing(m.edits, m.from));
+    const wire::Key key = key_of(m.key);
+    const wire::Version to = version_of(m.to);
+    const wire::Digest digest = digest_bytes(m.digest);
+    return wire::CreateChunkEdits(b, &key, m.from, &to, &digest, edits);
   }
   Offset<wire::Travel> operator()(const Travel& m) {
     return wire::CreateTravel(b, m.request, static_cast<std::uint8_t>(m.to), m.seq, m.utc_us);

@@ -3,6 +3,8 @@
 #include <type_traits>
 #include <variant>
 
+#include "protocol/codec/held_lists.hpp"
+
 namespace runstone {
 
 FrameClass frame_class_of(const Message& message) {
@@ -13,10 +15,21 @@ FrameClass frame_class_of(const Message& message) {
                                 std::is_same_v<T, Ready>;
         if constexpr (kOrder) return FrameClass::edits;
         constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
-                                std::is_same_v<T, Moment>;
+                                std::is_same_v<T, Moment> || std::is_same_v<T, Same> ||
+                                std::is_same_v<T, ChunkEdits>;
         return kChunk ? FrameClass::chunks : FrameClass::control;
       },
       message);
+}
+
+std::vector<Message> held_messages(std::span<const HeldChunk> chunks) {
+  std::vector<Message> out;
+  while (!chunks.empty()) {
+    const std::size_t count = held_that_fit(chunks);
+    out.push_back(Held{{chunks.begin(), chunks.begin() + static_cast<std::ptrdiff_t>(count)}});
+    chunks = chunks.subspan(count);
+  }
+  return out;
 }
 
 const char* to_string(RejectReason reason) {

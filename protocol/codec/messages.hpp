@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -111,6 +112,50 @@ struct ChunkUnavailable {
   UnavailableReason reason = UnavailableReason::damaged;
   friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
 };
+/// A chunk that a client says it holds.
+struct HeldChunk {
+  ChunkKey key;
+  Version version;
+  std::uint64_t digest = 0;  // claim_digest() of its voxels
+  friend bool operator==(const HeldChunk&, const HeldChunk&) = default;
+};
+/// Lane 0 of a digest: 61 bits are enough to find a copy that differs by accident (one in 2^61), and nobody gains by
+/// making one that differs on purpose: what a false claim spoils is the claimant's own picture, until the next audit.
+inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
+
+/// Chunks of the view that follows, and of those in force: the server need not send what is held. Strictly ascending by
+/// key, all of level 0.
+struct Held {
+  std::vector<HeldChunk> chunks;
+  friend bool operator==(const Held&, const Held&) = default;
+};
+/// The client's copy at this sequence is the chunk as it stood when the session was subscribed.
+struct SameChunk {
+  ChunkKey key;
+  Sequence seq = 0;
+  friend bool operator==(const SameChunk&, const SameChunk&) = default;
+};
+/// Strictly ascending by key, all of level 0.
+struct Same {
+  std::vector<SameChunk> chunks;
+  friend bool operator==(const Same&, const Same&) = default;
+};
+struct MissingEdit {
+  Sequence seq = 0;
+  EditDescriptor edit;
+  friend bool operator==(const MissingEdit&, const MissingEdit&) = default;
+};
+/// In place of a snapshot at `to`: all edits that touch the chunk by geometry, from < seq <= to.seq, ascending; the last
+/// one is at to.seq.
+struct ChunkEdits {
+  ChunkKey key;
+  Sequence from = 0;
+  Version to;
+  Digest digest;  // of the chunk at `to`
+  std::vector<MissingEdit> edits;
+  friend bool operator==(const ChunkEdits&, const ChunkEdits&) = default;
+};
+
 /// What a session looks at. Values are on the wire.
 enum class TravelTo : std::uint8_t { live = 0, sequence = 1, time = 2 };
 inline constexpr std::uint8_t kTravelToMax = 2;
@@ -272,9 +317,10 @@ struct CommandOutput {
 };
 
 /// Order follows the union of the schema.
-using Message = std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest,
-                             Commit, Reject, Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye,
-                             ChunkUnavailable, Travel, Moment, CommandRequest, CommandOutput>;
+using Message =
+    std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
+                 Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye, ChunkUnavailable, Travel,
+                 Moment, CommandRequest, CommandOutput, Held, Same, ChunkEdits>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {
@@ -295,6 +341,9 @@ EncodedMessage encode_message(const Message& message);
 
 /// A snapshot in the given encoding. Reads runs, makes no dense copy. O(runs).
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
+
+/// Claims as messages, each within the limits of a client's control message. Requires chunks strictly ascending by key.
+std::vector<Message> held_messages(std::span<const HeldChunk> chunks);
 
 /// One message of a class from a sender; `bytes` must be 8-aligned, as FrameReader's are. `chunk_edge` is the
 /// world's edge (0 before welcome): snapshots of another size and keys outside the world are refused, and

@@ -11,6 +11,7 @@
 #include "common/runs/dense.hpp"
 #include "server/admin/operators.hpp"
 #include "server/app/logging.hpp"
+#include "server/history/missing_edits.hpp"
 #include "server/net/steady_us.hpp"
 
 namespace runstone {
@@ -252,16 +253,18 @@ void ServerCore::log_counters() {
         "seq={} "
         "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} keyframes={} "
         "chunks_resident={} "
-        "resident_bytes={} chunks_failed={} snapshots_sent={} unavailable_sent={} chunks_stale={} "
+        "resident_bytes={} chunks_failed={} snapshots_sent={} same_sent={} updates_sent={} claims_drifted={} "
+        "chunks_requested={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
         "audit_mismatches={} commit_send_ms={} bytes_in={} bytes_out={} stack_depths=\"{}\" "
         "dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
-        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.unavailable_sent, w.chunks_stale,
-        w.queue_full, w.audits_sent, w.audit_mismatches, n.commit_send_ns.load() / 1'000'000,
-        n.bytes_in.load(), n.bytes_out.load(), world_->stack_depths().text(), dense_expansions());
+        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.same_sent, w.updates_sent,
+        w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent,
+        w.audit_mismatches, n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
+        world_->stack_depths().text(), dense_expansions());
   });
 }
 
@@ -393,6 +396,28 @@ bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const Chu
   if (!place) return false;
   asio::post(workers_, [net = found->second, key, chunk, place = *place] {
     net->fill_chunk(place, encode_snapshot(key, *chunk, net->encoding()));
+  });
+  return true;
+}
+
+bool ServerCore::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version held) {
+  const auto found = sessions_.find(session);
+  if (found == sessions_.end()) return true;
+  const auto place = found->second->reserve_chunk();
+  if (!place) return false;
+  asio::post(workers_, [this, net = found->second, key, chunk, held, place = *place] {
+    const ChunkEncoding encoding = net->encoding();
+    std::optional<ChunkEdits> edits;
+    const auto read = chunks_->with_reader([&](Store& reader) {
+      auto missing = missing_edits(reader, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding));
+      if (missing) {
+        edits = *std::move(missing);
+      } else {
+        logger("store").error("{}", missing.error().message());
+      }
+    });
+    if (!read) logger("store").error("{}", read.error().message());
+    net->fill_chunk(place, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
   });
   return true;
 }

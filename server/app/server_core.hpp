@@ -72,6 +72,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   void set_encoding(SessionId session, ChunkEncoding encoding) override;
   void opened(SessionId session) override;
   bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
+  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version held) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   bool log_has_room(std::size_t records) const override;
   void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;

@@ -1,5 +1,6 @@
 #include "server/world/delivery.hpp"
 
+#include "server/world/held_steps.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
@@ -19,6 +20,12 @@ void put_off(WorldState& world, SessionId session, const ChunkKey& key, const No
 /// Sends what stands before the session's next chunk. False: its queue is full.
 bool send_moment(WorldState& world, SessionId session, const Now& now) {
   WorldSession& mine = *world.find(session);
+  // What was said of the live world comes before the past begins.
+  const bool turns = mine.begins_due || mine.word_due;
+  if (turns && !send_same(world, session, false)) {
+    mine.stalled_us = now.steady_us;
+    return false;
+  }
   for (std::optional<Moment>* due : {&mine.begins_due, &mine.word_due}) {
     if (!*due) continue;
     if (!world.ports.send(session, encode_message(**due))) {
@@ -45,7 +52,13 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     ++world.counters.unavailable_sent;
     return true;
   }
-  if (!world.ports.send_snapshot(session, key, chunk)) {
+  const HeldAnswer held =
+      then == ChunkInterest::subscribed ? answer_held(world, session, key, chunk) : HeldAnswer::none;
+  if (held == HeldAnswer::queued) {
+    world.interest.set_state(session, key, then);
+    return true;
+  }
+  if (held == HeldAnswer::full || !world.ports.send_snapshot(session, key, chunk)) {
     put_off(world, session, key, now);
     return false;
   }
@@ -88,6 +101,8 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
       if (residency == Residency::absent) world.loads.ask(session, *key);
     }
   }
+  const bool is_more = world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
+  send_same(world, session, is_more);
   start_loads(world);
 }
 

@@ -10,12 +10,14 @@ namespace runstone {
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request, const Now& now) {
   WorldSession& mine = *world.find(session);
   for (const ChunkKey& key : request.keys) {
+    mine.claims.drop(key);  // what it holds is not what it wants
     const auto state = world.interest.find(session)->state(key);
     const bool is_settled = state == ChunkInterest::subscribed || state == ChunkInterest::unavailable ||
                             state == ChunkInterest::recalled;
     if (is_settled) {
       if (mine.visit) mine.visit->sent.erase(key);
       world.interest.set_state(session, key, ChunkInterest::wanted);
+      ++world.counters.chunks_requested;
     }
   }
   deliver(world, session, now);

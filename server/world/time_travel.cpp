@@ -13,6 +13,7 @@ void want_all(WorldState& world, SessionId session) {
     world.interest.set_state(session, key, ChunkInterest::wanted);
   }
   world.interest.want_again(session, {});
+  world.find(session)->claims.clear();
   collect_released(world);
 }
 

@@ -51,6 +51,7 @@ void on_view(WorldState& world, SessionId session, View view, const Now& now) {
     }
   }
   mine.next_view = view;
+  mine.claims.keep(view);
   if (!world.views_wait && world.view_chunks_left > 0 && has_turn(world, mine, now)) {
     take_effect(world, session, now);
   }

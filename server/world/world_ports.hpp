@@ -40,6 +40,11 @@ class WorldPorts {
   /// Encodes a snapshot on a worker in the session's encoding and queues it like send(). False as above; a
   /// port with a bounded queue calls WorldServer::drained() when there is room again.
   virtual bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) = 0;
+  /// As send_snapshot(), for a session that holds the chunk at an earlier version: where the edits from there to the
+  /// chunk's version are in the log and shorter, a worker sends those instead. Requires that they are durable.
+  virtual bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version /*held*/) {
+    return send_snapshot(session, key, chunk);
+  }
   /// Sends goodbye after what is queued, then closes. disconnected() follows.
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
 

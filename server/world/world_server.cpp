@@ -12,6 +12,7 @@
 #include "server/world/delivery.hpp"
 #include "server/world/edit_check.hpp"
 #include "server/world/handshake_steps.hpp"
+#include "server/world/held_steps.hpp"
 #include "server/world/people.hpp"
 #include "server/world/request_steps.hpp"
 #include "server/world/time_travel.hpp"
@@ -28,11 +29,12 @@ bool needs_open(const Message& message) {
   return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
          std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
          std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
-         std::holds_alternative<CommandRequest>(message);
+         std::holds_alternative<CommandRequest>(message) || std::holds_alternative<Held>(message);
 }
 
 void on_open_message(WorldState& world, SessionId session, const Message& message, const Now& now) {
   if (const auto* view = std::get_if<View>(&message)) return on_view(world, session, *view, now);
+  if (const auto* held = std::get_if<Held>(&message)) return on_held(world, session, *held);
   if (const auto* request = std::get_if<ChunkRequest>(&message)) {
     return on_chunk_request(world, session, *request, now);
   }
@@ -63,6 +65,7 @@ void retry_owed(WorldState& world, const Now& now) {
   for (const SessionId id : world.open_sessions()) {
     send_owed(world, id);
     deliver(world, id, now);
+    send_same(world, id, false);  // more may come, but not for long
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/core/bytes.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/interest/held_claims.hpp"
 #include "server/world/token_bucket.hpp"
 
 namespace runstone {
@@ -52,6 +53,9 @@ struct WorldSession {
   std::optional<TimeUs> viewed_us;   // when the last one did
   std::vector<View> passed_views;    // that next_view replaced before they did: kPassedViewsMax at most,
   bool has_passed_too_many = false;  // more of them count as having left everything
+  // What it holds already (held_steps.hpp).
+  HeldClaims claims;
+  std::vector<SameChunk> same_due;  // subscribed, but not told yet
   // Time travel (time_travel.hpp).
   std::optional<Travel> next_travel;  // the newest wish that nothing was done for yet
   bool opens_moment = false;          // a worker is at one

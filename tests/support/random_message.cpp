@@ -2,6 +2,7 @@
 #include "tests/support/edit_oracle.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "common/core/m61.hpp"
 #include "common/edits/edit_geometry.hpp"
@@ -173,6 +174,46 @@ Moment any_moment(SplitMix64& rng) {
   return m;
 }
 
+/// Strictly ascending, some of them neighbours.
+std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
+  std::set<ChunkKey> keys;
+  ChunkCoord at = any_coord(rng);
+  for (std::uint32_t i = 1 + rng.below(static_cast<std::uint32_t>(count_max)); i > 0; --i) {
+    at = rng.below(3) == 0 ? any_coord(rng) : ChunkCoord{at.x, at.y, std::max(at.z - 1, -1000)};
+    keys.insert({0, at});
+  }
+  return {keys.begin(), keys.end()};
+}
+
+Held any_held(SplitMix64& rng) {
+  Held m;
+  for (const ChunkKey& key : ascending_keys(rng, 100)) {
+    m.chunks.push_back({key, any_version(rng), claim_digest(any_digest(rng))});
+  }
+  return m;
+}
+
+Same any_same(SplitMix64& rng) {
+  Same m;
+  for (const ChunkKey& key : ascending_keys(rng, kSameChunksMax))
+    m.chunks.push_back({key, any_version(rng).seq});
+  return m;
+}
+
+ChunkEdits any_chunk_edits(SplitMix64& rng) {
+  ChunkEdits m;
+  m.key.at = any_coord(rng);
+  m.from = rng.below(2) == 0 ? 0 : any64(rng) >> 2;
+  Sequence seq = m.from;
+  for (std::uint32_t i = 1 + rng.below(6); i > 0; --i) {
+    seq += 1 + rng.below(1000);
+    m.edits.push_back({seq, any_edit(rng)});
+  }
+  m.to = {1 + rng.below(1000), seq};
+  m.digest = any_digest(rng);
+  return m;
+}
+
 CommandOutput any_output(SplitMix64& rng) {
   CommandOutput m;
   m.id = rng.below(1000);
@@ -295,9 +336,15 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
       return any_moment(rng);
     case 21:
       return CommandRequest{rng.below(1000), any_text(rng, 1, kCommandBytesMax)};
-    default:
-      RUNSTONE_ASSERT(kind == 22);
+    case 22:
       return any_output(rng);
+    case 23:
+      return any_held(rng);
+    case 24:
+      return any_same(rng);
+    default:
+      RUNSTONE_ASSERT(kind == 25);
+      return any_chunk_edits(rng);
   }
 }
 
@@ -307,7 +354,8 @@ Sender sender_of(const Message& message) {
       std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
       std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
       std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
-      std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message);
+      std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message) ||
+      std::holds_alternative<Held>(message);
   return client ? Sender::client : Sender::server;
 }
 

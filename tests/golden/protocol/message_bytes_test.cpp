@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "protocol/codec/handshake.hpp"
+#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
 #include "tests/support/hex.hpp"
 
@@ -198,6 +199,36 @@ TEST_CASE("a change of the roster of protocol 2 is read", "[protocol][golden]") 
                                  "02000000080000002c01000008000c0004000800080000000700000004000000"
                                  "03000000626f6200");
   CHECK(read_back == Message(Roster{{{7, "bob"}}, true, {8, 300}}));
+}
+
+TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[protocol][golden]") {
+  const Held held{{{{0, {-3, 0, 7}}, {}, 0x0123456789abcdefULL},
+                   {{0, {1, -2, 3}}, {3, 500}, 1},
+                   {{0, {1, -2, 4}}, {2, 70}, 0}}};
+  CHECK(read(Sender::client, FrameClass::control,
+             "1000000052554e3108000e0007000800080000000000001a0c00000000000600"
+             "0800040006000000040000002700000005000e00efcdab896745230108030703"
+             "f40301000000000000000000020246000000000000000000") == Message(held));
+  // The lists are the project's own: writing them is pinned, too.
+  CHECK(to_hex(encode_held(held.chunks)) ==
+        "05000e00efcdab8967452301"
+        "08030703f4030100000000000000"
+        "00000202460000000000000000");
+  const Same same{{{{0, {-3, 0, 7}}, 0}, {{0, {1, -2, 3}}, 500}, {{0, {1, -2, 4}}, 70}}};
+  CHECK(read(Sender::server, FrameClass::chunks,
+             "1000000052554e3108000e0007000800080000000000001b0c00000000000600"
+             "0800040006000000040000000e00000005000e00080307e807000002db060000") == Message(same));
+  CHECK(to_hex(encode_same(same.chunks)) == "05000e00080307e807000002db06");
+  ChunkEdits edits{{0, {1, -2, 3}}, 480, {3, 500}, {{0x1d097e98f4fc2824ULL, 0x07cd14195a2e2b9aULL}}, {}};
+  edits.edits.push_back({499, {SetVoxel{{17, -31, 50}}, {}, 300}});
+  edits.edits.push_back({500, {FillSphere{{20, -30, 50}, 3}, {MaskKind::only_solid, 0}, 7}});
+  CHECK(read(Sender::server, FrameClass::chunks,
+             "1000000052554e3108000e0007000800080000000000001c1400000000000e00"
+             "440004003c001400240038000e0000000000000001000000feffffff03000000"
+             "0300000000000000f4010000000000002428fcf4987e091d9a2b2e5a1914cd07"
+             "000000000c000000e0010000000000001200000013070100ac02223d64010703"
+             "0207283b64030000") == Message(edits));
+  CHECK(to_hex(encode_missing(edits.edits, edits.from)) == "13070100ac02223d640107030207283b6403");
 }
 
 TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]") {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/runs/run_builder.hpp"
+#include "server/history/missing_edits.hpp"
 #include "server/store/store.hpp"
 #include "server/world/world_server.hpp"
 #include "tests/simulation/session/sim_network.hpp"
@@ -125,6 +126,7 @@ class SimServer final : public WorldPorts {
   std::size_t server_queue_bytes = 200'000;
   bool log_full = false;
   std::uint64_t dropped = 0;
+  std::uint64_t updates = 0;  // sent as edits
 
  private:
   struct Session {
@@ -192,6 +194,22 @@ class SimServer final : public WorldPorts {
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
       send_encoded(id, encode_snapshot(key, *chunk, session->second.encoding));
+    });
+    return true;
+  }
+  bool send_update(SessionId id, const ChunkKey& key, const ChunkPtr& chunk, Version held) override {
+    const auto it = sessions_.find(id);
+    if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
+    ++it->second.encoding_now;
+    later(100, 30'000, [this, id, key, chunk, held] {  // the worker
+      const auto session = sessions_.find(id);
+      if (session == sessions_.end()) return;
+      --session->second.encoding_now;
+      const ChunkEncoding encoding = session->second.encoding;
+      const auto edits =
+          value(missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
+      updates += edits ? 1 : 0;
+      send_encoded(id, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
     });
     return true;
   }

@@ -317,6 +317,98 @@ TEST_CASE("unavailable chunks are named, and their reason may be one of the futu
   CHECK_FALSE(passes_from_client(build, FrameClass::chunks));
 }
 
+TEST_CASE("lists of what is held are refused unless they are canonical and inside the world", "[protocol]") {
+  const auto held = [](const Bytes& bytes, std::uint16_t edge = kMessageEdge) {
+    return received(
+               Sender::client, FrameClass::control,
+               [&](FlatBufferBuilder& b) { return wire::CreateHeld(b, b.CreateVector(bytes)); }, edge)
+        .has_value();
+  };
+  const auto bytes_of = [](std::vector<std::int64_t> key, std::vector<std::uint64_t> version,
+                           std::uint64_t digest) {
+    Bytes bytes;
+    ByteWriter out(bytes);
+    for (const std::int64_t c : key) out.svarint(c);
+    for (const std::uint64_t v : version) out.varint(v);
+    out.u64(digest);
+    return bytes;
+  };
+  const auto joined = [](Bytes a, const Bytes& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  CHECK(held(bytes_of({1, -2, 3}, {0}, 7)));
+  CHECK(held(bytes_of({1, -2, 3}, {4, 500}, 7)));
+  CHECK_FALSE(held({}));
+  CHECK_FALSE(held(bytes_of({1, -2, 3}, {4, 0}, 7)));                          // half a version
+  CHECK_FALSE(held(bytes_of({1, -2, 3}, {std::uint64_t{1} << 32, 500}, 7)));   // no epoch
+  CHECK_FALSE(held(bytes_of({1, -2, 3}, {4, std::uint64_t{1} << 63}, 7)));     // no sequence
+  CHECK_FALSE(held(bytes_of({1, -2, 3}, {0}, (std::uint64_t{1} << 61) - 1)));  // not reduced
+  CHECK(held(bytes_of({kReach - 1, 0, -kReach}, {0}, 7)));
+  CHECK_FALSE(held(bytes_of({kReach, 0, 0}, {0}, 7)));
+  CHECK_FALSE(held(bytes_of({0, 0, -kReach - 1}, {0}, 7)));
+  CHECK_FALSE(held(bytes_of({std::int64_t{1} << 40, 0, 0}, {0}, 7)));
+  const Bytes first = bytes_of({1, -2, 3}, {0}, 7);
+  CHECK(held(joined(first, bytes_of({0, 0, 1}, {0}, 7))));
+  CHECK_FALSE(held(joined(first, bytes_of({0, 0, 0}, {0}, 7))));   // twice
+  CHECK_FALSE(held(joined(first, bytes_of({0, -1, 5}, {0}, 7))));  // back
+  CHECK_FALSE(held(joined(first, {0})));
+  Bytes many = first;
+  for (std::size_t i = 1; i < kHeldChunksMax; ++i) many = joined(many, bytes_of({0, 0, 1}, {0}, 7));
+  CHECK(held(many));
+  CHECK_FALSE(held(joined(many, bytes_of({0, 0, 1}, {0}, 7))));
+  CHECK_FALSE(received(Sender::server, FrameClass::control, [&](FlatBufferBuilder& b) {
+                return wire::CreateHeld(b, b.CreateVector(first));
+              }).has_value());
+
+  const auto same = [](const Bytes& bytes) {
+    return passes_from_server(
+        [&](FlatBufferBuilder& b) { return wire::CreateSame(b, b.CreateVector(bytes)); }, FrameClass::chunks);
+  };
+  CHECK(same({2, 0, 0, 10}));                     // (1, 0, 0) at 5
+  CHECK(same({2, 0, 0, 10, 0, 0, 2, 9}));         // (1, 0, 1) at 0
+  CHECK_FALSE(same({2, 0, 0, 10, 0, 0, 2, 11}));  // at -1
+  CHECK_FALSE(same({2, 0, 0, 1}));
+  CHECK_FALSE(same({}));
+  CHECK_FALSE(same({2, 0, 0}));
+}
+
+struct ChunkEditsFields {
+  wire::Key key{0, 1, 2, 3};
+  wire::Version to{2, 12};
+  wire::Digest digest{5, 6};
+  std::uint64_t from = 9;
+  bool has_key = true, has_to = true, has_digest = true;
+  std::vector<std::pair<std::uint64_t, Bytes>> edits = {{1, encode(kEdit)}, {2, encode(kEdit)}};
+  Offset<wire::ChunkEdits> operator()(FlatBufferBuilder& b) const {
+    Bytes bytes;
+    ByteWriter out(bytes);
+    for (const auto& [step, edit] : edits) {
+      out.varint(step);
+      out.varint(edit.size());
+      out.bytes(edit);
+    }
+    return wire::CreateChunkEdits(b, has_key ? &key : nullptr, from, has_to ? &to : nullptr,
+                                  has_digest ? &digest : nullptr, b.CreateVector(bytes));
+  }
+};
+
+TEST_CASE("missing edits are refused where they do not lead from one version to the other", "[protocol]") {
+  refuses<ChunkEditsFields>(
+      Sender::server, FrameClass::chunks,
+      {[](auto& f) { f.has_key = false; }, [](auto& f) { f.has_to = false; },
+       [](auto& f) { f.has_digest = false; }, [](auto& f) { f.key = {1, 0, 0, 0}; },
+       [](auto& f) { f.key = {0, kReach, 0, 0}; }, [](auto& f) { f.to = {2, 13}; },
+       [](auto& f) { f.to = {0, 12}; }, [](auto& f) { f.from = 12; }, [](auto& f) { f.from = 13; },
+       [](auto& f) { f.to = {2, std::uint64_t{1} << 63}; }, [](auto& f) { f.edits[1].first = 0; },
+       [](auto& f) { f.edits[0].first = 2; }, [](auto& f) { f.edits.clear(); },
+       [](auto& f) { f.edits[0].second.push_back(0); }, [](auto& f) { f.edits[0].second = {}; },
+       [](auto& f) {
+         f.edits.assign(kChunkEditsMax + 1, {1, encode(kEdit)});
+         f.to = {2, f.from + kChunkEditsMax + 1};
+       }});
+}
+
 TEST_CASE("commands and their output are bounded lines of text", "[protocol]") {
   const auto request = [](const std::string& text) {
     return passes_from_client(

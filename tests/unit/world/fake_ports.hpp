@@ -35,7 +35,8 @@ class FakePorts : public WorldPorts {
   };
 
   std::vector<Sent> sent;
-  std::vector<SentSnapshot> snapshots;
+  std::vector<SentSnapshot> snapshots;                // updates among them
+  std::vector<std::pair<ChunkKey, Version>> updates;  // and what the session held
   std::vector<Closed> closed;
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
@@ -72,6 +73,11 @@ class FakePorts : public WorldPorts {
       --room->second;
     }
     snapshots.push_back({session, key, chunk});
+    return true;
+  }
+  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version held) override {
+    if (!send_snapshot(session, key, chunk)) return false;
+    updates.emplace_back(key, held);
     return true;
   }
   void set_encoding(SessionId session, ChunkEncoding encoding) override { encodings[session] = encoding; }

@@ -1,0 +1,58 @@
+#include "server/history/missing_edits.hpp"
+
+#include <utility>
+
+#include "common/edits/edit_geometry.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kEditOverheadBytes = 8;  // its sequence and its length, about
+
+/// Whether the log has an edit of this very version that touches the chunk: then what a client has there is its state.
+StoreResult<bool> is_in_log(Store& store, const Version& version, const VoxelBox& box) {
+  const auto range = store.log_range();
+  if (!range) return Unexpected<StoreError>{range.error()};
+  if (version.seq == 0) return range->first == 1;  // the base, and none of its edits was compacted away
+  if (version.seq < range->first || version.seq > range->last.version.seq) return false;
+  bool is_here = false;
+  const auto read = store.read_log(version.seq, version.seq, [&](const EditRecord& record) {
+    is_here = record.version == version && touches(record.edit, box);
+    return false;
+  });
+  if (!read) return Unexpected<StoreError>{read.error()};
+  return is_here;
+}
+
+}  // namespace
+
+StoreResult<std::optional<ChunkEdits>> missing_edits(Store& store, const ChunkKey& key, const Chunk& chunk,
+                                                     const Version& from, std::size_t bytes_max) {
+  std::optional<ChunkEdits> out;
+  const Sequence last = chunk.version.seq;
+  if (last - from.seq > kUpdateStretchMax) return out;
+  const VoxelBox box = box_of(key.at, static_cast<std::int32_t>(chunk.voxels.extent.x));
+  const auto is_here = is_in_log(store, from, box);
+  if (!is_here) return Unexpected<StoreError>{is_here.error()};
+  if (!*is_here) return out;
+  ChunkEdits update{key, from.seq, chunk.version, chunk.digest, {}};
+  std::size_t bytes = 0, looks = 0;
+  bool serves = true;
+  LogQuery query;
+  query.box = box;
+  query.first = from.seq + 1;
+  query.last = last;
+  const auto read = store.query_log(query, [&](const EditRecord& record) {
+    serves = ++looks <= kUpdateLooksMax;
+    if (!serves || !touches(record.edit, box)) return serves;
+    bytes += encode(record.edit).size() + kEditOverheadBytes;
+    serves = bytes <= bytes_max && update.edits.size() < kChunkEditsMax;
+    if (serves) update.edits.push_back({record.version.seq, record.edit});
+    return serves;
+  });
+  if (!read) return Unexpected<StoreError>{read.error()};
+  if (serves && !update.edits.empty() && update.edits.back().seq == last) out = std::move(update);
+  return out;
+}
+
+}  // namespace runstone
