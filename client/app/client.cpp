@@ -31,6 +31,7 @@ constexpr TimeUs kTitleUs = 500'000;
 constexpr TimeUs kSettleUsMax = 10'000'000;  // for all that is here to be drawn without anything new to draw
 constexpr Sequence kScrubSteps = 100;        // from the first edit to the newest
 constexpr TimeUs kEventsUs = 8'000;          // messages taken per turn before meshes and frames get theirs
+constexpr TimeUs kKeepUs = 2'000'000;        // between two batches for the chunk cache
 constexpr std::int64_t kGoodbyeMs = 1'000;   // to say goodbye
 
 /// Null where nothing is to be seen.
@@ -57,8 +58,26 @@ std::string moment_text(const std::optional<PastMoment>& past) {
   return fmt::format("  as it was after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq, fmt::gmtime(seconds));
 }
 
-SessionConfig session_config(const ClientOptions& options) {
+/// Null without a cache; a cache that cannot be had is a warning.
+std::unique_ptr<CacheThread> make_cache(const ClientOptions& options, std::function<void()> wake) {
+  if (!options.cache) return nullptr;
+  const std::string folder = options.cache_dir.empty() ? default_cache_folder() : options.cache_dir;
+  if (folder.empty()) {
+    spdlog::warn("no chunk cache: neither XDG_CACHE_HOME nor HOME names a folder");
+    return nullptr;
+  }
+  auto cache = ChunkCache::open(folder, options.cache_mib << 20);
+  if (!cache) {
+    spdlog::warn("{}; this client goes without", cache.error());
+    return nullptr;
+  }
+  if (const std::string warning = (*cache)->take_warning(); !warning.empty()) spdlog::warn("{}", warning);
+  return std::make_unique<CacheThread>(*std::move(cache), std::move(wake));
+}
+
+SessionConfig session_config(const ClientOptions& options, bool has_cache) {
   SessionConfig config;
+  config.has_cache = has_cache;
   config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
   if (!options.key_file.empty()) config.pinned = load_pinned_servers(options.key_file);
   config.name = options.name;
@@ -72,7 +91,8 @@ SessionConfig session_config(const ClientOptions& options) {
 
 Client::Client(ClientOptions options, const Script* script)
     : options_(std::move(options)),
-      session_(session_config(options_)),
+      cache_(make_cache(options_, [this] { wake_.notify(); })),
+      session_(session_config(options_, cache_ != nullptr)),
       pins_known_(session_.pinned().size()),
       window_(make_window(options_)),
       picture_(session_.replica(), make_draw_thread(options_, window_.get(), [this] { wake_.notify(); }),
@@ -113,6 +133,7 @@ int Client::play(const volatile std::sig_atomic_t& stop) {
     if (runner_) runner_->step(now_us);
     follow_player(now_us);
     session_.tick(now_us);
+    step_cache(now_us, false);
     flush();
     take_news();
     picture_.mesh();
@@ -162,6 +183,7 @@ void Client::on_received(NetReceived& event) {
 void Client::on_disconnected(const NetDisconnected& event) {
   if (event.connection != 0 && event.connection != connection_) return;
   connection_ = 0;
+  step_cache(steady_now_us(), true);
   session_.disconnected();
   last_failure_ = event.why;
   if (session_.end() && !session_.end()->text.empty()) last_failure_ += " (" + session_.end()->text + ")";
@@ -190,6 +212,19 @@ void Client::world_opened() {
 void Client::flush() {
   for (const Message& message : session_.take_outgoing()) net_->send(connection_, encode_message(message));
   if (session_.wants_close() && connection_ != 0) net_->close(connection_);
+}
+
+void Client::step_cache(TimeUs now_us, bool all) {
+  if (!cache_) return;
+  for (auto& found : cache_->take_answers()) session_.answer(std::move(found), now_us);
+  while (auto question = session_.take_question()) cache_->ask(*std::move(question));
+  if (all || now_us - kept_us_ >= kKeepUs) {
+    kept_us_ = now_us;
+    if (const auto world = session_.cached_world()) {
+      cache_->keep(*world, session_.replica().take_unkept(all ? SIZE_MAX : cache_->room()));
+    }
+  }
+  if (const std::string warning = cache_->take_warning(); !warning.empty()) spdlog::warn("{}", warning);
 }
 
 // ---- player
@@ -369,10 +404,13 @@ ClientReport Client::report() const {
   out.net.chunk_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::chunks)];
   out.net.messages_received = net.messages_received;
   out.net.connections = net.connections;
+  if (cache_) out.cache = cache_->counters();
   return out;
 }
 
 int Client::finish(int code) {
+  step_cache(steady_now_us(), true);
+  if (cache_) cache_->stop();
   session_.close(GoodbyeReason::closing, "");
   flush();
   net_->stop(kGoodbyeMs);

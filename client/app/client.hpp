@@ -17,6 +17,7 @@
 #include "client/app/report.hpp"
 #include "client/bots/script_host.hpp"
 #include "client/bots/script_runner.hpp"
+#include "client/cache/cache_thread.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
@@ -50,6 +51,8 @@ class Client final : private ScriptHost {
   void see_completeness(TimeUs now_us);
   void follow_player(TimeUs now_us);
   void flush();
+  /// Asks the cache what the session wants of it, and hands over what is to be kept: now and then, or `all` at once.
+  void step_cache(TimeUs now_us, bool all);
   void take_news();
   void draw(TimeUs now_us);
   void show_title(TimeUs now_us);
@@ -100,6 +103,7 @@ class Client final : private ScriptHost {
 
   const ClientOptions options_;
   WakeUp wake_;
+  std::unique_ptr<CacheThread> cache_;  // null without one
   ClientSession session_;
   std::size_t pins_known_ = 0;
   std::unique_ptr<Window> window_;  // null off screen
@@ -118,7 +122,7 @@ class Client final : private ScriptHost {
   Sequence scrubbed_to_ = 0;           // while the past is shown or asked for
   std::optional<int> wish_to_end_;     // the user or the server ends the program
 
-  TimeUs input_us_ = 0, title_us_ = 0;
+  TimeUs input_us_ = 0, title_us_ = 0, kept_us_ = 0;
   std::uint64_t title_frames_ = 0;  // presented when the title was set
 
   std::unique_ptr<NetClient> net_;  // last: its thread wakes what is above

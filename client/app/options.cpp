@@ -32,7 +32,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
                        std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
   std::string address, size, encoding = "auto";
   unsigned view = out.view_radius, view_v = 0;
-  bool no_render = false;
+  bool no_render = false, no_cache = false;
   app.add_option("--connect", address, "server, HOST:PORT");
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
@@ -59,6 +59,13 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
+  app.add_option(
+      "--cache-dir", out.cache_dir,
+      "keep chunks for the next run in this folder; default $XDG_CACHE_HOME/runstone with a window, "
+      "no cache with --headless or --no-render");
+  app.add_option("--cache-mib", out.cache_mib, "size of the cache at most, MiB; default 256")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 20));
+  app.add_flag("--no-cache", no_cache, "keep no chunks");
   app.add_flag("--verbose", out.verbose, "log every step");
   CLI::Option* draw =
       app.add_flag("--draw", out.draw, "draw what standard input orders, off screen; for other programs");
@@ -82,6 +89,8 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   out.view_radius = static_cast<std::uint8_t>(view);
   out.view_radius_v = static_cast<std::uint8_t>(app.count("--view-vertical") != 0 ? view_v : (view + 1) / 2);
   out.render = !no_render;
+  const bool is_watched = out.render && !out.headless;
+  out.cache = !no_cache && (is_watched || app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0);
   out.encodings = encoding == "raw" ? 1 : encoding == "packed" ? 2 : 3;
   if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
   return {out, 0};

@@ -24,6 +24,9 @@ struct ClientOptions {
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;  // without a session for this long: give up
   unsigned workers = 0;           // mesh threads; 0: one fewer than cores, at least one
+  bool cache = true;              // keep chunks between runs; off by default where nobody watches
+  std::string cache_dir;          // empty: $XDG_CACHE_HOME/runstone
+  std::uint64_t cache_mib = 256;  // at most, on disk
   bool verbose = false;
   bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)
 };

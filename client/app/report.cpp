@@ -86,12 +86,29 @@ Json replica_json(const Replica& replica) {
               {"audited", c.audited},
               {"fell_behind", c.fell_behind},
               {"drifted", c.drifted},
+              {"repaired", c.repaired},
+              {"claims_refuted", c.claims_refuted},
+              {"adopted", c.adopted},
+              {"claimed", c.claimed},
+              {"same_taken", c.same_taken},
+              {"updates_taken", c.updates_taken},
               {"own_submitted", c.own_submitted},
               {"own_confirmed", c.own_confirmed},
               {"own_rejected", c.own_rejected},
               {"own_durable", c.own_durable},
               {"own_offered_again", c.own_offered_again},
               {"dropped_by_epoch", c.dropped_by_epoch}};
+}
+
+Json cache_json(const std::optional<CacheCounters>& c) {
+  if (!c) return nullptr;
+  return Json{{"hits", c->hits},
+              {"misses", c->misses},
+              {"kept", c->kept},
+              {"evicted", c->evicted},
+              {"corrupt", c->corrupt},
+              {"not_common", c->not_common},
+              {"databases_set_aside", c->databases_set_aside}};
 }
 
 /// Milliseconds, or "inf", or "-" where nothing was measured.
@@ -153,6 +170,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                      {"kept_bytes", chunks.kept_mesh_bytes},
                      {"whole_ns", histogram_json(chunks.whole_ns)},
                      {"layers_ns", histogram_json(chunks.layers_ns)}};
+  out["cache"] = cache_json(report.cache);
   out["frames"] =
       Json{{"presented", report.frames.presented}, {"draw_us", histogram_json(report.frames.draw_us)}};
   out["net"] =

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "client/cache/chunk_cache.hpp"
 #include "client/replica/client_session.hpp"
 #include "client/schedule/histogram.hpp"
 #include "client/schedule/join_recorder.hpp"
@@ -43,6 +44,7 @@ struct ClientReport {
   ChunkStats chunks;
   FrameStats frames;
   NetCounts net;
+  std::optional<CacheCounters> cache;  // nothing without one
 };
 
 /// Durations in microseconds unless named otherwise; what was never seen is the string "inf".

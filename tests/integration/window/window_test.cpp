@@ -103,7 +103,7 @@ TEST_CASE("a display that goes away ends the client with the code of a missing o
   VirtualDisplay display(folder / ".", 800, 600);
   const std::string log = folder / "client.log";
   ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
-                       "--size", "320x240", "--view", "1"},
+                       "--size", "320x240", "--view", "1", "--no-cache"},
                       log, display.environment());
   const bool opened = wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; });
   INFO(text_of(log));
@@ -133,10 +133,11 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
 
   VirtualDisplay display(folder / ".", 800, 600);
   const std::string log = folder / "client.log";
-  ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
-                       "--name", "hands", "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight),
-                       "--view", "2", "--screenshot-dir", folder / ".", "--report", folder / "report.json"},
-                      log, display.environment());
+  ChildProcess client(
+      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()), "--name", "hands",
+       "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight), "--view", "2", "--no-cache",
+       "--screenshot-dir", folder / ".", "--report", folder / "report.json"},
+      log, display.environment());
   const std::vector<std::string> window = {"search", "--onlyvisible", "--name", "^Runstone"};
   const auto with_window = [&window](std::vector<std::string> words) {
     words.insert(words.begin(), window.begin(), window.end());

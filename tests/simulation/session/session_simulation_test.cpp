@@ -35,8 +35,11 @@ struct Reckoning {
 
 class Simulation {
  public:
-  explicit Simulation(std::uint64_t seed, unsigned replicas = 3, bool synchronous = true)
+  /// `readers` more look, keep chunks on disk, and are killed and come back.
+  explicit Simulation(std::uint64_t seed, unsigned replicas = 3, bool synchronous = true,
+                      unsigned readers = 0)
       : rng_(seed),
+        readers_(readers),
         options_{vfs_.name(), synchronous},
         server_(time_, rng_, world_config(), [this] { return open(); }) {
     WorldMeta meta = sample_meta();
@@ -45,6 +48,10 @@ class Simulation {
     server_.start();
     for (unsigned i = 0; i < replicas; ++i) {
       clients_.push_back(std::make_unique<SimClient>(time_, rng_, server_, faults_, i + 1));
+    }
+    for (unsigned i = 0; i < readers; ++i) {
+      clients_.push_back(std::make_unique<SimClient>(time_, rng_, server_, faults_, 100 + i,
+                                                     folder_ / ("cache" + std::to_string(i))));
     }
   }
 
@@ -129,7 +136,17 @@ class Simulation {
   }
 
   void act() {
-    SimClient& client = *clients_[rng_.below(static_cast<std::uint32_t>(clients_.size()))];
+    if (readers_ > 0 && rng_.below(10) == 0) {
+      SimClient& reader = *clients_[clients_.size() - 1 - rng_.below(readers_)];
+      const std::uint32_t what = rng_.below(12);
+      if (what == 0) return reader.restart();
+      if (what == 1) return reader.cut();
+      if (what == 2) {
+        return reader.look(
+            {{rng_.between(-2, 2), 0, rng_.between(-2, 2)}, static_cast<std::uint8_t>(1 + rng_.below(3)), 1});
+      }
+    }
+    SimClient& client = *clients_[rng_.below(static_cast<std::uint32_t>(clients_.size()) - readers_)];
     switch (rng_.below(100)) {
       case 0:
         client.cut();
@@ -264,6 +281,7 @@ class Simulation {
 
   VirtualTime time_;
   SplitMix64 rng_;
+  const unsigned readers_;
   LinkFaults faults_;
   TempFolder folder_;
   PowerLossVfs vfs_;
@@ -295,7 +313,15 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   CHECK(r.rejected > 0);
   CHECK(r.beyond > 50);
   for (const auto& client : simulation.clients()) CHECK(client->replica().counters().drifted == 0);
-  WARN("seed " << seed << ": 2500 steps, " << simulation.told(r));
+  std::uint64_t same = 0, updates = 0;
+  for (const auto& client : simulation.clients()) {
+    same += client->replica().counters().same_taken;
+    updates += client->replica().counters().updates_taken;
+  }
+  CHECK(same > 20);
+  CHECK(updates > 0);
+  WARN("seed " << seed << ": 2500 steps, " << simulation.told(r) << ", " << same
+               << " chunks held as they were, " << updates << " brought up to date by edits");
 }
 
 void ten_replicas(std::uint64_t seed, int steps) {
@@ -320,6 +346,31 @@ TEST_CASE("ten replicas agree after cut links, lost commits and power failures",
 // Minutes: docs/testing.md gives the command.
 TEST_CASE("ten replicas agree after tens of thousands of steps", "[.long]") {
   ten_replicas(static_cast<std::uint64_t>(GENERATE(2026, 2027)), 20'000);
+}
+
+TEST_CASE("clients that are killed come back with what their caches have, and nobody drifts",
+          "[simulation]") {
+  const auto seed = static_cast<std::uint64_t>(GENERATE(21, 22));
+  CAPTURE(seed);
+  Simulation simulation(seed, 3, true, 3);
+  simulation.run(2500, 4);
+  const Reckoning r = simulation.reckon();
+  INFO(joined(r.faults));
+  CHECK(r.faults.empty());
+  CHECK(simulation.crashes() > 2);
+  std::uint64_t hits = 0, not_common = 0;
+  for (const auto& client : simulation.clients()) {
+    CHECK(client->replica().counters().drifted == 0);
+    CHECK(client->replica().counters().claims_refuted == 0);
+    if (client->cache() == nullptr) continue;
+    hits += client->cache()->counters().hits;
+    not_common += client->cache()->counters().not_common;
+    CHECK(client->cache()->counters().corrupt == 0);
+  }
+  CHECK(hits > 100);
+  WARN("seed " << seed << ": " << hits << " chunks from caches, " << not_common
+               << " dropped there after crashes, " << simulation.server().updates
+               << " brought up to date by edits");
 }
 
 TEST_CASE("commits that vanish between server and replica are noticed and repaired", "[simulation]") {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/cache/chunk_cache.hpp"
 #include "client/replica/client_session.hpp"
 #include "tests/simulation/session/sim_server.hpp"
 
@@ -14,9 +15,31 @@ namespace runstone::test {
 class SimClient {
  public:
   SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number)
-      : time_(time), rng_(rng), server_(server), faults_(faults), session_(config(number)) {
+      : time_(time), rng_(rng), server_(server), faults_(faults), number_(number), session_(config(number)) {
     pump();
   }
+  /// One that keeps chunks in this folder, and only looks: what it edits would be forgotten with restart().
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number,
+            const std::string& cache_folder)
+      : SimClient(time, rng, server, faults, number) {
+    auto cache = ChunkCache::open(cache_folder, std::uint64_t{1} << 20);
+    if (!cache) throw SimFault(cache.error());
+    cache_ = *std::move(cache);
+    session_ = ClientSession(config(number));
+  }
+
+  /// The process is killed, and comes back with what its cache has.
+  void restart() {
+    const View view = session_.view();
+    if (connection_) connection_->cut();
+    connection_.reset();
+    ++link_;
+    ++life_;
+    session_ = ClientSession(config(number_ + 1000 * life_));
+    session_.set_view(view);
+    retry_at_ = time_.now() + rng_.between(1'000, 300'000);
+  }
+  const ChunkCache* cache() const { return cache_.get(); }
 
   ClientSession& session() { return session_; }
   Replica& replica() { return session_.replica(); }
@@ -47,7 +70,8 @@ class SimClient {
   SessionConfig config(unsigned number) {
     SessionConfig c;
     KeySeed seed{};
-    seed[0] = static_cast<std::uint8_t>(number);
+    seed[0] = static_cast<std::uint8_t>(number_);
+    c.has_cache = cache_ != nullptr;
     c.keys = key_pair_of(seed);
     c.name = "replica " + std::to_string(number);
     instance_ = c.instance = 1000 + number;
@@ -62,6 +86,7 @@ class SimClient {
       if (!connection_ && server_.running() && time_.now() >= retry_at_) connect();
       if (connection_) {
         session_.tick(time_.now());
+        if (cache_) step_cache();
         for (const Message& message : session_.take_outgoing())
           connection_->send_from_client(encode_message(message));
         if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
@@ -69,6 +94,16 @@ class SimClient {
       for (const RejectNews& r : take_news().rejects) rejected_[r.seq] = r.reason;
       pump();
     });
+  }
+  /// Answers come after a while, some of them later than a view waits.
+  void step_cache() {
+    while (auto question = session_.take_question()) {
+      time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(question)] {
+        if (life == life_) session_.answer(cache_->find(q.world, q.keys), time_.now());
+      });
+    }
+    const auto world = session_.cached_world();
+    if (world && rng_.below(50) == 0) cache_->keep(*world, session_.replica().take_unkept(40));
   }
   ReplicaNews take_news() {
     ReplicaNews news = replica().take_news();
@@ -108,6 +143,9 @@ class SimClient {
   SplitMix64& rng_;
   SimServer& server_;
   const LinkFaults& faults_;
+  const unsigned number_;
+  std::unique_ptr<ChunkCache> cache_;
+  unsigned life_ = 0;
   ClientInstance instance_ = 0;
   ClientSession session_;
   std::shared_ptr<SimConnection> connection_;

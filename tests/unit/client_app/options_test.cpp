@@ -47,6 +47,18 @@ TEST_CASE("a program that draws for others needs no server, and takes none", "[c
   CHECK(refused({"--draw", "--help"}) == 0);
 }
 
+TEST_CASE("a client that somebody watches keeps a cache, the others where they are told to", "[client_app]") {
+  CHECK(accepted({"--connect", "a:1"}).cache);
+  CHECK(accepted({"--connect", "a:1"}).cache_mib == 256);
+  CHECK_FALSE(accepted({"--connect", "a:1", "--no-cache"}).cache);
+  CHECK_FALSE(accepted({"--connect", "a:1", "--headless"}).cache);
+  CHECK_FALSE(accepted({"--connect", "a:1", "--no-render"}).cache);
+  CHECK(accepted({"--connect", "a:1", "--headless", "--cache-dir", "/tmp/x"}).cache);
+  CHECK(accepted({"--connect", "a:1", "--no-render", "--cache-mib", "9"}).cache);
+  CHECK_FALSE(accepted({"--connect", "a:1", "--cache-dir", "/tmp/x", "--no-cache"}).cache);
+  CHECK(refused({"--connect", "a:1", "--cache-mib", "0"}) == 2);
+}
+
 TEST_CASE("of two equal flags the last one counts", "[client_app]") {
   CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).host == "b");
 }

@@ -1,0 +1,89 @@
+#include "client/cache/cache_thread.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace runstone {
+
+CacheThread::CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()> wake)
+    : cache_(std::move(cache)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+CacheThread::~CacheThread() { stop(); }
+
+void CacheThread::ask(CacheQuestion question) {
+  {
+    const std::lock_guard lock(mutex_);
+    questions_.push_back(std::move(question));
+  }
+  has_work_.notify_one();
+}
+
+std::size_t CacheThread::room() const {
+  const std::lock_guard lock(mutex_);
+  return kKeepMax - std::min(kKeepMax, waiting_);
+}
+
+void CacheThread::keep(const CachedWorld& world, std::vector<KeptChunk> chunks) {
+  if (chunks.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_ += chunks.size();
+    batches_.push_back({world, std::move(chunks)});
+  }
+  has_work_.notify_one();
+}
+
+std::vector<std::vector<KeptChunk>> CacheThread::take_answers() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(answers_, {});
+}
+
+void CacheThread::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  has_work_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+CacheCounters CacheThread::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+std::string CacheThread::take_warning() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(warning_, {});
+}
+
+void CacheThread::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    has_work_.wait(lock, [this] { return ends_ || !questions_.empty() || !batches_.empty(); });
+    if (!questions_.empty()) {
+      const CacheQuestion question = std::move(questions_.front());
+      questions_.pop_front();
+      lock.unlock();
+      auto found = cache_->find(question.world, question.keys);
+      lock.lock();
+      answers_.push_back(std::move(found));
+      lock.unlock();
+      wake_();
+      lock.lock();
+    } else if (!batches_.empty()) {
+      const Batch batch = std::move(batches_.front());
+      batches_.pop_front();
+      lock.unlock();
+      cache_->keep(batch.world, batch.chunks);
+      lock.lock();
+      waiting_ -= batch.chunks.size();
+    } else {
+      return;
+    }
+    counters_ = cache_->counters();
+    if (std::string warning = cache_->take_warning(); !warning.empty()) warning_ = std::move(warning);
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,330 @@
+#include "client/cache/chunk_cache.hpp"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "protocol/codec/chunk_codec.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::uint64_t kRowOverheadBytes = 160;  // of a row and its place in three indexes
+constexpr std::int64_t kEvictedAtATime = 64;
+
+// user_version names the layout: another one is begun anew.
+constexpr const char* kSchema =
+    "PRAGMA auto_vacuum = INCREMENTAL;"
+    "PRAGMA journal_mode = WAL;"
+    "PRAGMA synchronous = NORMAL;"
+    "PRAGMA journal_size_limit = 4194304;"
+    "PRAGMA cell_size_check = ON;"
+    "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE,"
+    " chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, head INTEGER NOT NULL);"
+    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL,"
+    " z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, used INTEGER NOT NULL,"
+    " bytes INTEGER NOT NULL, checksum INTEGER NOT NULL, digest BLOB NOT NULL, data BLOB NOT NULL,"
+    " UNIQUE (world, x, y, z));"
+    "CREATE INDEX IF NOT EXISTS chunk_used ON chunk (used, bytes);"
+    "CREATE INDEX IF NOT EXISTS chunk_version ON chunk (world, seq, epoch);";
+constexpr std::int64_t kLayout = 1;
+
+Bytes digest_bytes(const Digest& digest) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  for (const std::uint64_t lane : digest.lane) out.u64(lane);
+  return bytes;
+}
+
+/// Over all that a row says.
+std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Version& version, ByteView digest,
+                         ByteView data) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  out.bytes(world);
+  for (const std::int32_t c : {key.at.x, key.at.y, key.at.z}) out.u32(static_cast<std::uint32_t>(c));
+  out.u32(version.epoch);
+  out.u64(version.seq);
+  out.bytes(digest);
+  out.bytes(data);
+  return static_cast<std::int64_t>(XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+void remove_database(const std::string& file) {
+  std::error_code ignored;
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
+}
+
+}  // namespace
+
+std::string default_cache_folder() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && cache[0] == '/')
+    return std::string(cache) + "/runstone";  // a relative one is void (XDG)
+  const char* home = std::getenv("HOME");
+  return home != nullptr && home[0] == '/' ? std::string(home) + "/.cache/runstone" : std::string();
+}
+
+struct ChunkCache::Tables {
+  using Statement = CacheDatabase::Statement;
+  explicit Tables(CacheDatabase& d)
+      : find_world(d, "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1"),
+        add_world(d,
+                  "INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES (?1,?2,?3,?4,?5)"),
+        mark_world(d, "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1"),
+        drop_lost(d, "DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3"),
+        drop_all(d, "DELETE FROM chunk WHERE world = ?1"),
+        drop_edited(d, "DELETE FROM chunk WHERE world = ?1 AND seq > 0"),
+        find(d,
+             "SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk"
+             " WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4"),
+        use(d, "UPDATE chunk SET used = ?2 WHERE rowid = ?1"),
+        drop(d, "DELETE FROM chunk WHERE rowid = ?1"),
+        keep(d,
+             "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, digest, data)"
+             " VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)"),
+        size(d, "SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4"),
+        oldest(d, "SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1") {}
+  Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use, drop, keep, size,
+      oldest;
+};
+
+ChunkCache::ChunkCache(std::string file, std::uint64_t bytes_max, FolderLock lock)
+    : file_(std::move(file)), bytes_max_(bytes_max), lock_(std::move(lock)) {}
+ChunkCache::~ChunkCache() = default;
+
+Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::string& folder,
+                                                                  std::uint64_t bytes_max) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Unexpected<std::string>{"chunk cache " + folder + " cannot be made: " + error.message()};
+  auto lock = FolderLock::take(folder + "/cache.lock");
+  if (!lock && errno == EWOULDBLOCK) {
+    return Unexpected<std::string>{"chunk cache " + folder + " is in use by another client"};
+  }
+  if (!lock) {
+    return Unexpected<std::string>{"chunk cache " + folder +
+                                   " cannot be written: " + std::generic_category().message(errno)};
+  }
+  std::unique_ptr<ChunkCache> cache(new ChunkCache(folder + "/cache.sqlite", bytes_max, *std::move(lock)));
+  cache->open_database();
+  if (cache->has_ended_) return Unexpected<std::string>{cache->warning_};
+  return cache;
+}
+
+void ChunkCache::open_database() {
+  for (const bool is_first : {true, false}) {
+    database_ = std::make_unique<CacheDatabase>(file_);
+    const std::int64_t layout = database_->integer("PRAGMA user_version");
+    if (is_first && database_->ok() && layout != 0 && layout != kLayout) {
+      database_.reset();
+      remove_database(file_);  // of another version of this program: nothing there is worth keeping
+      continue;
+    }
+    database_->run(kSchema);
+    database_->run(("PRAGMA user_version = " + std::to_string(kLayout)).c_str());
+    tables_ = std::make_unique<Tables>(*database_);
+    stamp_ = database_->integer("SELECT MAX(used) FROM chunk") + 1;
+    bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(bytes) FROM chunk"));
+    database_->run("BEGIN");
+    evict();
+    database_->run("COMMIT");
+    database_->run("PRAGMA incremental_vacuum");
+    if (database_->ok()) return;
+    if (!is_first || !database_->is_corrupt()) break;
+    set_aside();
+  }
+  if (database_ && database_->ok()) return;
+  has_ended_ = true;
+  warning_ = "chunk cache " + file_ + " cannot be used: " + (database_ ? database_->error() : "its layout");
+}
+
+void ChunkCache::set_aside() {
+  warning_ = "chunk cache " + file_ + " is damaged (" + database_->error() + "): set aside, begun anew";
+  tables_.reset();
+  database_.reset();
+  std::error_code ignored;
+  std::filesystem::rename(file_, file_ + ".damaged", ignored);
+  remove_database(file_);
+  ++counters_.databases_set_aside;
+}
+
+void ChunkCache::settle() {
+  if (database_->ok()) return;
+  if (database_->is_corrupt()) {
+    set_aside();
+    return open_database();
+  }
+  warning_ = "chunk cache " + file_ + " is not used any more: " + database_->error();
+  has_ended_ = true;
+}
+
+std::string ChunkCache::take_warning() { return std::exchange(warning_, {}); }
+
+std::int64_t ChunkCache::enter(const CachedWorld& world) {
+  const auto number = [](Sequence seq) { return static_cast<std::int64_t>(std::min(seq, kSequenceMax)); };
+  Tables& t = *tables_;
+  std::optional<std::int64_t> id;
+  bool is_other_size = false;
+  std::optional<ServerMark> before;
+  t.find_world.bind(1, world.id);
+  if (t.find_world.step()) {
+    id = t.find_world.integer(0);
+    is_other_size = t.find_world.integer(1) != world.chunk_edge;
+    before = ServerMark{static_cast<Epoch>(t.find_world.integer(2)),
+                        static_cast<Sequence>(t.find_world.integer(3)),
+                        static_cast<Sequence>(t.find_world.integer(4))};
+  }
+  t.find_world.reset();
+  if (!id) {
+    t.add_world.bind(1, world.id)
+        .bind(2, std::int64_t{world.chunk_edge})
+        .bind(3, std::int64_t{world.mark.epoch})
+        .bind(4, number(world.mark.durable))
+        .bind(5, number(world.mark.head))
+        .run();
+    return database_->ok() ? database_->integer("SELECT last_insert_rowid()") : 0;
+  }
+  if (before == world.mark && !is_other_size) return *id;
+  const KeptVersions kept(before, world.mark);
+  const auto count = [&](CacheDatabase::Statement& drop) {
+    drop.run();
+    const std::int64_t dropped = database_->ok() ? database_->changes() : 0;
+    counters_.not_common += static_cast<std::uint64_t>(dropped);
+    if (dropped != 0)
+      bytes_ = static_cast<std::uint64_t>(database_->integer("SELECT TOTAL(bytes) FROM chunk"));
+  };
+  if (is_other_size) {
+    count(t.drop_all.bind(1, *id));
+  } else if (kept.went_back()) {
+    count(t.drop_edited.bind(1, *id));
+  } else if (before->epoch != world.mark.epoch) {
+    count(t.drop_lost.bind(1, *id).bind(2, number(kept.common())).bind(3, std::int64_t{world.mark.epoch}));
+  }
+  t.mark_world.bind(1, *id)
+      .bind(2, std::int64_t{world.chunk_edge})
+      .bind(3, std::int64_t{world.mark.epoch})
+      .bind(4, number(world.mark.durable))
+      .bind(5, number(world.mark.head))
+      .run();
+  return *id;
+}
+
+std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row, const ChunkKey& key) {
+  Tables& t = *tables_;
+  t.find.bind(1, row)
+      .bind(2, std::int64_t{key.at.x})
+      .bind(3, std::int64_t{key.at.y})
+      .bind(4, std::int64_t{key.at.z});
+  if (key.lod != 0 || !t.find.step()) {
+    t.find.reset();
+    ++counters_.misses;
+    return std::nullopt;
+  }
+  auto chunk = std::make_shared<Chunk>();
+  chunk->version = {static_cast<Epoch>(t.find.integer(0)), static_cast<Sequence>(t.find.integer(1))};
+  const bool is_old = t.find.integer(2) != stamp_;
+  const std::int64_t id = t.find.integer(6);
+  const ByteView digest = t.find.blob(4), data = t.find.blob(5);
+  bool holds = t.find.integer(3) == checksum_of(world.id, key, chunk->version, digest, data);
+  const auto size = static_cast<std::uint64_t>(data.size()) + kRowOverheadBytes;
+  if (holds) {
+    auto voxels = decode_chunk(data, Extent::cube(world.chunk_edge));
+    holds = voxels.has_value();
+    if (holds) {
+      chunk->voxels = *std::move(voxels);
+      chunk->digest = digest_of(chunk->voxels);
+      const Bytes found = digest_bytes(chunk->digest);
+      holds = std::equal(found.begin(), found.end(), digest.begin(), digest.end());
+    }
+  }
+  t.find.reset();
+  if (!holds) {
+    ++counters_.corrupt;
+    t.drop.bind(1, id).run();
+    bytes_ -= std::min(bytes_, size);
+    return std::nullopt;
+  }
+  ++counters_.hits;
+  if (is_old) t.use.bind(1, id).bind(2, stamp_).run();
+  return KeptChunk{key, std::move(chunk)};
+}
+
+std::vector<KeptChunk> ChunkCache::find(const CachedWorld& world, std::span<const ChunkKey> keys) {
+  std::vector<KeptChunk> found;
+  if (has_ended_) return found;
+  database_->run("BEGIN IMMEDIATE");
+  const std::int64_t row = enter(world);
+  for (const ChunkKey& key : keys) {
+    if (!database_->ok()) break;
+    if (auto chunk = read(world, row, key)) found.push_back(*std::move(chunk));
+  }
+  database_->run("COMMIT");
+  settle();
+  return found;
+}
+
+void ChunkCache::keep(const CachedWorld& world, std::span<const KeptChunk> chunks) {
+  if (has_ended_) return;
+  Tables& t = *tables_;
+  database_->run("BEGIN IMMEDIATE");
+  const std::int64_t row = enter(world);
+  for (const auto& [key, chunk] : chunks) {
+    if (key.lod != 0 || chunk->version.seq > kSequenceMax || !database_->ok()) continue;
+    const auto at = [&](CacheDatabase::Statement& s) -> CacheDatabase::Statement& {
+      return s.bind(1, row)
+          .bind(2, std::int64_t{key.at.x})
+          .bind(3, std::int64_t{key.at.y})
+          .bind(4, std::int64_t{key.at.z});
+    };
+    if (at(t.size).step()) bytes_ -= std::min(bytes_, static_cast<std::uint64_t>(t.size.integer(0)));
+    t.size.reset();
+    const Bytes data = encode_chunk(chunk->voxels, ChunkEncoding::packed);
+    const Bytes digest = digest_bytes(chunk->digest);
+    const std::uint64_t size = data.size() + kRowOverheadBytes;
+    at(t.keep)
+        .bind(5, std::int64_t{chunk->version.epoch})
+        .bind(6, static_cast<std::int64_t>(chunk->version.seq))
+        .bind(7, stamp_)
+        .bind(8, static_cast<std::int64_t>(size))
+        .bind(9, checksum_of(world.id, key, chunk->version, digest, data))
+        .bind(10, ByteView(digest))
+        .bind(11, ByteView(data))
+        .run();
+    bytes_ += size;
+    ++counters_.kept;
+  }
+  ++stamp_;  // what was kept before is older than what will be
+  evict();
+  database_->run("COMMIT");
+  settle();
+}
+
+void ChunkCache::evict() {
+  while (database_->ok() && bytes_ > bytes_max_) {
+    std::vector<std::pair<std::int64_t, std::uint64_t>> oldest;
+    Tables& t = *tables_;
+    t.oldest.bind(1, kEvictedAtATime);
+    while (t.oldest.step()) {
+      oldest.emplace_back(t.oldest.integer(0), static_cast<std::uint64_t>(t.oldest.integer(1)));
+    }
+    t.oldest.reset();
+    if (oldest.empty()) {
+      bytes_ = 0;
+      return;
+    }
+    for (const auto& [id, size] : oldest) {
+      if (bytes_ <= bytes_max_) return;
+      t.drop.bind(1, id).run();
+      bytes_ -= std::min(bytes_, size);
+      ++counters_.evicted;
+    }
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,218 @@
+#include "client/cache/chunk_cache.hpp"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/core/hash.hpp"
+#include "tests/support/random_chunk.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr unsigned kEdge = 16;
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+CachedWorld world_at(Epoch epoch, Sequence durable, Sequence head, std::uint8_t id = 1) {
+  CachedWorld world;
+  world.id = {id};
+  world.chunk_edge = kEdge;
+  world.mark = {epoch, durable, head};
+  return world;
+}
+
+ChunkKey key_at(std::int32_t i) { return {0, {i % 16, -3 + i / 256, (i / 16) % 16}}; }
+
+/// The voxels that a chunk has at a version, and no other chunk or version.
+ChunkPtr chunk_at(const ChunkKey& key, const Version& version) {
+  SplitMix64 rng{mix64(version.seq * 31 + version.epoch) ^
+                 static_cast<std::uint64_t>(key.at.x * 7919 + key.at.y * 104729 + key.at.z)};
+  auto chunk = std::make_shared<Chunk>();
+  chunk->voxels = random_chunk(rng, Extent::cube(kEdge), AxisOrder::yxz, 200);
+  chunk->digest = digest_of(chunk->voxels);
+  chunk->version = version;
+  return chunk;
+}
+
+std::vector<KeptChunk> chunks_at(std::int32_t first, std::int32_t count, const Version& version) {
+  std::vector<KeptChunk> out;
+  for (std::int32_t i = first; i < first + count; ++i)
+    out.emplace_back(key_at(i), chunk_at(key_at(i), version));
+  return out;
+}
+
+std::vector<ChunkKey> keys_of(std::int32_t first, std::int32_t count) {
+  std::vector<ChunkKey> out;
+  for (std::int32_t i = first; i < first + count; ++i) out.push_back(key_at(i));
+  return out;
+}
+
+std::unique_ptr<ChunkCache> opened(const std::string& folder, std::uint64_t bytes_max = 64 * kMiB) {
+  auto cache = ChunkCache::open(folder, bytes_max);
+  if (!cache) FAIL(cache.error());
+  return *std::move(cache);
+}
+
+/// Whatever was found is what was kept of that key and version.
+void require_true(const std::vector<KeptChunk>& found) {
+  for (const auto& [key, chunk] : found) REQUIRE(*chunk == *chunk_at(key, chunk->version));
+}
+
+}  // namespace
+
+TEST_CASE("chunks come back as they were kept, in another run too", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(3, 90, 100);
+  {
+    const auto cache = opened(folder.path());
+    cache->keep(world, chunks_at(0, 100, {3, 50}));
+    cache->keep(world, chunks_at(10, 10, {3, 60}));  // newer states of some
+    CHECK(cache->counters().kept == 110);
+  }
+  const auto cache = opened(folder.path());
+  const auto found = cache->find(world, keys_of(0, 120));
+  REQUIRE(found.size() == 100);
+  require_true(found);
+  CHECK(found[9].second->version == Version{3, 50});
+  CHECK(found[10].second->version == Version{3, 60});
+  CHECK(cache->counters().hits == 100);
+  CHECK(cache->counters().misses == 20);
+  CHECK(cache->find(world_at(3, 90, 100, 2), keys_of(0, 10)).empty());  // another world
+  CHECK(cache->take_warning().empty());
+}
+
+TEST_CASE("of a server that came back, only common history is found", "[cache]") {
+  const TempFolder folder;
+  const auto cache = opened(folder.path());
+  cache->keep(world_at(1, 100, 110), chunks_at(0, 1, {}));
+  cache->keep(world_at(1, 100, 110), chunks_at(1, 1, {1, 100}));
+  cache->keep(world_at(1, 100, 110), chunks_at(2, 1, {1, 105}));  // not known to be durable
+  SECTION("a crash: what was not known to be durable is gone, though the log has grown past it again") {
+    CHECK(cache->find(world_at(2, 500, 500), keys_of(0, 3)).size() == 2);
+    CHECK(cache->counters().not_common == 1);
+    // And it stays gone, when later marks are beyond it.
+    CHECK(cache->find(world_at(3, 900, 900), keys_of(0, 3)).size() == 2);
+  }
+  SECTION("a crash that lost more than was thought durable") {
+    CHECK(cache->find(world_at(2, 99, 99), keys_of(0, 3)).size() == 1);
+  }
+  SECTION("the same epoch goes on: all is common") {
+    CHECK(cache->find(world_at(1, 104, 130), keys_of(0, 3)).size() == 3);
+  }
+  SECTION("a restored backup: nothing that was edited is common") {
+    CHECK(cache->find(world_at(1, 80, 80), keys_of(0, 3)).size() == 1);
+  }
+  SECTION("a world made anew with other chunks") {
+    CachedWorld other = world_at(1, 104, 130);
+    other.chunk_edge = 32;
+    CHECK(cache->find(other, keys_of(0, 3)).empty());
+  }
+}
+
+TEST_CASE("the cache keeps its bound, and drops what was longest unused", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(1, 1000, 1000);
+  const auto cache = opened(folder.path(), kMiB / 2);
+  for (int batch = 0; batch < 20; ++batch) {
+    cache->keep(world, chunks_at(batch * 50, 50, {1, 7}));
+    CHECK(cache->find(world, keys_of(0, 10)).size() == 10);  // these are used all the time
+    CHECK(cache->bytes() <= kMiB / 2);
+  }
+  CHECK(cache->counters().evicted > 100);
+  CHECK(cache->find(world, keys_of(950, 50)).size() == 50);  // the newest are here
+  CHECK(cache->find(world, keys_of(50, 50)).empty());        // the oldest are not
+  CHECK(std::filesystem::file_size(folder / "cache.sqlite") <= kMiB);
+}
+
+TEST_CASE("flipped bits never give a wrong chunk", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(1, 1000, 1000);
+  opened(folder.path())->keep(world, chunks_at(0, 200, {1, 7}));
+  std::ifstream in(folder / "cache.sqlite", std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  REQUIRE(whole.size() > 50'000);
+  SplitMix64 rng{Catch::rngSeed()};
+  std::size_t lost = 0, set_aside = 0, corrupt = 0;
+  for (int round = 0; round < 60; ++round) {
+    CAPTURE(Catch::rngSeed(), round);
+    std::string damaged = whole;
+    for (int flips = 1 + round % 20; flips > 0; --flips) {
+      damaged[rng.below(static_cast<std::uint32_t>(damaged.size()))] ^= static_cast<char>(1 << rng.below(8));
+    }
+    const TempFolder other;
+    std::ofstream(other / "cache.sqlite", std::ios::binary) << damaged;
+    const auto cache = opened(other.path());
+    const auto found = cache->find(world, keys_of(0, 200));
+    require_true(found);
+    lost += 200 - found.size();
+    corrupt += cache->counters().corrupt;
+    set_aside += cache->counters().databases_set_aside;
+    // It goes on, whatever happened.
+    cache->keep(world, chunks_at(500, 5, {1, 9}));
+    require_true(cache->find(world, keys_of(0, 200)));
+  }
+  CHECK(lost > 0);
+  CHECK(corrupt > 0);
+  CHECK(set_aside > 0);
+}
+
+TEST_CASE("a damaged database is set aside with a warning, and a new one begun", "[cache]") {
+  const TempFolder folder;
+  std::ofstream(folder / "cache.sqlite") << std::string(10'000, 'x');
+  const auto cache = opened(folder.path());
+  CHECK(cache->take_warning().find("set aside") != std::string::npos);
+  CHECK(cache->counters().databases_set_aside == 1);
+  CHECK(std::filesystem::exists(folder / "cache.sqlite.damaged"));
+  const CachedWorld world = world_at(1, 1, 1);
+  cache->keep(world, chunks_at(0, 3, {1, 1}));
+  CHECK(cache->find(world, keys_of(0, 3)).size() == 3);
+}
+
+TEST_CASE("one process at a time has the cache", "[cache]") {
+  const TempFolder folder;
+  auto first = opened(folder.path());
+  const auto second = ChunkCache::open(folder.path(), kMiB);
+  REQUIRE_FALSE(second.has_value());
+  CHECK(second.error().find("in use by another client") != std::string::npos);
+  first.reset();
+  CHECK(ChunkCache::open(folder.path(), kMiB).has_value());
+  CHECK_FALSE(ChunkCache::open("/proc/no/such/folder", kMiB).has_value());
+}
+
+TEST_CASE("a client killed while it writes leaves no wrong chunk", "[cache]") {
+  const TempFolder folder;
+  const CachedWorld world = world_at(1, 1'000'000, 1'000'000);
+  SplitMix64 rng{Catch::rngSeed()};
+  std::size_t found_ever = 0;
+  for (int round = 0; round < 8; ++round) {
+    CAPTURE(Catch::rngSeed(), round);
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      auto cache = ChunkCache::open(folder.path(), 2 * kMiB);
+      if (!cache) ::_exit(1);
+      for (Sequence seq = 1;; ++seq) {
+        (*cache)->keep(world, chunks_at(static_cast<std::int32_t>(seq % 20) * 20, 20, {1, seq}));
+      }
+    }
+    ::usleep(20'000 + rng.below(80'000));
+    REQUIRE(::kill(child, SIGKILL) == 0);
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFSIGNALED(status));
+    const auto cache = opened(folder.path(), 2 * kMiB);
+    const auto found = cache->find(world, keys_of(0, 400));
+    require_true(found);
+    CHECK(cache->counters().corrupt == 0);
+    CHECK(cache->counters().databases_set_aside == 0);
+    found_ever += found.size();
+  }
+  CHECK(found_ever > 0);
+}
+
+}  // namespace runstone::test
