@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include "tests/bench/net/crowd_case.hpp"
 #include "tests/bench/net/join_case.hpp"
@@ -22,6 +23,14 @@ constexpr std::array<Experiment, 4> kExperiments = {{{"latency", measure_latency
                                                      {"transfer", measure_transfers},
                                                      {"crowd", measure_crowds}}};
 
+/// How TCP of this machine, and of namespaces made on it, answers loss and delay.
+std::string congestion_control() {
+  std::ifstream in("/proc/sys/net/ipv4/tcp_congestion_control");
+  std::string out = "unknown";
+  in >> out;
+  return out;
+}
+
 }  // namespace
 
 Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ostream& progress) {
@@ -36,6 +45,7 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
              "nobody "
              "down";
   if (!real && !why.empty()) out.link += " (" + why + ")";
+  out.link += "; congestion control " + congestion_control();
   take_interrupts();
   Lab lab(options, real ? LinkKind::namespaces : LinkKind::shaper, progress);
   for (const Experiment& experiment : kExperiments) {
