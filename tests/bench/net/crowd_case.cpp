@@ -47,14 +47,6 @@ double counter_in(const std::string& log, std::string_view name) {
   return out;
 }
 
-bool says(const std::string& log, std::string_view what) {
-  std::ifstream in(log);
-  for (std::string line; std::getline(in, line);) {
-    if (line.find(what) != std::string::npos) return true;
-  }
-  return false;
-}
-
 double number_at(const json& object, const char* name) {
   const auto found = object.find(name);
   return found == object.end() ? 0 : number_in(*found);
@@ -99,7 +91,7 @@ Result<CrowdResult, std::string> run_crowd(Lab& lab, unsigned clients) {
   constexpr double kLook = 0.05;
   bool joined = false;
   for (; out.joined_s < kPatience && !joined && !(*bots)->wait(kLook); out.joined_s += kLook) {
-    joined = says((*bots)->log(), "see the world");
+    joined = output_has((*bots)->log(), "see the world");
     if (interrupted()) return Unexpected<std::string>{"interrupted"};
   }
   if (!joined) return Unexpected<std::string>{(*bots)->explain("did not join")};

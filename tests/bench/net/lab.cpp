@@ -111,6 +111,14 @@ double number_in(const nlohmann::json& value) {
   return value == "inf" ? std::numeric_limits<double>::infinity() : 0;
 }
 
+bool output_has(const std::string& log, std::string_view what) {
+  std::ifstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    if (line.find(what) != std::string::npos) return true;
+  }
+  return false;
+}
+
 void write_text(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
 
 }  // namespace runstone::bench

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/result.hpp"
@@ -70,6 +71,9 @@ class Lab {
 Result<nlohmann::json, std::string> read_report(const std::string& file);
 /// A number in it, or infinite for "inf"; 0 where there is null or nothing.
 double number_in(const nlohmann::json& value);
+
+/// Whether a line of a program's log holds `what`.
+bool output_has(const std::string& log, std::string_view what);
 
 void write_text(const std::string& file, const std::string& text);
 

@@ -27,6 +27,12 @@ constexpr unsigned kBots = 18;                         // with the two clients t
 constexpr double kBotEditsPerSecond = 2;
 constexpr double kWaitSeconds = 180;  // for worlds to load and edits to arrive
 
+/// A client whose own edits are through gives the server this command; the answer is in its output. Then the bots leave,
+/// while it still watches: an edit that is on its way when a client ends would count as never seen.
+constexpr const char* kDoneCommand = "help";
+constexpr const char* kDoneAnswer = "undo";
+constexpr int kBotsLeaveSeconds = 10;
+
 struct Load {
   const char* name;
   bool streams;
@@ -109,9 +115,9 @@ std::string script_of(const Lab& lab, const Load& load, unsigned client) {
   // The move ends the roaming: who flies on and on never has all of the view.
   return fmt::format(
       "wait loaded {0}\nmove 0 ^+4 -20\nwait loaded {0}\nwait 5\n{1}burst {2} {3} 8 {4} wool_red\n"
-      "move ~ ~ ~\nwait synced\nwait durable\nwait 2\nwait synced\n",
+      "move ~ ~ ~\nwait synced\nwait durable\ncommand {5}\nwait {6}\nwait synced\n",
       kWaitSeconds, load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "", edits,
-      kEditsPerSecond, lab.options().seed * 2 + client);
+      kEditsPerSecond, lab.options().seed * 2 + client, kDoneCommand, load.bots == 0 ? 2 : kBotsLeaveSeconds);
 }
 
 Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& profile, const Load& load) {
@@ -147,6 +153,15 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
     if (!client) return failed(client);
     clients.push_back({*std::move(client), report});
   }
+  if (bots) {
+    wait_until(lab.options().edits / kEditsPerSecond + 3 * kWaitSeconds, [&] {
+      return std::all_of(clients.begin(), clients.end(), [](const Running& client) {
+        return output_has(client.program->log(), kDoneAnswer) || client.program->wait(0);
+      });
+    });
+    bots->terminate();
+    if (const auto ended = lab.finish(*bots, kWaitSeconds); !ended) return failed(ended);
+  }
   CaseResult out;
   out.profile = profile;
   out.link = (*link)->kind();
@@ -163,10 +178,6 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
   if (!echoes.empty()) {
     out.echo = {quantile(echoes, 0.5), quantile(echoes, 0.9), quantile(echoes, 0.99),
                 *std::max_element(echoes.begin(), echoes.end())};
-  }
-  if (bots) {
-    bots->terminate();
-    if (const auto ended = lab.finish(*bots, kWaitSeconds); !ended) return failed(ended);
   }
   if (const auto ended = lab.stop_server(*server); !ended) return failed(ended);
   out.passed = (*link)->stop();
