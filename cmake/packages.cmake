@@ -32,4 +32,5 @@ target_link_libraries(runstone_asio INTERFACE Threads::Threads)
 if(RUNSTONE_TESTS)
   find_package(Catch2 2.13 REQUIRED CONFIG)
   find_package(benchmark 1.7 REQUIRED CONFIG)
+  find_package(ZLIB REQUIRED)  # a foreign format that is measured
 endif()

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/bench/contestant.hpp"
+#include "tests/bench/lit_chunk.hpp"
 #include "tests/bench/measured_worlds.hpp"
 
 namespace runstone::bench {
@@ -23,15 +24,20 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   BenchOptions options;
   options.luanti = options.net.luanti = kSmallLuanti;
   bool quick = false;
-  CLI::App app("Measures meshing and edits, on one core, and prints tables of Markdown.", "runstone-bench");
+  CLI::App app(
+      "Measures meshing, edits, the log and chunk bytes, on one core, and prints tables of Markdown.",
+      "runstone-bench");
   app.require_subcommand(1);
-  const auto common = [&](CLI::App* command, const std::set<std::string>& worlds) {
+  const auto worlds_of = [&](CLI::App* command, const std::set<std::string>& worlds) {
     command->add_option("--worlds", options.worlds, "worlds to measure; all by default")
         ->delimiter(',')
         ->check(CLI::IsMember(worlds));
     command->add_option("--luanti", options.luanti, "folder of a Luanti world")
         ->capture_default_str()
         ->check(CLI::ExistingDirectory);
+  };
+  const auto common = [&](CLI::App* command, const std::set<std::string>& worlds) {
+    worlds_of(command, worlds);
     command->add_option("--edges", options.edges, "sides of the volumes, in voxels")
         ->delimiter(',')
         ->check(CLI::Range(8, 128));
@@ -81,6 +87,15 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->check(CLI::Range(1, 1000));
   log->add_option("--json", options.json, "write all figures to this file");
 
+  CLI::App* bytes = app.add_subcommand("bytes", "forms to send a chunk in: bytes, and time both ways");
+  unsigned bytes_repetitions = 9;
+  const auto byte_worlds = byte_world_names();
+  worlds_of(bytes, {byte_worlds.begin(), byte_worlds.end()});
+  files(bytes);
+  bytes->add_option("--min-runs", bytes_repetitions, "times that each chunk is coded in each form")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+
   CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
   common(mesh_once, measured_world_names());
   unsigned times = 1;
@@ -104,6 +119,10 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   if (net->parsed()) {
     options.command = BenchOptions::Command::net;
     finish_net_options(*net, options.net);
+  }
+  if (bytes->parsed()) {
+    options.command = BenchOptions::Command::bytes;
+    options.repetitions = bytes_repetitions;
   }
   if (mesh_once->parsed()) {
     options.command = BenchOptions::Command::mesh_once;

@@ -11,7 +11,7 @@
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> meshers;  // contestants; empty: all

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "tests/bench/bench_options.hpp"
+#include "tests/bench/bytes_bench.hpp"
 #include "tests/bench/chunk_edge.hpp"
 #include "tests/bench/edit_bench.hpp"
 #include "tests/bench/log_bench.hpp"
@@ -95,6 +96,19 @@ int net(const NetOptions& options, std::ostream& out, std::ostream& err) {
   return csv && json ? 0 : 1;
 }
 
+int bytes(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto result = run_bytes_bench(options, err);
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  write_machine(result->machine, out);
+  write_table(*result, out);
+  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
+  return csv && json ? 0 : 1;
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -113,6 +127,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return mesh_once(*parsed.options, out, err);
     case BenchOptions::Command::chunk_edge:
       return chunk_edge(*parsed.options, out, err);
+    case BenchOptions::Command::bytes:
+      return bytes(*parsed.options, out, err);
     case BenchOptions::Command::log:
       return log(*parsed.options, out, err);
     case BenchOptions::Command::edits:

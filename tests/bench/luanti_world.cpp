@@ -47,7 +47,7 @@ void write_chunk(const ChunkCoord& at, const RunChunk& chunk, DenseBox& into) {
 
 }  // namespace
 
-Result<VoxelWorld, std::string> luanti_world(const std::string& folder) {
+Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKept plants) {
   std::map<ChunkCoord, RunChunk> chunks;
   const LuantiImportSink sink{[](const MaterialTable&) {},
                               [&](const ChunkKey& key, RunChunk&& chunk) {
@@ -55,7 +55,7 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder) {
                                 return true;
                               },
                               {}};
-  const auto report = import_luanti(folder, {.edge = kEdge}, sink);
+  const auto report = import_luanti(folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes}, sink);
   if (!report) return Unexpected<std::string>{report.error().message()};
   DenseBox dense{report->bounds, {}};
   const VoxelBox& box = dense.box;

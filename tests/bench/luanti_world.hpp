@@ -8,8 +8,11 @@
 
 namespace runstone::bench {
 
+/// Whether plants, torches and the like are voxels, or empty as in an import by default.
+enum class PlantsKept : bool { no, yes };
+
 /// Reads `folder`/map.sqlite. The world is called "luanti". Fails with the importer's message, or if it is
 /// empty or too large.
-Result<VoxelWorld, std::string> luanti_world(const std::string& folder);
+Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKept plants = PlantsKept::no);
 
 }  // namespace runstone::bench

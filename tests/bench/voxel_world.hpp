@@ -23,7 +23,7 @@ struct VoxelWorld {
   /// What is known of it: voxels outside count as empty, and a chunk without any inside is missing. None:
   /// everything is.
   std::optional<VoxelBox> bounds;
-  /// Writes the voxels (at.x, at.y + i, at.z). Requires them inside the bounds.
+  /// Writes the voxels (at.x, at.y + i, at.z). Requires them inside the bounds, and at most kSideMax.
   std::function<void(VoxelPos at, std::span<Material> out)> column;
 };
 

@@ -11,6 +11,7 @@
 
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/contestant.hpp"
+#include "tests/bench/transfer_form.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
@@ -245,4 +246,38 @@ TEST_CASE("runstone-bench log opens moments with keyframes and without, and prev
   CHECK(document.at("preview").at("edits") > 1'000);
   CHECK(document.at("preview").at("chunks") > 1);
   CHECK(document.at("preview").at("voxels") > 100);
+}
+
+TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "bytes.csv", json = folder / "bytes.json";
+  const Output output = run({"bytes", "--min-runs", "1", "--worlds", "luanti,hills,scenarios,uniform",
+                             "--csv", csv, "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  std::map<std::string, std::map<std::string, double>> bytes;  // by world and set, then form
+  for (const CsvRow& row : read_csv(csv)) {
+    CAPTURE(row.at("world"), row.at("set"), row.at("form"));
+    bytes[row.at("world") + " " + row.at("set")][row.at("form")] = std::stod(row.at("bytes"));
+    CHECK(std::stod(row.at("encode_us")) > 0);
+    CHECK(std::stod(row.at("decode_us")) > 0);
+    const std::string chunks = row.at("world") == "scenarios" ? "37"
+                               : row.at("world") == "luanti"  ? "48"
+                                                              : "64";
+    if (row.at("set") == "all") CHECK(row.at("chunks") == chunks);
+  }
+  CHECK(bytes.size() == 7);  // no chunk of the uniform world is mixed
+  for (const auto& [cell, forms] : bytes) {
+    CAPTURE(cell);
+    CHECK(forms.size() == transfer_form_names().size());
+    CHECK(forms.at("dense") == 65536);
+    CHECK(forms.at("luanti") < forms.at("luanti_light") + 0.5);
+  }
+  CHECK(bytes["luanti all"]["luanti_light"] > 1.05 * bytes["luanti all"]["luanti"]);  // the game's own light
+  CHECK(bytes["uniform all"]["raw"] == 16);
+  const auto bars = nlohmann::json::parse(text_of(json)).at("bars");
+  for (const auto& bar : bars) {
+    const bool terrain = bar.at("case").get<std::string>().find("noise terrain") != std::string::npos;
+    CHECK((bar.at("verdict") == "not measured") == terrain);
+  }
 }
