@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "client/app/host_port.hpp"
+#include "protocol/codec/chunk_codec.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -51,7 +52,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   app.add_option("--report", out.report, "write latencies and counts as JSON at the end");
   app.add_option("--digests", out.digests, "write the digests of all chunks held as JSON at the end");
   app.add_option("--encoding", encoding, "chunk encodings to offer")
-      ->check(CLI::IsMember({"raw", "packed", "auto"}));
+      ->check(CLI::IsMember({"raw", "packed", "coded", "auto"}));
   app.add_option("--screenshot-dir", out.screenshot_dir, "where screenshots go")
       ->check(CLI::ExistingDirectory);
   app.add_flag("--exit-on-goodbye", out.exit_on_goodbye, "end when the server says goodbye");
@@ -91,7 +92,10 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   out.render = !no_render;
   const bool is_watched = out.render && !out.headless;
   out.cache = !no_cache && (is_watched || app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0);
-  out.encodings = encoding == "raw" ? 1 : encoding == "packed" ? 2 : 3;
+  out.encodings = encoding == "raw"      ? 1
+                  : encoding == "packed" ? 2
+                  : encoding == "coded"  ? 4
+                                         : kEncodingsKnown;
   if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
   return {out, 0};
 }

@@ -19,7 +19,7 @@ struct ClientOptions {
   std::string script;              // file; empty: none
   std::string report;              // file; empty: none
   std::string digests;             // file written at the end; empty: none
-  std::uint8_t encodings = 3;      // as in Hello
+  std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
   bool exit_on_goodbye = false;
   double reconnect_seconds = 30;  // without a session for this long: give up

@@ -157,7 +157,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   out["join"] = Json{{"near", part_json(report.join.near)}, {"view", part_json(report.join.view)}};
   const ChunkStats& chunks = report.chunks;
   const char* encoding = "none";
-  if (session.welcome()) encoding = session.welcome()->encoding == ChunkEncoding::raw ? "raw" : "packed";
+  if (session.welcome()) encoding = name_of(session.welcome()->encoding);
   out["snapshots"] = Json{{"encoding", encoding},
                           {"count", chunks.snapshots},
                           {"wire_bytes", chunks.wire_bytes},

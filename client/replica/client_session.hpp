@@ -40,8 +40,8 @@ inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered 
 struct SessionConfig {
   KeyPair keys;
   std::string name = "builder";
-  ClientInstance instance = 1;  // random per process
-  std::uint8_t encodings = 3;   // as in Hello
+  ClientInstance instance = 1;               // random per process
+  std::uint8_t encodings = kEncodingsKnown;  // as in Hello
   std::uint64_t features = kFeaturesKnown;
   View view;                            // wished; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "protocol/codec/coded_body.hpp"
 #include "protocol/codec/packed_body.hpp"
 #include "protocol/limits.hpp"
 
@@ -48,23 +49,35 @@ void encode_raw(const RunChunk& chunk, Bytes& out) {
   chunk.runs.visit([&out](const auto& runs) { write_runs(out, runs); });
 }
 
+void write_palette(ByteWriter& w, std::span<const Material> palette) {
+  w.varint(palette.size());
+  std::uint32_t lowest = 0;  // smallest id that may follow
+  for (const Material id : palette) {
+    w.varint(id - lowest);
+    lowest = id + 1u;
+  }
+}
+
 void encode_packed(const RunChunk& chunk, Bytes& out) {
   const PackedBody packed = pack(chunk.runs);
   const ByteView body = packed.compressed.empty() ? packed.body : packed.compressed;
   ByteWriter w(out);
   write_head(w, chunk, ChunkEncoding::packed, packed.compressed.empty() ? 0 : kZstdFlag);
   w.varint(chunk.runs.size());
-  w.varint(packed.palette.size());
-  std::uint32_t lowest = 0;  // smallest id that may follow
-  for (const Material id : packed.palette) {
-    w.varint(id - lowest);
-    lowest = id + 1u;
-  }
+  write_palette(w, packed.palette);
   w.varint(packed.body.size());
   w.bytes(body);
 }
 
-// What both encodings say about a chunk before its runs.
+void encode_coded(const RunChunk& chunk, Bytes& out) {
+  const CodedBody coded = code_runs(chunk.runs, ordered(chunk.extent, chunk.order));
+  ByteWriter w(out);
+  write_head(w, chunk, ChunkEncoding::coded, 0);
+  write_palette(w, coded.palette);
+  w.bytes(coded.bytes);
+}
+
+// What all encodings say about a chunk before its runs.
 struct Head {
   Extent extent;
   AxisOrder order{};
@@ -78,7 +91,7 @@ Head read_head(ByteReader& r, ChunkEncoding encoding, const Extent* expected) {
   if (encoding == ChunkEncoding::packed) {
     head.zstd = (order & kZstdFlag) != 0;
     order &= static_cast<std::uint8_t>(~kZstdFlag);
-  } else if (r.u8() != 0) {
+  } else if (encoding == ChunkEncoding::raw && r.u8() != 0) {
     r.reject(ErrorCode::not_canonical, "reserved byte of a chunk is not zero");
   }
   if (order >= kAxisOrderCount) r.reject(ErrorCode::bad_value, "unknown axis order");
@@ -117,13 +130,10 @@ Result<RunChunk> decode_raw(ByteReader& r, const Extent* expected) {
   return validated({head.extent, head.order, RunList::of_wide(std::move(ends), std::move(materials))});
 }
 
-Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
-  const Head head = read_head(r, ChunkEncoding::packed, expected);
-  const std::uint32_t volume = head.extent.volume();
-  PackedShape shape;
-  shape.runs = static_cast<std::size_t>(r.varint_max(volume, "more runs than voxels"));
+/// At most `colours_max` ids, all there before memory is taken for them. Look at r.ok() before use.
+std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   const auto colours = r.varint_max(kMaterialCountMax, "palette exceeds 65536 materials");
-  if (colours > shape.runs) r.reject(ErrorCode::bad_value, "palette larger than the run count");
+  if (colours > colours_max) r.reject(ErrorCode::bad_value, "palette larger than the run count");
   if (r.ok() && colours == 0) r.reject(ErrorCode::broken_invariant, "chunk has no runs");
   if (colours > r.left()) r.reject(ErrorCode::truncated, "input ends inside the palette");
   std::vector<Material> palette;
@@ -135,6 +145,15 @@ Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
     palette.push_back(static_cast<Material>(lowest + step));
     lowest += step + 1;
   }
+  return palette;
+}
+
+Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
+  const Head head = read_head(r, ChunkEncoding::packed, expected);
+  const std::uint32_t volume = head.extent.volume();
+  PackedShape shape;
+  shape.runs = static_cast<std::size_t>(r.varint_max(volume, "more runs than voxels"));
+  const std::vector<Material> palette = read_palette(r, shape.runs);
   shape.body_bytes =
       static_cast<std::size_t>(r.varint_max(6ULL * kVolumeMax, "body larger than any chunk's"));
   if (r.ok() && !shape.plausible(palette.size()))
@@ -150,12 +169,27 @@ Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   return validated({head.extent, head.order, *std::move(runs)});
 }
 
+Result<RunChunk> decode_coded(ByteReader& r, const Extent* expected) {
+  const Head head = read_head(r, ChunkEncoding::coded, expected);
+  const std::vector<Material> palette = read_palette(r, head.extent.volume());
+  if (r.ok() && palette.size() == 1) {
+    if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+    return uniform_chunk(head.extent, palette[0], head.order);
+  }
+  if (!r.ok()) return Unexpected<Error>{r.error()};
+  const std::size_t body_at = r.offset();
+  auto runs = decode_runs(r.bytes(r.left()), palette, ordered(head.extent, head.order));
+  if (!runs) return fail(runs.error().code, runs.error().what, body_at);
+  return validated({head.extent, head.order, *std::move(runs)});
+}
+
 Result<RunChunk> decode(ByteView in, const Extent* expected) {
   ByteReader r(in);
   const std::uint8_t encoding = r.u8();
   if (!r.ok()) return Unexpected<Error>{r.error()};
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::raw)) return decode_raw(r, expected);
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::packed)) return decode_packed(r, expected);
+  if (encoding == static_cast<std::uint8_t>(ChunkEncoding::coded)) return decode_coded(r, expected);
   return fail(ErrorCode::unknown_kind, "unknown chunk encoding");
 }
 
@@ -164,6 +198,7 @@ Result<RunChunk> decode(ByteView in, const Extent* expected) {
 void encode_chunk(const RunChunk& chunk, ChunkEncoding encoding, Bytes& out) {
   RUNSTONE_ASSERT(validate(chunk).has_value());
   if (encoding == ChunkEncoding::raw) return encode_raw(chunk, out);
+  if (encoding == ChunkEncoding::coded) return encode_coded(chunk, out);
   RUNSTONE_ASSERT(encoding == ChunkEncoding::packed);
   encode_packed(chunk, out);
 }

@@ -70,7 +70,7 @@ struct BodyReader {
     if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name))
       return bad("hello.name is not 1 .. 32 bytes of text");
     // Unknown bits are encodings of the future, and no harm.
-    if ((m.encodings & 3) == 0) return bad("hello.encodings names none that is known");
+    if ((m.encodings & kEncodingsKnown) == 0) return bad("hello.encodings names none that is known");
     return m;
   }
 
@@ -98,7 +98,7 @@ struct BodyReader {
         m.chunk_edge == 16 || m.chunk_edge == 32 || m.chunk_edge == 64 || m.chunk_edge == 128;
     if (!edge_known) return bad("welcome.chunk_edge is not 16, 32, 64 or 128");
     if (!validate(m.heights)) return bad("welcome.y_min .. y_max");
-    if (t.encoding() < 1 || t.encoding() > 2) return bad("welcome.encoding is unknown");
+    if (!encoding_known(t.encoding())) return bad("welcome.encoding is unknown");
     if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
     if (const auto ok = take_materials(t.materials(), m.materials); !ok) return Unexpected<Error>{ok.error()};
     return m;

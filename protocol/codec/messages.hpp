@@ -46,8 +46,8 @@ struct Hello {
   ClientInstance instance = 0;
   Nonce nonce{};
   std::string name;
-  std::uint8_t encodings = 3;  // bit per ChunkEncoding: 1 << (encoding - 1)
-  std::uint64_t features = 0;  // as sent: may have bits that this build does not know
+  std::uint8_t encodings = kEncodingsKnown;  // bit per ChunkEncoding: 1 << (encoding - 1)
+  std::uint64_t features = 0;                // as sent: may have bits that this build does not know
   friend bool operator==(const Hello&, const Hello&) = default;
 };
 struct Welcome {

@@ -3,13 +3,12 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstring>
 #include <memory>
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "protocol/codec/run_palette.hpp"
 
 namespace runstone {
 namespace {
@@ -24,9 +23,7 @@ struct FreeContext {
 };
 
 struct Scratch {
-  std::array<std::uint64_t, 1024> present{};  // one bit per material id; all zero between calls
-  std::vector<std::uint16_t> index_of;        // by material id; meaningful for the palette of the call
-  std::vector<Material> palette;
+  RunPalette palette;
   std::vector<std::uint8_t> used;  // by palette index
   Bytes body, compressed;
   std::unique_ptr<ZSTD_CCtx, FreeContext> compressor;
@@ -43,32 +40,12 @@ void keep_small(Bytes& bytes) {
 }
 
 template <class Runs>
-void find_palette(const Runs& runs, Scratch& s) {
-  Material highest = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Material id = runs.material(i);
-    s.present[id / 64u] |= 1ULL << (id % 64u);
-    highest = std::max(highest, id);
-  }
-  s.palette.clear();
-  s.index_of.resize(std::max<std::size_t>(s.index_of.size(), highest + 1u));
-  for (std::size_t word = 0; word <= highest / 64u; ++word) {
-    for (std::uint64_t bits = s.present[word]; bits != 0; bits &= bits - 1) {
-      const auto id = static_cast<Material>(word * 64 + static_cast<unsigned>(std::countr_zero(bits)));
-      s.index_of[id] = static_cast<std::uint16_t>(s.palette.size());
-      s.palette.push_back(id);
-    }
-    s.present[word] = 0;
-  }
-}
-
-template <class Runs>
 void write_planes(const Runs& runs, Scratch& s) {
   const std::size_t count = runs.size();
-  const bool wide = s.palette.size() > 256;
+  const bool wide = s.palette.ids().size() > 256;
   s.body.resize(count * (wide ? 2 : 1));
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t index = s.index_of[runs.material(i)];
+    const std::uint16_t index = s.palette.index_of(runs.material(i));
     if (wide) {
       std::memcpy(s.body.data() + 2 * i, &index, 2);
     } else {
@@ -167,11 +144,11 @@ PackedBody pack(const RunList& runs) {
   keep_small(s.body);
   keep_small(s.compressed);
   runs.visit([&s](const auto& list) {
-    find_palette(list, s);
+    s.palette.find(list);
     write_planes(list, s);
   });
   const ByteView compressed = compress(s);
-  return {s.palette, s.body, compressed};
+  return {s.palette.ids(), s.body, compressed};
 }
 
 Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette,

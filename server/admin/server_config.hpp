@@ -28,7 +28,7 @@ struct ServerConfig {
   std::uint64_t handshakes_per_address = 32;   // connections not yet authenticated, 1..65536
   std::uint64_t view_radius_max = 16;          // chunks, 0..64
   std::uint64_t view_interval_ms = 50;         // between two views of a session that take effect, 0..10000
-  std::string encoding = "packed";             // packed or raw, where the client reads both
+  std::string encoding = "packed";             // packed, raw or coded, where the client reads it
   std::uint64_t idle_s = 60;                   // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;  // per session, 0: no limit
   std::uint64_t control_queue_kib = 16'384;    // per session, KiB, 64..1048576

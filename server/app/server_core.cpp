@@ -89,7 +89,9 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
   world.edits_per_second = config.edits_per_second;
   world.edit_burst = config.edit_burst;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * 1'000'000;
-  world.preferred_encoding = config.encoding == "raw" ? ChunkEncoding::raw : ChunkEncoding::packed;
+  world.preferred_encoding = config.encoding == "raw"     ? ChunkEncoding::raw
+                             : config.encoding == "coded" ? ChunkEncoding::coded
+                                                          : ChunkEncoding::packed;
   world.audit_interval_us = static_cast<TimeUs>(config.audit_ms) * 1'000;
   world.audit_chunks = config.audit_chunks;
   world.resident_bytes_max = config.memory_mib << 20;

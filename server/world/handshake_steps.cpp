@@ -11,7 +11,10 @@ namespace {
 ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
   const auto offers = [&](ChunkEncoding e) { return (offered >> (static_cast<unsigned>(e) - 1) & 1U) != 0; };
   if (offers(config.preferred_encoding)) return config.preferred_encoding;
-  return offers(ChunkEncoding::raw) ? ChunkEncoding::raw : ChunkEncoding::packed;
+  for (const ChunkEncoding e : {ChunkEncoding::packed, ChunkEncoding::raw}) {
+    if (offers(e)) return e;
+  }
+  return ChunkEncoding::coded;
 }
 
 Welcome welcome_of(const WorldState& world) {

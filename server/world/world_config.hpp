@@ -37,7 +37,7 @@ struct WorldConfig {
   std::size_t view_chunks_per_tick = 65'536;  // that views bring in, all sessions together, at least 1
   TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
-  ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers both
+  ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers it
   // Rhythm.
   TimeUs pose_interval_us = 100'000;       // at least; longer in a crowd (people.hpp)
   TimeUs durable_interval_us = 1'000'000;  // of the watermark, to sessions without edits of their own

@@ -22,8 +22,8 @@ constexpr int kZstdLevel = 3;
 // Luanti's id of air; the others follow it, so that every material has one.
 constexpr std::uint16_t kLuantiAir = 126;
 
-constexpr std::array<std::string_view, 7> kNames = {"dense",     "dense_zstd", "luanti_light", "luanti",
-                                                    "minecraft", "raw",        "packed"};
+constexpr std::array<std::string_view, 8> kNames = {"dense",     "dense_zstd", "luanti_light", "luanti",
+                                                    "minecraft", "raw",        "packed",       "coded"};
 
 void check(bool good) {
   if (!good) std::abort();  // a form that cannot read its own bytes measures nothing
@@ -209,6 +209,7 @@ std::vector<TransferForm> make_transfer_forms(const LitChunk& chunk) {
   out.push_back(minecraft_form(chunk));
   out.push_back(our_form("raw", chunk, ChunkEncoding::raw));
   out.push_back(our_form("packed", chunk, ChunkEncoding::packed));
+  out.push_back(our_form("coded", chunk, ChunkEncoding::coded));
   return out;
 }
 

@@ -5,7 +5,7 @@
 //   luanti_light      eight of Luanti's blocks with the light of the chunk; param2 is 0 (luanti_form.hpp)
 //   luanti            the same with 0 for light
 //   minecraft         eight of Minecraft's sections in one zlib stream (palette_form.hpp)
-//   raw, packed       our chunk bytes
+//   raw, packed, coded our chunk bytes
 // All hold the same voxels. What frames and addresses a chunk is counted nowhere.
 #pragma once
 #include <functional>

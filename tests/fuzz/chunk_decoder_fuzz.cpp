@@ -1,5 +1,5 @@
-// Any bytes as chunk bytes: what decodes is valid and comes back from both encodings; raw bytes have one
-// spelling.
+// Any bytes as chunk bytes: what decodes is valid and comes back from all encodings; raw and coded bytes have
+// one spelling.
 #include <cstdint>
 
 #include "common/core/assert.hpp"
@@ -17,6 +17,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     RUNSTONE_ASSERT(raw == Bytes(in.begin(), in.end()));
   const auto from_raw = decode_chunk(raw, chunk->extent);
   RUNSTONE_ASSERT(from_raw && *from_raw == *chunk);
+  const Bytes coded = encode_chunk(*chunk, ChunkEncoding::coded);
+  if (in[0] == static_cast<std::uint8_t>(ChunkEncoding::coded))
+    RUNSTONE_ASSERT(coded == Bytes(in.begin(), in.end()));
+  const auto from_coded = decode_chunk(coded, chunk->extent);
+  RUNSTONE_ASSERT(from_coded && *from_coded == *chunk);
   const auto from_packed = decode_chunk(encode_chunk(*chunk, ChunkEncoding::packed), chunk->extent);
   RUNSTONE_ASSERT(from_packed && *from_packed == *chunk);
   return 0;

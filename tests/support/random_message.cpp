@@ -103,7 +103,7 @@ Hello any_hello(SplitMix64& rng) {
   m.instance = any64(rng);
   draw(rng, m.nonce);
   m.name = any_text(rng, 1, kPlayerNameBytesMax);
-  m.encodings = static_cast<std::uint8_t>(rng.below(64) * 4 + 1 + rng.below(3));
+  m.encodings = static_cast<std::uint8_t>(rng.below(32) * 8 + 1 + rng.below(7));
   m.features = any64(rng);
   return m;
 }
@@ -121,7 +121,7 @@ Welcome any_welcome(SplitMix64& rng) {
   draw(rng, m.server_key);
   draw(rng, m.challenge);
   draw(rng, m.signature);
-  m.encoding = rng.below(2) == 0 ? ChunkEncoding::raw : ChunkEncoding::packed;
+  m.encoding = static_cast<ChunkEncoding>(1 + rng.below(3));
   m.edit_volume_max = any64(rng);
   m.view_radius_max = static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1));
   m.features = any64(rng);

@@ -51,7 +51,7 @@ TEST_CASE("a packed snapshot carries what a raw one does", "[protocol][property]
     CAPTURE(Catch::rngSeed(), step);
     const Message message = random_message(rng, 6);
     const auto& snapshot = std::get<ChunkSnapshot>(message);
-    for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed}) {
+    for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       const auto decoded = decode(message, encode_snapshot(snapshot.key, snapshot.chunk, encoding));
       REQUIRE(decoded.has_value());
       REQUIRE(*decoded == message);

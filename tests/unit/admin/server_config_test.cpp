@@ -60,7 +60,7 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
   CHECK(error("sessions_max = 1.5").key == "sessions_max");
   CHECK(error("world = 3").key == "world");
   CHECK(error("world = \"\"").key == "world");
-  CHECK(error("encoding = \"zip\"").what.find("packed or raw") != std::string::npos);
+  CHECK(error("encoding = \"zip\"").what.find("packed, raw or coded") != std::string::npos);
 }
 
 TEST_CASE("the environment sets fields and its errors name the variable", "[admin]") {

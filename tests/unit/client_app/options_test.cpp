@@ -71,6 +71,8 @@ TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
   CHECK(options.view_radius == 9);
   CHECK(options.view_radius_v == 5);
   CHECK(options.encodings == 2);
+  CHECK(accepted({"--connect", "a:1", "--encoding", "coded"}).encodings == 4);
+  CHECK(accepted({"--connect", "a:1"}).encodings == 7);
   CHECK(options.headless);
   CHECK(options.render);
   CHECK(options.workers >= 1);

@@ -29,7 +29,7 @@ Bytes concat(Bytes a, const Bytes& b) {
 TEST_CASE("chunk bytes with a bad head are refused", "[protocol]") {
   CHECK(error_of("") == ErrorCode::truncated);
   CHECK(error_of("00 01 00 00 08080800 01000000 00020000") == ErrorCode::unknown_kind);
-  CHECK(error_of("03 01 00 00 08080800 01000000 00020000") == ErrorCode::unknown_kind);
+  CHECK(error_of("04 01 00 00 08080800 01000000 00020000") == ErrorCode::unknown_kind);
   REQUIRE_FALSE(error_of("01 01 00 00 08080800 01000000 00020000"));
   CHECK(error_of("01 02 00 00 08080800 01000000 00020000") == ErrorCode::bad_version);
   CHECK(error_of("01 00 00 00 08080800 01000000 00020000") == ErrorCode::bad_version);
@@ -184,9 +184,9 @@ TEST_CASE("palettes of more than 256 materials take two bytes an index", "[proto
   }
 }
 
-TEST_CASE("a chunk of another extent than expected is refused in either encoding", "[protocol]") {
+TEST_CASE("a chunk of another extent than expected is refused in every encoding", "[protocol]") {
   const RunChunk chunk = uniform_chunk(Extent::cube(32), 3);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed}) {
+  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     const Bytes bytes = encode_chunk(chunk, encoding);
     CHECK(decode_chunk(bytes, Extent::cube(32)).has_value());
     CHECK_FALSE(decode_chunk(bytes, Extent::cube(16)).has_value());
@@ -194,11 +194,11 @@ TEST_CASE("a chunk of another extent than expected is refused in either encoding
   }
 }
 
-TEST_CASE("the largest chunk goes both ways and fits its limit", "[protocol]") {
+TEST_CASE("the largest chunk goes all ways and fits its limit", "[protocol]") {
   SplitMix64 rng{9};
   const RunChunk chunk = random_chunk(rng, Extent::cube(128), AxisOrder::xyz, 65'536, Shape::noise);
   REQUIRE(chunk.runs.size() > 2'000'000);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed}) {
+  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     const Bytes bytes = encode_chunk(chunk, encoding);
     CHECK(bytes.size() <= kChunkBytesMax);
     const auto decoded = decode_chunk(bytes);

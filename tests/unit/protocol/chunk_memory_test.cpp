@@ -74,7 +74,7 @@ TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack
 TEST_CASE("in a steady state the codec allocates the chunk and nothing else", "[protocol]") {
   SplitMix64 rng{3};
   const RunChunk chunk = random_chunk(rng, Extent::cube(32), AxisOrder::xyz, 40, Shape::boxes);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed}) {
+  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     Bytes out;
     encode_chunk(chunk, encoding, out);
     static_cast<void>(decode_chunk(out));

@@ -147,7 +147,7 @@ TEST_CASE("hello is refused with a field of the wrong size or range", "[protocol
                         [](auto& h) { h.nonce = 0; }, [](auto& h) { h.name = ""; },
                         [](auto& h) { h.name = std::string(33, 'a'); }, [](auto& h) { h.name = "a\nb"; },
                         [](auto& h) { h.name = "\xc3"; }, [](auto& h) { h.name = "\x1b[2J"; },
-                        [](auto& h) { h.encodings = 0; }, [](auto& h) { h.encodings = 4; }});
+                        [](auto& h) { h.encodings = 0; }, [](auto& h) { h.encodings = 8; }});
   HelloFields future;
   future.encodings = 1 + 128;  // an encoding that does not exist yet
   future.features = ~0ULL;     // nor do these
@@ -189,7 +189,7 @@ TEST_CASE("welcome is refused with a field of the wrong size or range", "[protoc
                           [](auto& w) { w.spawn.z = kWorldLimit + 1.0; },
                           [](auto& w) { w.has_spawn = false; },
                           [](auto& w) { w.encoding = 0; },
-                          [](auto& w) { w.encoding = 3; },
+                          [](auto& w) { w.encoding = 4; },
                           [](auto& w) { w.view_radius = 65; },
                           [](auto& w) { w.rows.clear(); },
                           [](auto& w) { w.rows[0].name = "void"; },

@@ -48,6 +48,23 @@ TEST_CASE("a client that can read raw chunks only gets raw chunks", "[world]") {
   CHECK(bench.ports.messages<Welcome>(1, 0).at(0).encoding == ChunkEncoding::raw);
 }
 
+TEST_CASE("a client gets coded chunks where it reads nothing else, or the server prefers them", "[world]") {
+  const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
+    WorldConfig wanted = config();
+    wanted.preferred_encoding = preferred;
+    Bench bench(wanted);
+    bench.server.connected(1, bench.now());
+    Hello hello = bench.hello(1);
+    hello.encodings = offered;
+    bench.server.received(1, hello, bench.now());
+    return bench.ports.messages<Welcome>(1, 0).at(0).encoding;
+  };
+  CHECK(chosen(ChunkEncoding::packed, 4) == ChunkEncoding::coded);
+  CHECK(chosen(ChunkEncoding::coded, 7) == ChunkEncoding::coded);
+  CHECK(chosen(ChunkEncoding::coded, 3) == ChunkEncoding::packed);
+  CHECK(chosen(ChunkEncoding::raw, 6) == ChunkEncoding::packed);
+}
+
 TEST_CASE("each message at the wrong moment closes the session with its reason", "[world]") {
   Bench bench;
   bench.server.connected(1, bench.now());
