@@ -160,6 +160,16 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box) {
 
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge) {
   std::vector<ChunkCoord> out;
+  touched_chunks(edit, edge, out);
+  return out;
+}
+
+void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out) {
+  out.clear();
+  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {  // the most frequent kind by far
+    out.push_back(chunk_of(voxel->at, edge));
+    return;
+  }
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {
       append_chunks(chunk_range(segment_box(*stroke, i), edge), out,
@@ -167,15 +177,18 @@ std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t 
     }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
+    return;
   }
-  if (const auto* paste = std::get_if<Paste>(&edit.shape)) return touched_chunks(*paste, edge);
+  if (const auto* paste = std::get_if<Paste>(&edit.shape)) {
+    out = touched_chunks(*paste, edge);
+    return;
+  }
   append_chunks(chunk_range(bounding_box(edit), edge), out,
                 [&](ChunkCoord c) { return touches(edit, box_of(c, edge)); });
-  return out;
 }
 
 std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge) {
+  if (std::holds_alternative<SetVoxel>(edit.shape)) return 1;
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {

@@ -28,6 +28,8 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box);
 /// Chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z. This order is part of
 /// the protocol: a commit lists one previous version per touched chunk in it. `edge`: 16, 32, 64 or 128.
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge);
+/// The same into `out`, whose room is used again.
+void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out);
 
 /// Number of chunks touched_chunks() would list, counted by the bounding box, for a stroke by the bounding
 /// boxes of its segments added up: an upper bound for limits, and for the work of listing them. O(1); stroke:

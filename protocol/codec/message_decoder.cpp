@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "common/edits/edit_geometry.hpp"
 #include "protocol/codec/held_lists.hpp"
+#include "protocol/codec/commit_walk.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/wire_fields.hpp"
 
@@ -225,39 +227,56 @@ struct BodyReader {
     Commit m;
     m.epoch = t.epoch();
     m.first = t.first();
+    m.edits.reserve(t.edits() == nullptr ? 0 : std::min<std::size_t>(t.edits()->size(), kCommitEditsMax));
+    OrderedEdit edit;
+    std::vector<ChunkCoord> touched;
+    const auto ok = read_edits(t, edit, touched, [&m, &edit](Sequence) -> Result<void> {
+      m.edits.push_back(std::move(edit));
+      return {};
+    });
+    if (!ok) return Unexpected<Error>{ok.error()};
+    return Message{std::move(m)};
+  }
+
+  /// Reads each edit into `edit`, the chunks it touches into `touched` (none before welcome), and calls `take` with its
+  /// sequence, which may move from both.
+  template <class F>
+  Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit, std::vector<ChunkCoord>& touched,
+                          F&& take) const {
     const auto count = count_of(t.edits(), kCommitEditsMax);
     if (!count || *count == 0) return bad("commit has not 1 .. 4096 edits");
-    if (m.epoch == 0) return bad("commit epoch is 0");
-    if (m.first == 0 || m.first > std::numeric_limits<Sequence>::max() - kCommitEditsMax) {
+    if (t.epoch() == 0) return bad("commit epoch is 0");
+    const Sequence first = t.first();
+    if (first == 0 || first > std::numeric_limits<Sequence>::max() - kCommitEditsMax) {
       return bad("commit sequence is out of range");
     }
-    m.edits.reserve(*count);
     std::size_t previous_bytes = 0;
     for (std::uint32_t i = 0; i < *count; ++i) {
       const wire::OrderedEdit& e = *t.edits()->Get(i);
-      OrderedEdit& out = m.edits.emplace_back();
-      out.op = {e.author(), e.instance(), e.client_seq()};
+      edit.op = {e.author(), e.instance(), e.client_seq()};
       if (e.cause() > kCauseMax) return bad("commit cause is unknown");
-      out.cause = static_cast<Cause>(e.cause());
-      out.submitted_us = e.submitted_us();
-      out.ordered_us = e.ordered_us();
-      if (!is_time(out.submitted_us) || !is_time(out.ordered_us)) return bad("commit time is out of range");
-      out.subject = e.subject();
-      if (out.subject >= m.first + i) return bad("commit subject is not an earlier edit");
-      auto edit = decode_descriptor(view_of(e.edit()));
-      if (!edit) return Unexpected<Error>{edit.error()};
-      out.edit = *edit;
+      edit.cause = static_cast<Cause>(e.cause());
+      edit.submitted_us = e.submitted_us();
+      edit.ordered_us = e.ordered_us();
+      if (!is_time(edit.submitted_us) || !is_time(edit.ordered_us)) return bad("commit time is out of range");
+      edit.subject = e.subject();
+      if (edit.subject >= first + i) return bad("commit subject is not an earlier edit");
+      auto descriptor = decode_descriptor(view_of(e.edit()));
+      if (!descriptor) return Unexpected<Error>{descriptor.error()};
+      edit.edit = *std::move(descriptor);
       const ByteView previous = view_of(e.previous());
       previous_bytes += previous.size();
       // Tables may point at one list again and again; what is decoded would outgrow the message.
       if (previous_bytes > message_bytes) return bad("commit shares its lists of previous sequences");
-      if (const auto ok = read_previous(previous, m.first + i, out); !ok)
-        return Unexpected<Error>{ok.error()};
+      if (const auto ok = read_previous(previous, first + i, edit, touched); !ok) return ok;
+      if (const auto ok = take(first + i); !ok) return ok;
     }
-    return Message{std::move(m)};
+    return {};
   }
 
-  Result<void> read_previous(ByteView bytes, Sequence seq, OrderedEdit& out) const {
+  Result<void> read_previous(ByteView bytes, Sequence seq, OrderedEdit& out,
+                             std::vector<ChunkCoord>& touched) const {
+    out.previous.clear();
     ByteReader in(bytes);
     while (in.ok() && !in.at_end()) {
       const std::uint64_t back = in.varint_max(seq, "previous sequence lies before the log");
@@ -272,7 +291,8 @@ struct BodyReader {
     if (touched_chunks_bound(out.edit, chunk_edge) > kTouchedChunksMax) {
       return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
     }
-    if (touched_chunks(out.edit, chunk_edge).size() != out.previous.size()) {
+    touched_chunks(out.edit, chunk_edge, touched);
+    if (touched.size() != out.previous.size()) {
       return bad("commit does not list one previous sequence per touched chunk");
     }
     return {};
@@ -499,10 +519,8 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
   return fail(ErrorCode::unknown_kind, "unknown message type");
 }
 
-}  // namespace
-
-Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
-                               std::uint16_t chunk_edge) {
+/// The message in these bytes, verified, of a kind that this side may send in this class.
+Result<const wire::Message*> open_message(Sender sender, FrameClass frame_class, ByteView bytes) {
   // The verifier checks alignment relative to the buffer's first byte only.
   RUNSTONE_ASSERT(reinterpret_cast<std::uintptr_t>(bytes.data()) % 8 == 0);
   if (bytes.size() > message_bytes_max(sender, frame_class)) {
@@ -519,7 +537,29 @@ Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView b
     return bad("message not allowed from this side");
   }
   if (route->frame_class != frame_class) return bad("message came in the wrong class");
-  return read_body(message, BodyReader{chunk_edge, bytes.size()});
+  return &message;
+}
+
+}  // namespace
+
+Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
+                               std::uint16_t chunk_edge) {
+  const auto message = open_message(sender, frame_class, bytes);
+  if (!message) return Unexpected<Error>{message.error()};
+  return read_body(**message, BodyReader{chunk_edge, bytes.size()});
+}
+
+Result<bool> CommitWalk::read(ByteView bytes, std::uint16_t chunk_edge, const OnEdit& on_edit) {
+  RUNSTONE_ASSERT(chunk_edge != 0);
+  const auto message = open_message(Sender::server, FrameClass::edits, bytes);
+  if (!message) return Unexpected<Error>{message.error()};
+  const wire::Commit* commit = (*message)->body_as_Commit();
+  if (commit == nullptr) return false;
+  const Epoch epoch = commit->epoch();
+  const auto ok = BodyReader{chunk_edge, bytes.size()}.read_edits(
+      *commit, edit_, chunks_, [&](Sequence seq) { return on_edit({{epoch, seq}, edit_, chunks_}); });
+  if (!ok) return Unexpected<Error>{ok.error()};
+  return true;
 }
 
 }  // namespace runstone
