@@ -53,14 +53,17 @@ struct Link::State {
 
 Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
   return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+    stats.messages_received.fetch_add(1, std::memory_order_relaxed);
+    stats.message_bytes_received[static_cast<std::size_t>(frame_class)].fetch_add(body.size(),
+                                                                                  std::memory_order_relaxed);
+    const auto taken = events.on_bytes(frame_class, body, chunk_edge, received_us);
+    if (!taken) return Unexpected<Error>{taken.error()};
+    if (*taken) return {};
     const std::int64_t start_ns = steady_now_ns();
     auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
     if (!message) return Unexpected<Error>{message.error()};
     const std::int64_t end_ns = steady_now_ns();
     if (const auto* welcome = std::get_if<Welcome>(&*message)) chunk_edge = welcome->chunk_edge;
-    stats.messages_received.fetch_add(1, std::memory_order_relaxed);
-    stats.message_bytes_received[static_cast<std::size_t>(frame_class)].fetch_add(body.size(),
-                                                                                  std::memory_order_relaxed);
     NetReceived received;
     received.connection = connection;
     received.message = std::move(*message);

@@ -54,6 +54,12 @@ class LinkEvents {
   virtual ~LinkEvents() = default;
   virtual void on_connected(ConnectionNumber connection) = 0;
   virtual void on_received(NetReceived received) = 0;
+  /// Offers a message before it is decoded; `body` is 8-aligned and lives until the call returns, `chunk_edge` is 0 before
+  /// welcome. True: it was verified and taken, and on_received() is not told of it. An error closes the connection.
+  virtual Result<bool> on_bytes(FrameClass /*frame_class*/, ByteView /*body*/, std::uint16_t /*chunk_edge*/,
+                                TimeUs /*received_us*/) {
+    return false;
+  }
   /// `connection` 0: no connection came up at all.
   virtual void on_disconnected(ConnectionNumber connection, std::string why) = 0;
   /// While true nothing more is read, and TCP holds the server back.

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "client/replica/view_size.hpp"
 #include "common/core/assert.hpp"
 #include "common/core/text.hpp"
 
@@ -25,13 +26,7 @@ ClientSession::ClientSession(SessionConfig config) : config_(std::move(config)) 
 void ClientSession::connected(const Nonce& nonce, TimeUs now_us) {
   disconnected();
   end_.reset();
-  hello_ = {};
-  hello_.key = config_.keys.public_key;
-  hello_.instance = config_.instance;
-  hello_.nonce = nonce;
-  hello_.name = config_.name;
-  hello_.encodings = config_.encodings;
-  hello_.features = config_.features;
+  hello_ = hello_of(config_, nonce);
   outgoing_.push_back(hello_);
   state_ = SessionState::greeting;
   heard_us_ = now_us;
@@ -122,19 +117,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
 // ---- handshake
 
 void ClientSession::on_welcome(Welcome welcome) {
-  if (welcome.protocol != kProtocolVersion) {
-    return fail_with(GoodbyeReason::wrong_protocol, "server speaks another protocol version", true);
-  }
-  if (!verify(welcome.server_key, server_transcript(hello_, welcome), welcome.signature)) {
-    return fail_with(GoodbyeReason::not_authenticated, "server signature is wrong", true);
-  }
-  if ((welcome.features & ~hello_.features) != 0) {
-    return fail_with(GoodbyeReason::malformed_message, "welcome has features that hello did not offer", true);
-  }
-  const auto [pin, first_use] = config_.pinned.try_emplace(welcome.world_id, welcome.server_key);
-  if (!first_use && pin->second != welcome.server_key) {
-    return fail_with(GoodbyeReason::not_authenticated,
-                     "server key differs from the one pinned for this world", true);
+  if (const auto fault = check_welcome(hello_, welcome, config_.pinned)) {
+    return fail_with(fault->reason, fault->text, true);
   }
   if (welcome_ && welcome_->world_id != welcome.world_id) {
     replica_.reset();  // another world under the same address: nothing we hold means anything there
@@ -343,15 +327,7 @@ void ClientSession::send_view() {
   view_sent_ = wished;
 }
 
-std::size_t ClientSession::view_chunks() const {
-  const View v = view();
-  const int radius = v.radius_h;
-  std::size_t columns = 0;
-  for (int dx = -radius; dx <= radius; ++dx) {
-    for (int dz = -radius; dz <= radius; ++dz) columns += dx * dx + dz * dz <= radius * radius ? 1U : 0U;
-  }
-  return columns * (2U * v.radius_v + 1U);
-}
+std::size_t ClientSession::view_chunks() const { return chunks_in(view()); }
 
 bool ClientSession::loaded() const {
   return is_open() && !travelling() &&

@@ -16,6 +16,7 @@
 
 #include "client/replica/cache_question.hpp"
 #include "client/replica/clock_offset.hpp"
+#include "client/replica/greeting.hpp"
 #include "client/replica/replica.hpp"
 #include "common/core/result.hpp"
 #include "protocol/codec/handshake.hpp"
@@ -36,17 +37,6 @@ inline constexpr std::size_t kEarlyMessagesMax = 4096;
 inline constexpr TimeUs kCacheWaitUsMax = 250'000;      // that a view waits for what a cache has of it
 inline constexpr std::size_t kCommandLinesKept = 4096;  // of one command's output
 inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered by then is offered again
-
-struct SessionConfig {
-  KeyPair keys;
-  std::string name = "builder";
-  ClientInstance instance = 1;               // random per process
-  std::uint8_t encodings = kEncodingsKnown;  // as in Hello
-  std::uint64_t features = kFeaturesKnown;
-  View view;                            // wished; the server's limit cuts the radii
-  std::map<WorldId, PublicKey> pinned;  // server keys seen before
-  bool has_cache = false;               // somebody answers take_question()
-};
 
 enum class SessionState { offline, greeting, proving, open };
 

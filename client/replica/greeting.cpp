@@ -1,0 +1,35 @@
+#include "client/replica/greeting.hpp"
+
+namespace runstone {
+
+Hello hello_of(const SessionConfig& config, const Nonce& nonce) {
+  Hello hello;
+  hello.key = config.keys.public_key;
+  hello.instance = config.instance;
+  hello.nonce = nonce;
+  hello.name = config.name;
+  hello.encodings = config.encodings;
+  hello.features = config.features;
+  return hello;
+}
+
+std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& welcome,
+                                          std::map<WorldId, PublicKey>& pinned) {
+  if (welcome.protocol != kProtocolVersion) {
+    return WelcomeFault{GoodbyeReason::wrong_protocol, "server speaks another protocol version"};
+  }
+  if (!verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature)) {
+    return WelcomeFault{GoodbyeReason::not_authenticated, "server signature is wrong"};
+  }
+  if ((welcome.features & ~hello.features) != 0) {
+    return WelcomeFault{GoodbyeReason::malformed_message, "welcome has features that hello did not offer"};
+  }
+  const auto [pin, first_use] = pinned.try_emplace(welcome.world_id, welcome.server_key);
+  if (!first_use && pin->second != welcome.server_key) {
+    return WelcomeFault{GoodbyeReason::not_authenticated,
+                        "server key differs from the one pinned for this world"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace runstone
