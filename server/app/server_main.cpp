@@ -19,6 +19,7 @@
 #include "common/runs/dense.hpp"
 #include "server/app/console.hpp"
 #include "server/app/logging.hpp"
+#include "server/app/open_files.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
 
@@ -53,6 +54,15 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
     if (!set) return Unexpected<std::string>{flag_name(field) + ": " + set.error()};
   }
   return config;
+}
+
+/// A socket for each session and for each connection that is not one yet, the world's files, and some.
+void allow_files_for(const ServerConfig& config) {
+  const std::size_t needed = config.sessions_max + 256;
+  const std::size_t allowed = allow_open_files(needed);
+  if (allowed >= needed) return;
+  logger("app").warn("sessions_max={} needs {} open files, and the hard limit is {}: see ulimit -Hn",
+                     config.sessions_max, needed, allowed);
 }
 
 /// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes
@@ -100,6 +110,7 @@ int run(const ServerOptions& options) {
       return cannot_start(written.error().message());
     }
   }
+  allow_files_for(*config);
   asio::io_context main_loop;
   Signals signals(main_loop);
   const auto end = [&] { asio::post(main_loop, [&main_loop] { main_loop.stop(); }); };
