@@ -1,30 +1,13 @@
-// BotFleet: all bots of runstone-bot, each with its link, on one thread. The fleet joins, waits until every bot
+// BotFleet: all bots of runstone-bot, each with its link, on one thread. The fleet joins, a bot after the other, waits until every bot
 // sees what is around it, lets edits fall due, waits until everything is on disk, and leaves.
 #pragma once
 #include <csignal>
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "client/app/bot_options.hpp"
-#include "client/bots/bot.hpp"
+#include "client/app/fleet_report.hpp"
 
 namespace runstone {
-
-/// What the fleet did, summed over its bots.
-struct FleetReport {
-  std::size_t bots = 0;
-  BotCounts counts;
-  EditLedger::Standing standing;
-  std::uint64_t audited = 0, drifted = 0;  // chunk digests compared with the server's, and found different
-  std::uint64_t bytes_received = 0, bytes_sent = 0;
-  double seconds = 0;   // from the first due edit to the last
-  std::string failure;  // why it ended early; empty: it did not
-};
-std::string to_json(const FleetReport& report);
-/// A few lines for standard output.
-std::string to_table(const FleetReport& report);
 
 class BotFleet {
  public:

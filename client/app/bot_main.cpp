@@ -47,7 +47,7 @@ int run(const runstone::BotOptions& options, const volatile std::sig_atomic_t& s
   using namespace runstone;
   if (!options.play.empty()) return play(options, stop);
   const FleetReport report = BotFleet(options).run(stop);
-  int code = report.drifted == 0 ? kExitOk : kExitFailed;
+  int code = report.is_sound() ? kExitOk : kExitFailed;
   if (!report.failure.empty()) code = report.counts.due == 0 ? kExitNoStart : kExitFailed;
   return tell(report, options, code);
 }

@@ -17,19 +17,50 @@ double speed_of(const std::string& text) {
   return speed;
 }
 
+constexpr const char* kRoleNames = "idle, walk, run-away, build, brush, griefer, join-storm";
+constexpr std::size_t kMixSharesMax = 1'000;
+
+/// "build=8,walk=2": eight builders and two walkers of every ten.
+std::vector<BotRole> roles_of(const std::string& text) {
+  const auto wrong = [&text](const std::string& why) {
+    return CLI::ValidationError("--mix", "expected NAME=SHARE,NAME=SHARE,...: " + why + ": " + text);
+  };
+  std::vector<BotRole> roles;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const auto role = bot_role(part.substr(0, equals));
+    if (!role) throw wrong(std::string("a name is one of ") + kRoleNames);
+    std::size_t share = 0;
+    if (equals == std::string::npos || !CLI::detail::lexical_cast(part.substr(equals + 1), share) ||
+        share == 0 || share > kMixSharesMax - roles.size()) {
+      throw wrong("a share is a number from 1, and all of them make 1000 at most");
+    }
+    roles.insert(roles.end(), share, *role);
+  }
+  return roles;
+}
+
 }  // namespace
 
 ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   BotOptions out;
   CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // as the other programs
-  std::string address, role = "build";
+  std::string address, role = "build", mix;
   unsigned view = out.view_radius;
   std::uint64_t edits = 0;
   app.add_option("--connect", address, "server, HOST:PORT")->required();
   app.add_option("--count", out.count, "bots")->check(CLI::Range(1, 10'000));
-  app.add_option("--behaviour", role, "what they do")
-      ->check(CLI::IsMember({"idle", "walk", "build", "brush", "griefer"}));
+  CLI::Option* behaviour =
+      app.add_option("--behaviour", role, std::string("what they do: ") + kRoleNames)
+          ->check([](const std::string& name) {
+            return bot_role(name) ? "" : std::string("a behaviour is one of ") + kRoleNames;
+          });
+  app.add_option("--mix", mix, "several behaviours and their shares, such as build=8,walk=2")
+      ->excludes(behaviour);
+  app.add_option("--replicas", out.replicas,
+                 "so many bots, the first ones, keep a replica and compare digests; the others verify");
+  app.add_option("--join-rate", out.join_rate, "bots a second that join")->check(CLI::Range(0.1, 100'000.0));
   app.add_option("--name", out.name, "name of one bot; of several, NAME-1, NAME-2, ...")
       ->check([](const std::string& name) {
         return name.empty() || name.size() + 6 > kPlayerNameBytesMax ? "a bot's name has 1 to 26 bytes" : "";
@@ -37,7 +68,8 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   app.add_option("--key-dir", out.key_dir,
                  "folder of their keys, made if missing; default: new keys each time")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--rate", out.rate, "edits a second, each bot")->check(CLI::Range(0.001, 100'000.0));
+  app.add_option("--rate", out.rate, "edits, or joins of a join storm, a second, each bot")
+      ->check(CLI::Range(0.001, 100'000.0));
   app.add_option("--duration", out.seconds, "seconds for which edits are due")->check(CLI::NonNegativeNumber);
   app.add_option("--edits", edits, "edits at most, each bot");
   app.add_option("--sites", out.sites,
@@ -57,18 +89,19 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
          "--speed", [&out](const std::string& text) { out.speed = speed_of(text); },
          "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; default 1")
       ->needs(play);
-  for (const char* other : {"--count", "--behaviour", "--name", "--key-dir", "--rate", "--duration",
-                            "--edits", "--sites", "--seed", "--view"}) {
+  for (const char* other : {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name",
+                            "--key-dir", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
     play->excludes(app.get_option(other));
   }
   try {
     app.parse(argc, argv);
     const std::string wrong = parse_host_port(address, out.host, out.port);
     if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
+    if (app.count("--mix") != 0) out.roles = roles_of(mix);
   } catch (const CLI::ParseError& e) {
     return {std::nullopt, app.exit(e) == 0 ? 0 : 2};
   }
-  out.role = *bot_role(role);
+  if (app.count("--mix") == 0) out.roles = {*bot_role(role)};
   if (app.count("--edits") != 0) out.edits = edits;
   if (out.sites == 0) out.sites = out.count;
   out.view_radius = out.view_radius_v = static_cast<std::uint8_t>(view);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,11 @@ class FleetMember {
   FleetMember(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
       : bot_(std::forward<BotArguments>(arguments)...), link_(io, bot_.session(), bot_.name(), net) {}
 
+  using Session = std::remove_reference_t<decltype(std::declval<BotType&>().session())>;
+
   BotType& bot() { return bot_; }
-  const SessionLink& link() const { return link_; }
+  const BotType& bot() const { return bot_; }
+  const LinkedSession<Session>& link() const { return link_; }
 
   void step(TimeUs now_us) {
     bot_.step(now_us);
@@ -37,7 +41,7 @@ class FleetMember {
 
  private:
   BotType bot_;
-  SessionLink link_;
+  LinkedSession<Session> link_;
 };
 
 template <class BotType>

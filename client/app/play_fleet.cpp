@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/app/fleet.hpp"
-#include "client/app/own_latency.hpp"
+#include "client/app/histogram_report.hpp"
 #include "client/net/key_file.hpp"
 #include "client/net/steady_clock.hpp"
 
@@ -134,7 +134,7 @@ std::string to_json(const PlayReport& report) {
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us", own_latency_json(c.own_us)}};
+                                       {"own_us", histogram_json(c.own_us)}};
   return json.dump(1) + "\n";
 }
 
@@ -144,7 +144,7 @@ std::string to_table(const PlayReport& report) {
       "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} offered "
       "again, {} rejected, {} refused here, {} without an answer\n{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable, c.again,
-      total(c.rejected), total(c.refused), c.unseen, own_latency_line(c.own_us));
+      total(c.rejected), total(c.refused), c.unseen, histogram_line("due to confirmed", c.own_us));
   for (const auto& [reason, count] : c.rejected) table += fmt::format("rejected: {} {}\n", count, reason);
   for (const auto& [reason, count] : c.refused) table += fmt::format("refused: {} {}\n", count, reason);
   return table;

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "client/bots/house.hpp"
-#include "client/replica/surface.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr double kEyeAbove = 12;  // voxels above the spawn's height: sees ground and roofs
 constexpr double kWalkSpeed = 4;  // voxels a second
+constexpr double kRunSpeed = 64;  // two chunks of edge 32 a second
 constexpr std::int32_t kPlotsAlong = kSiteSide / kPlotSide;
 constexpr std::int32_t kBuriedMax = 24;  // voxels from a plot's highest ground to its lowest that are filled
 
@@ -28,7 +28,7 @@ class Idle final : public Behaviour {
  public:
   explicit Idle(const BotPlace& place) : at_(above_middle(site_corner(place))) {}
   WorldPos position(double /*seconds*/) const override { return at_; }
-  std::optional<EditDescriptor> next_edit(const Replica& /*replica*/) override { return std::nullopt; }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
 
  private:
   WorldPos at_;
@@ -41,10 +41,27 @@ class Walk final : public Behaviour {
     const double radius = kSiteSide / 2.0, angle = seconds * kWalkSpeed / radius;
     return {middle_.x + radius * std::cos(angle), middle_.y, middle_.z + radius * std::sin(angle)};
   }
-  std::optional<EditDescriptor> next_edit(const Replica& /*replica*/) override { return std::nullopt; }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
 
  private:
   WorldPos middle_;
+};
+
+class RunAway final : public Behaviour {
+ public:
+  RunAway(const BotPlace& place, std::uint64_t seed) : from_(above_middle(site_corner(place))) {
+    SplitMix64 random(seed);
+    angle_ = random.between(0, 359) * std::numbers::pi / 180;
+  }
+  WorldPos position(double seconds) const override {
+    const double way = seconds * kRunSpeed;
+    return {from_.x + way * std::cos(angle_), from_.y, from_.z + way * std::sin(angle_)};
+  }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
+
+ private:
+  WorldPos from_;
+  double angle_ = 0;
 };
 
 class Build final : public Behaviour {
@@ -54,8 +71,8 @@ class Build final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
-    if (ground_.empty() && next_ == plan_.size() && !begin_plot(replica)) return std::nullopt;
+  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
+    if (ground_.empty() && next_ == plan_.size() && !begin_plot(ground)) return std::nullopt;
     if (!ground_.empty()) {
       const EditDescriptor edit = ground_.back();
       ground_.pop_back();
@@ -67,7 +84,7 @@ class Build final : public Behaviour {
 
  private:
   // Makes the plot even, with a foundation below, and plans the house. A plot that is built on is begun anew.
-  bool begin_plot(const Replica& replica) {
+  bool begin_plot(const Ground& ground) {
     const VoxelPos plot = {corner_.x + plot_ % kPlotsAlong * kPlotSide, 0,
                            corner_.z + plot_ / kPlotsAlong % kPlotsAlong * kPlotSide};
     auto& level = levels_[static_cast<std::size_t>(plot_ % (kPlotsAlong * kPlotsAlong))];
@@ -76,10 +93,10 @@ class Build final : public Behaviour {
       std::optional<std::int32_t> highest;
       for (const std::int32_t dx : {0, kPlotSide / 2, kPlotSide - 1}) {
         for (const std::int32_t dz : {0, kPlotSide / 2, kPlotSide - 1}) {
-          const auto ground = surface_of(replica, plot.x + dx, plot.z + dz);
-          if (!ground) return false;
-          lowest = highest ? std::min(lowest, *ground) : *ground;
-          highest = std::max(highest.value_or(*ground), *ground);
+          const auto top = ground.surface(plot.x + dx, plot.z + dz);
+          if (!top) return false;
+          lowest = highest ? std::min(lowest, *top) : *top;
+          highest = std::max(highest.value_or(*top), *top);
         }
       }
       level = *highest + 1;
@@ -116,8 +133,8 @@ class Brush final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
-    const auto from = on_ground(replica), to = on_ground(replica);
+  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
+    const auto from = on_ground(ground), to = on_ground(ground);
     if (!from || !to) return std::nullopt;
     const auto radius = static_cast<std::uint16_t>(random_.between(2, 5));
     const auto material = static_cast<Material>(random_.below(static_cast<std::uint32_t>(materials_.size())));
@@ -126,10 +143,10 @@ class Brush final : public Behaviour {
   }
 
  private:
-  std::optional<VoxelPos> on_ground(const Replica& replica) {
+  std::optional<VoxelPos> on_ground(const Ground& ground) {
     const std::int32_t x = corner_.x + random_.between(6, kSiteSide - 7);
     const std::int32_t z = corner_.z + random_.between(6, kSiteSide - 7);
-    const auto y = surface_of(replica, x, z);
+    const auto y = ground.surface(x, z);
     if (!y) return std::nullopt;
     return VoxelPos{x, *y, z};
   }
@@ -148,11 +165,11 @@ class Grief final : public Behaviour {
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
-  std::optional<EditDescriptor> next_edit(const Replica& replica) override {
+  std::optional<EditDescriptor> next_edit(const Ground& ground) override {
     if (left_ == 0) visit_next();
     const std::int32_t x = corner_.x + random_.between(0, kSiteSide - 1);
     const std::int32_t z = corner_.z + random_.between(0, kSiteSide - 1);
-    const auto y = surface_of(replica, x, z);
+    const auto y = ground.surface(x, z);
     if (!y) return std::nullopt;
     --left_;
     const VoxelPos at = {x, *y, z};
@@ -196,11 +213,14 @@ class Grief final : public Behaviour {
 }  // namespace
 
 std::optional<BotRole> bot_role(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, BotRole>, 5> kRoles = {{{"idle", BotRole::idle},
-                                                                           {"walk", BotRole::walk},
-                                                                           {"build", BotRole::build},
-                                                                           {"brush", BotRole::brush},
-                                                                           {"griefer", BotRole::grief}}};
+  constexpr std::array<std::pair<std::string_view, BotRole>, 7> kRoles = {
+      {{"idle", BotRole::idle},
+       {"walk", BotRole::walk},
+       {"run-away", BotRole::run_away},
+       {"build", BotRole::build},
+       {"brush", BotRole::brush},
+       {"griefer", BotRole::grief},
+       {"join-storm", BotRole::join_storm}}};
   for (const auto& [known, role] : kRoles) {
     if (known == name) return role;
   }
@@ -218,7 +238,10 @@ std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place, c
                                           std::uint64_t seed) {
   switch (role) {
     case BotRole::idle:
+    case BotRole::join_storm:
       return std::make_unique<Idle>(place);
+    case BotRole::run_away:
+      return std::make_unique<RunAway>(place, seed);
     case BotRole::walk:
       return std::make_unique<Walk>(place);
     case BotRole::build:

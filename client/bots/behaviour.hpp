@@ -1,6 +1,5 @@
-// Behaviour: what a bot does. It sees the world through its replica and says which edit comes next and where
-// the bot stands; when edits are due is the bot's business. Seeded: the same seed and the same world give the
-// same edits. One thread.
+// Behaviour: what a bot does. It sees the ground and says which edit comes next and where the bot stands; when edits are due is
+// the bot's business. Seeded: the same seed and the same ground give the same edits. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "client/replica/replica.hpp"
+#include "client/bots/ground.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
@@ -16,9 +15,10 @@
 
 namespace runstone {
 
-/// idle: stands there. walk: goes round its site. build: houses on its site, voxel by voxel. brush: spheres and
-/// strokes on its site. grief: digs, covers and cuts across the sites of all.
-enum class BotRole : std::uint8_t { idle, walk, build, brush, grief };
+/// idle: stands there. walk: goes round its site. run_away: straight away from its site, for ever. build: houses on its site, voxel by
+/// voxel. brush: spheres and strokes on its site. grief: digs, covers and cuts across the sites of all. join_storm: looks at
+/// its site, leaves and comes back.
+enum class BotRole : std::uint8_t { idle, walk, run_away, build, brush, grief, join_storm };
 std::optional<BotRole> bot_role(std::string_view name);
 
 /// Voxels along x and z of the ground that one bot has to itself.
@@ -38,7 +38,7 @@ class Behaviour {
   /// Where the bot stands after `seconds`; its view is around it.
   virtual WorldPos position(double seconds) const = 0;
   /// The next edit; nothing if what it depends on is not loaded, or if this role edits nothing.
-  virtual std::optional<EditDescriptor> next_edit(const Replica& replica) = 0;
+  virtual std::optional<EditDescriptor> next_edit(const Ground& ground) = 0;
 };
 
 /// `materials` must outlive the behaviour and have one that is not empty.

@@ -1,94 +1,104 @@
 #include "client/bots/bot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace runstone {
 namespace {
 
-/// Edits handed in by one step at most: a fleet that was held up catches up little by little.
+/// Edits handed in by one step at most: a crowd that was held up catches up little by little.
 constexpr int kStepEditsMax = 64;
+constexpr TimeUs kJoinStepUs = 5'000;   // how closely the end of a join is watched
+constexpr TimeUs kMoveStepUs = 50'000;  // between two places of who walks
+constexpr TimeUs kAwayStepUs = 20'000;  // while there is no open session
 
 }  // namespace
 
-Bot::Bot(BotConfig config) : config_(std::move(config)), session_(config_.session) {}
-
-bool Bot::settled() const {
-  return (ended_ || (config_.edits_max && counts_.due >= *config_.edits_max)) &&
-         session_.replica().own_edits().all().empty();
+void BotCounts::merge(const BotCounts& other) {
+  due += other.due;
+  submitted += other.submitted;
+  not_ready += other.not_ready;
+  refused += other.refused;
+  confirmed += other.confirmed;
+  rejected += other.rejected;
+  durable += other.durable;
+  others += other.others;
+  own_us.merge(other.own_us);
+  joins += other.joins;
+  join_us.merge(other.join_us);
 }
+
+Bot::Bot(BotConfig config)
+    : config_(std::move(config)), schedule_(config_.rate, config_.phase, config_.edits_max) {}
 
 // The behaviour is made when the world is known, and lives through reconnections.
 bool Bot::enter() {
+  const Welcome* open = world();
+  if (open == nullptr) return false;
   if (behaviour_) return true;
-  if (!session_.is_open()) return false;
-  const Welcome& world = *session_.welcome();
-  if (world.materials.size() < 2) return false;  // nothing to build with
+  if (open->materials.size() < 2) return false;  // nothing to build with
   behaviour_ =
-      make_behaviour(config_.role, {world.spawn, config_.site, config_.sites}, world.materials, config_.seed);
+      make_behaviour(config_.role, {open->spawn, config_.site, config_.sites}, open->materials, config_.seed);
   return true;
 }
 
 void Bot::follow(TimeUs now_us) {
-  const double seconds = began_us_ ? static_cast<double>(now_us - *began_us_) / 1e6 : 0;
+  const auto began_us = schedule_.began_us();
+  const double seconds = began_us ? static_cast<double>(now_us - *began_us) / 1e6 : 0;
   const WorldPos at = behaviour_->position(seconds);
-  session_.set_pose({at, 0, 0});
+  set_pose({at, 0, 0});
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
-  View view = config_.session.view;
-  view.centre = chunk_of({down(at.x), down(at.y), down(at.z)}, session_.welcome()->chunk_edge);
-  if (session_.view().centre != view.centre) session_.set_view(view);
+  View wished = config_.session.view;
+  wished.centre = chunk_of({down(at.x), down(at.y), down(at.z)}, world()->chunk_edge);
+  if (wished_ == wished) return;
+  wished_ = wished;
+  set_view(wished);
 }
 
 void Bot::step(TimeUs now_us) {
-  session_.tick(now_us);
+  tick(now_us);
   if (!enter()) return;
   follow(now_us);
   take_news();
-  if (!began_us_ || ended_) return;
+  if (joining_us_ && loaded()) {
+    ++counts_.joins;
+    counts_.join_us.add(now_us - *joining_us_);
+    joining_us_.reset();
+  }
   for (int i = 0; i < kStepEditsMax; ++i) {
-    if (config_.edits_max && counts_.due >= *config_.edits_max) return;
-    const auto due_us =
-        *began_us_ + static_cast<TimeUs>(static_cast<double>(counts_.due) / config_.rate * 1e6);
-    if (due_us > now_us) return;
+    const auto due_us = schedule_.due_us();
+    if (!due_us || *due_us > now_us) return;
+    // A storm goes when it has seen what it came for, and comes back at once.
+    if (config_.role == BotRole::join_storm && joining_us_) return;
+    schedule_.pass();
     ++counts_.due;
-    const auto edit = behaviour_->next_edit(session_.replica());
-    if (!edit) {
-      ++counts_.not_ready;
-      continue;
-    }
-    const auto sequence = session_.submit(*edit, due_us, now_us);
-    if (!sequence) {
-      ++counts_.refused;
-      continue;
-    }
-    ++counts_.submitted;
-    ledger_.add(*edit);
-    open_[*sequence] = {due_us, *edit};
+    act(*due_us, now_us);
   }
 }
 
-void Bot::take_news() {
-  const ReplicaNews news = session_.replica().take_news();
-  for (const EditNews& edit : news.edits) {
-    if (edit.predicted) continue;
-    if (!edit.own) {
-      ++counts_.others;
-      continue;
-    }
-    const auto found = open_.find(edit.op.seq);
-    if (found == open_.end()) continue;  // a chunk of it came later than the others
-    counts_.own_us.add(edit.applied_us - found->second.due_us);
-    ++counts_.confirmed;
-    open_.erase(found);
+void Bot::act(TimeUs due_us, TimeUs now_us) {
+  if (config_.role == BotRole::join_storm) {
+    joining_us_ = now_us;
+    return depart();
   }
-  for (const RejectNews& reject : news.rejects) {
-    ++counts_.rejected;
-    if (const auto found = open_.find(reject.seq); found != open_.end()) {
-      ledger_.forget(found->second.edit);
-      open_.erase(found);
-    }
+  const auto edit = behaviour_->next_edit(ground());
+  if (!edit) {
+    ++counts_.not_ready;
+  } else {
+    ++(submit(*edit, due_us, now_us) ? counts_.submitted : counts_.refused);
   }
-  counts_.durable += news.durable.size();
+}
+
+TimeUs Bot::due_us(TimeUs now_us) const {
+  TimeUs due_us = tick_due_us(now_us);
+  if (joining_us_) due_us = std::min(due_us, now_us + kJoinStepUs);
+  if (config_.role == BotRole::walk || config_.role == BotRole::run_away) {
+    due_us = std::min(due_us, now_us + kMoveStepUs);
+  }
+  if (world() == nullptr || !behaviour_) return std::min(due_us, now_us + kAwayStepUs);
+  if (joining_us_ && config_.role == BotRole::join_storm) return due_us;
+  return std::min(due_us, schedule_.due_us().value_or(due_us));
 }
 
 }  // namespace runstone

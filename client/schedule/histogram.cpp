@@ -70,4 +70,16 @@ std::optional<double> Histogram::mean() const {
   return sum_ / static_cast<double>(finite_);
 }
 
+std::vector<Histogram::Row> Histogram::rows() const {
+  std::vector<Row> out;
+  for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
+    if (buckets_[bucket] == 0) continue;
+    const auto value = static_cast<std::uint64_t>(value_of(bucket));
+    const auto up_to = static_cast<std::int64_t>(std::bit_ceil(std::max<std::uint64_t>(value, 1)));
+    if (out.empty() || out.back().up_to != up_to) out.push_back({up_to, 0});
+    out.back().count += buckets_[bucket];
+  }
+  return out;
+}
+
 }  // namespace runstone

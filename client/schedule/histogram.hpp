@@ -30,6 +30,16 @@ class Histogram {
   std::optional<std::int64_t> max() const;  // exact
   std::optional<double> mean() const;       // of the finite ones
 
+  /// How many finite values are above half of `up_to`, a power of two, and not above it (of the first row: 0 and 1), to
+  /// the bucket.
+  struct Row {
+    std::int64_t up_to = 1;
+    std::uint64_t count = 0;
+    friend bool operator==(const Row&, const Row&) = default;
+  };
+  /// Ascending, without empty rows.
+  std::vector<Row> rows() const;
+
  private:
   std::vector<std::uint64_t> buckets_;
   std::uint64_t finite_ = 0, infinite_ = 0, below_zero_ = 0;

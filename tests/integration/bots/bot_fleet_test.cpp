@@ -18,7 +18,7 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
   BotOptions options;
   options.port = server.port();
   options.count = options.sites = count;
-  options.role = role;
+  options.roles = {role};
   options.rate = 200;
   options.edits = 100;
   options.seconds = 60;
@@ -90,4 +90,54 @@ TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
   CHECK(report.counts.durable == report.counts.submitted);
   CHECK(report.seconds < 30);
   CHECK(report.counts.rejected == 0);
+}
+
+TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder.path());
+  config.handshakes_per_address = 1'000;
+  auto server = start_server(config, flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 50);
+  options.sites = 1;
+  options.replicas = 5;
+  options.join_rate = 500;
+  options.rate = 10;
+  options.edits = 10;
+  const FleetReport report = BotFleet(options).run(never);
+  INFO(to_table(report));
+  CHECK(report.failure.empty());
+  CHECK(report.is_sound());
+  CHECK(report.replicas == 5);
+  CHECK(report.counts.confirmed == 500);
+  CHECK(report.counts.durable == 500);
+  CHECK(report.counts.own_us.count() == 500);
+  // 45 without a replica get each edit once, its author included.
+  CHECK(report.commit_edits == 45 * 500);
+  CHECK(report.seen_us.count() >= 45 * 500);
+  CHECK(report.seen_us.infinite() == 0);
+  CHECK(report.unattributed == 0);
+  CHECK(report.versions.followed > 0);
+  CHECK(report.versions.snapshots > 45);
+  CHECK(report.losses.empty());
+  CHECK(report.counts.joins == 50);
+}
+
+TEST_CASE("a join storm comes and goes, and runners see the world go by", "[bots]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder.path());
+  config.handshakes_per_address = 1'000;
+  auto server = start_server(config, flat_creation());
+  BotOptions options = options_for(*server, BotRole::join_storm, 8);
+  options.roles = {BotRole::join_storm, BotRole::run_away};
+  options.replicas = 2;
+  options.edits = 5;
+  options.rate = 20;
+  options.view_radius = options.view_radius_v = 1;
+  const FleetReport report = BotFleet(options).run(never);
+  INFO(to_table(report));
+  CHECK(report.failure.empty());
+  CHECK(report.is_sound());
+  CHECK(report.losses.empty());
+  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last return may be under way
+  CHECK(report.counts.submitted == 0);
 }

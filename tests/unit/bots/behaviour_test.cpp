@@ -38,7 +38,7 @@ std::vector<EditDescriptor> edits_of(BotRole role, const BotPlace& place, std::u
   const auto behaviour = make_behaviour(role, place, default_material_table(), seed);
   std::vector<EditDescriptor> out;
   for (int i = 0; i < count; ++i) {
-    if (const auto edit = behaviour->next_edit(replica)) out.push_back(*edit);
+    if (const auto edit = behaviour->next_edit(ReplicaGround(replica))) out.push_back(*edit);
   }
   return out;
 }
@@ -85,7 +85,8 @@ TEST_CASE("builders and brushes stay on their site", "[bots]") {
 TEST_CASE("a builder waits until it sees its plot; idlers and walkers edit nothing", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
   const Replica far = flat_replica({40, 0, 40}, 1);
-  CHECK_FALSE(make_behaviour(BotRole::build, place, default_material_table(), 1)->next_edit(far));
+  CHECK_FALSE(
+      make_behaviour(BotRole::build, place, default_material_table(), 1)->next_edit(ReplicaGround(far)));
   CHECK(edits_of(BotRole::idle, place, 1, 10).empty());
   CHECK(edits_of(BotRole::walk, place, 1, 10).empty());
 }
@@ -97,4 +98,24 @@ TEST_CASE("a walker goes round its site at a steady speed", "[bots]") {
     const double speed = std::hypot(b.x - a.x, b.z - a.z) / 0.01;
     CHECK(speed == Approx(4).epsilon(0.01));
   }
+}
+
+TEST_CASE("who runs away never comes back, and sees new chunks all the time", "[bots]") {
+  const BotPlace place{{0, 8, 0}, 0, 1};
+  const auto behaviour = make_behaviour(BotRole::run_away, place, default_material_table(), 3);
+  const WorldPos from = behaviour->position(0);
+  double way = -1;
+  ChunkCoord last{1 << 20, 0, 0};
+  for (int second = 0; second < 100; ++second) {
+    const WorldPos at = behaviour->position(second);
+    const double distance = std::hypot(at.x - from.x, at.z - from.z);
+    CHECK(distance > way);
+    way = distance;
+    const ChunkCoord chunk =
+        chunk_of({static_cast<std::int32_t>(at.x), 0, static_cast<std::int32_t>(at.z)}, kEdge);
+    CHECK(chunk != last);
+    last = chunk;
+  }
+  CHECK(edits_of(BotRole::run_away, place, 1, 10).empty());
+  CHECK(edits_of(BotRole::join_storm, place, 1, 10).empty());
 }

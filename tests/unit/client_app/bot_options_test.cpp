@@ -43,3 +43,18 @@ TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]")
   CHECK(parse({"--play", "a.rlog", "--name", "ada"}).exit_code == 2);
   CHECK(parse({"--play", "a.rlog", "--key-dir", "."}).exit_code == 2);
 }
+
+TEST_CASE("a crowd has one behaviour, or several by their shares", "[client_app]") {
+  CHECK(parse({}).options->roles == std::vector<BotRole>{BotRole::build});
+  CHECK(parse({"--behaviour", "run-away"}).options->roles == std::vector<BotRole>{BotRole::run_away});
+  CHECK(parse({"--mix", "idle=2,join-storm=1"}).options->roles ==
+        std::vector<BotRole>{BotRole::idle, BotRole::idle, BotRole::join_storm});
+  for (const char* wrong : {"", "idle", "idle=", "idle=0", "idle=x", "fly=1", "idle=600,walk=600"}) {
+    CAPTURE(wrong);
+    CHECK(parse({"--mix", wrong}).exit_code == 2);
+  }
+  CHECK(parse({"--mix", "idle=1", "--behaviour", "walk"}).exit_code == 2);
+  CHECK(parse({"--behaviour", "fly"}).exit_code == 2);
+  CHECK(parse({"--replicas", "5", "--join-rate", "300"}).options->replicas == 5);
+  CHECK(parse({"--join-rate", "0"}).exit_code == 2);
+}

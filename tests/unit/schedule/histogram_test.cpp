@@ -88,3 +88,12 @@ TEST_CASE("merging is adding all values", "[schedule]") {
   CHECK(a.count() == both.count());
   CHECK(a.mean() == both.mean());
 }
+
+TEST_CASE("rows count every finite value once, by powers of two", "[schedule]") {
+  Histogram histogram;
+  CHECK(histogram.rows().empty());
+  for (const std::int64_t value : {0, 1, 2, 3, 4, 5, 100, 70'000}) histogram.add(value);
+  histogram.add_infinite();
+  using Row = Histogram::Row;
+  CHECK(histogram.rows() == std::vector<Row>{{1, 2}, {2, 1}, {4, 2}, {8, 1}, {128, 1}, {131'072, 1}});
+}

@@ -1,0 +1,29 @@
+// Ground: how high the world is, for behaviours that build upon it.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "client/replica/surface.hpp"
+
+namespace runstone {
+
+class Ground {
+ public:
+  virtual ~Ground() = default;
+  /// y of the highest voxel of the column that is not empty; nothing if that is not known.
+  virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
+};
+
+/// As a replica shows it now.
+class ReplicaGround final : public Ground {
+ public:
+  explicit ReplicaGround(const Replica& replica) : replica_(replica) {}
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override {
+    return surface_of(replica_, x, z);
+  }
+
+ private:
+  const Replica& replica_;
+};
+
+}  // namespace runstone

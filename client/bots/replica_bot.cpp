@@ -1,0 +1,64 @@
+#include "client/bots/replica_bot.hpp"
+
+#include <utility>
+
+namespace runstone {
+namespace {
+
+constexpr TimeUs kTickUs = 10'000;  // as ClientSession::tick() wants it
+
+}  // namespace
+
+ReplicaBot::ReplicaBot(BotConfig config, CrowdBook& crowd)
+    : Bot(std::move(config)), crowd_(crowd), session_(config_.session) {}
+
+TimeUs ReplicaBot::tick_due_us(TimeUs now_us) const { return now_us + kTickUs; }
+
+bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+  const auto sequence = session_.submit(edit, due_us, now_us);
+  if (!sequence) return false;
+  crowd_.due.add(config_.session.instance, *sequence, due_us);
+  ledger_.add(edit);
+  open_[*sequence] = {due_us, edit};
+  is_answered_ = false;
+  return true;
+}
+
+void ReplicaBot::take_news() {
+  const ReplicaNews news = session_.replica().take_news();
+  for (const EditNews& edit : news.edits) {
+    if (edit.predicted) continue;
+    // An edit whose chunks come in parts is told, and counted, with each of them.
+    if (const auto due_us = crowd_.due.find(edit.op.instance, edit.op.seq)) {
+      crowd_.see(*due_us, edit.applied_us);
+    } else {
+      crowd_.see_unknown();
+    }
+    if (!edit.own) {
+      ++counts_.others;
+      continue;
+    }
+    const auto found = open_.find(edit.op.seq);
+    if (found == open_.end()) continue;  // a chunk of it came later than the others
+    counts_.own_us.add(edit.applied_us - found->second.due_us);
+    ++counts_.confirmed;
+    open_.erase(found);
+  }
+  for (const RejectNews& reject : news.rejects) {
+    ++counts_.rejected;
+    if (const auto found = open_.find(reject.seq); found != open_.end()) {
+      ledger_.forget(found->second.edit);
+      open_.erase(found);
+    }
+  }
+  counts_.durable += news.durable.size();
+  is_answered_ = session_.replica().own_edits().all().empty();
+}
+
+BotCounts ReplicaBot::counts() const {
+  BotCounts counts = counts_;
+  for (std::size_t i = 0; i < open_.size(); ++i) counts.own_us.add_infinite();
+  return counts;
+}
+
+}  // namespace runstone

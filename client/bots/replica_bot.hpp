@@ -1,0 +1,46 @@
+// ReplicaBot: a bot with a whole replica: it applies every edit, compares the digests of audits, and knows what became of what it built.
+#pragma once
+#include <map>
+
+#include "client/bots/bot.hpp"
+#include "client/bots/crowd_book.hpp"
+#include "client/replica/client_session.hpp"
+
+namespace runstone {
+
+class ReplicaBot final : public Bot {
+ public:
+  /// `crowd` must outlive the bot.
+  ReplicaBot(BotConfig config, CrowdBook& crowd);
+
+  ClientSession& session() { return session_; }
+  const ClientSession& session() const { return session_; }
+  bool loaded() const override { return session_.loaded(); }
+  BotCounts counts() const override;
+  EditLedger::Standing standing() const override { return ledger_.compare(session_.replica()); }
+
+ private:
+  const Welcome* world() const override { return session_.is_open() ? &*session_.welcome() : nullptr; }
+  void set_view(const View& view) override { session_.set_view(view); }
+  void set_pose(const Pose& pose) override { session_.set_pose(pose); }
+  const Ground& ground() const override { return ground_; }
+  void tick(TimeUs now_us) override { session_.tick(now_us); }
+  TimeUs tick_due_us(TimeUs now_us) const override;
+  void take_news() override;
+  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
+  bool is_answered() const override { return is_answered_; }
+  void depart() override { session_.close(GoodbyeReason::closing, ""); }
+
+  CrowdBook& crowd_;
+  ClientSession session_;
+  ReplicaGround ground_{session_.replica()};
+  EditLedger ledger_;
+  struct Open {
+    TimeUs due_us = 0;
+    EditDescriptor edit;
+  };
+  std::map<ClientSequence, Open> open_;  // edits without an answer
+  bool is_answered_ = true;              // all of them, and the news of it was taken
+};
+
+}  // namespace runstone
