@@ -13,7 +13,15 @@ namespace runstone {
 inline constexpr std::uint32_t kProtocolVersion = 2;
 /// Optional parts of the protocol that this build knows, a bit each.
 inline constexpr std::uint64_t kFeatureCommands = 1;  // command_request and command_output
-inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands;
+inline constexpr std::uint64_t kFeatureReceived =
+    2;  // received: terrain is paced by what the client has read
+inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands | kFeatureReceived;
+
+// How often a client says what it has read: when it is due by time or by bytes, whichever comes first, and never
+// more often than a server with its limits of messages can stand.
+inline constexpr std::int64_t kReceivedEveryUs = 10'000;
+inline constexpr std::size_t kReceivedEveryBytes = 64 * 1024;
+inline constexpr std::int64_t kReceivedUsMin = 1'000;
 
 // Frames. A fragment is small, so that an edit never waits behind much terrain in a send buffer.
 inline constexpr std::size_t kFrameHeaderBytes = 12;
@@ -51,6 +59,8 @@ inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
 // World.
 inline constexpr std::uint8_t kLodMax = 0;               // levels above full detail are reserved
 inline constexpr std::size_t kViewRadiusMax = 64;        // chunks
+inline constexpr std::uint16_t kViewConeMax = 32768;     // half a turn: all around
+inline constexpr std::size_t kUniformChunksMax = 4096;   // per message: bounds what a few bytes may unpack to
 inline constexpr std::size_t kChunkRequestKeysMax = 64;  // per message
 inline constexpr std::size_t kUnavailableKeysMax = 64;   // per message
 inline constexpr std::size_t kHeldChunksMax = 256;       // per message

@@ -87,6 +87,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_.receive(m, arrival);
         } else if constexpr (std::is_same_v<T, Same>) {
           replica_.receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, UniformChunks>) {
+          replica_.receive(m, arrival);
         } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
           replica_.receive(m);
         } else if constexpr (std::is_same_v<T, Commit>) {
@@ -225,7 +227,8 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
 
 void ClientSession::set_view(const View& view) {
   config_.view = view;
-  replica_.set_view(this->view());
+  const View wished = this->view();
+  if (!replica_.view() || !replica_.view()->same_chunks(wished)) replica_.set_view(wished);
   if (is_open()) wish_view();
 }
 

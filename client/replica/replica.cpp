@@ -277,6 +277,21 @@ void Replica::receive(const ChunkEdits& update, const Arrival& arrival) {
   settle(update.key, chunk, true, arrival.now_us);
 }
 
+void Replica::receive(const UniformChunks& uniform, const Arrival& arrival) {
+  if (!opening_) return;
+  const Extent extent = Extent::cube(static_cast<unsigned>(opening_->chunk_edge));
+  Chunk chunk;
+  for (const UniformChunk& each : uniform.chunks) {
+    // Most are like the one before: all air, all stone.
+    if (chunk.voxels.runs.size() == 0 || material_at(chunk.voxels, {0, 0, 0}) != each.material) {
+      chunk.voxels = uniform_chunk(extent, each.material);
+      chunk.digest = digest_of(chunk.voxels);
+    }
+    chunk.version = each.version;
+    receive(ChunkSnapshot{each.key, chunk}, arrival);
+  }
+}
+
 void Replica::receive(const ChunkUnavailable& unavailable) {
   if (!opening_) return;
   for (const ChunkKey& key : unavailable.keys) {

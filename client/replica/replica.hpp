@@ -88,6 +88,8 @@ class Replica {
   void receive(const Same& same, TimeUs now_us);
   /// As a snapshot at `edits.to`, made of what is held. Asks for the chunk if the two do not fit each other.
   void receive(const ChunkEdits& edits, const Arrival& arrival);
+  /// Snapshots of one material each.
+  void receive(const UniformChunks& uniform, const Arrival& arrival);
   /// The server cannot send these chunks: nothing is shown there, and own edits there are refused.
   void receive(const ChunkUnavailable& unavailable);
   /// Fails if the commit contradicts itself (a list of previous sequences that does not fit its edit).

@@ -79,6 +79,7 @@ Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
     Bytes& partial = partial_[header_[4]];
     partial.insert(partial.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(take));
     offset_ += take;
+    frame_bytes_[header_[4]] += take;
     body_left_ -= take;
     bytes = bytes.subspan(take);
     if (body_left_ > 0) return {};
@@ -116,6 +117,7 @@ Result<void> FrameReader::open_frame() {
     return fail(ErrorCode::limit_exceeded, "message exceeds the limit of its class", at);
   }
   ++counter_;
+  frame_bytes_[frame_class] += kFrameHeaderBytes;
   body_left_ = length;
   return {};
 }

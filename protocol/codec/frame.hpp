@@ -57,6 +57,10 @@ class FrameReader {
   /// must not feed the same reader.
   using OnMessage = std::function<Result<void>(FrameClass, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
+  /// Bytes of frames of this class read so far, headers included, whole frames or not.
+  std::uint64_t frame_bytes(FrameClass frame_class) const {
+    return frame_bytes_[static_cast<std::size_t>(frame_class)];
+  }
 
  private:
   Result<void> advance(ByteView bytes, const OnMessage& on_message);
@@ -70,6 +74,7 @@ class FrameReader {
   std::size_t header_have_ = 0;
   std::size_t body_left_ = 0;
   std::array<Bytes, kFrameClassCount> partial_;
+  std::array<std::uint64_t, kFrameClassCount> frame_bytes_{};
 };
 
 }  // namespace runstone

@@ -6,6 +6,7 @@
 #include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/commit_walk.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/uniform_list.hpp"
 #include "protocol/codec/wire_fields.hpp"
 
 namespace runstone {
@@ -115,7 +116,8 @@ struct BodyReader {
   Result<Message> read(const wire::Ready& t) const { return Ready{t.author(), t.decided()}; }
 
   Result<Message> read(const wire::View& t) const {
-    View m{{}, t.radius_h(), t.radius_v()};
+    View m{{}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone()};
+    if (m.cone > kViewConeMax) return bad("view cone exceeds half a turn");
     if (!take_coord(t.x(), t.y(), t.z(), key_edge(), m.centre))
       return bad("view centre is outside the world");
     if (m.radius_h > kViewRadiusMax || m.radius_v > kViewRadiusMax)
@@ -410,6 +412,15 @@ struct BodyReader {
     }
     return m;
   }
+  Result<Message> read(const wire::Received& t) const {
+    if (t.chunk_bytes() == 0) return bad("received counts no bytes");
+    return Received{t.chunk_bytes()};
+  }
+  Result<Message> read(const wire::UniformChunks& t) const {
+    auto chunks = decode_uniform(view_of(t.data()), key_edge());
+    if (!chunks) return Unexpected<Error>{chunks.error()};
+    return Message{UniformChunks{*std::move(chunks)}};
+  }
 };
 
 /// Who may send a body, and in which class it travels.
@@ -429,6 +440,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Ping:
     case wire::Body::Travel:
     case wire::Body::CommandRequest:
+    case wire::Body::Received:
     case wire::Body::Held:
       return Route{true, false, FrameClass::control};
     case wire::Body::EditRequest:
@@ -448,6 +460,7 @@ std::optional<Route> route_of(wire::Body body) {
     case wire::Body::Chunk:
     case wire::Body::ChunkUnavailable:
     case wire::Body::Moment:
+    case wire::Body::UniformChunks:
     case wire::Body::Same:
     case wire::Body::ChunkEdits:
       return Route{false, true, FrameClass::chunks};
@@ -507,6 +520,10 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_CommandRequest());
     case wire::Body::CommandOutput:
       return reader.read(*message.body_as_CommandOutput());
+    case wire::Body::Received:
+      return reader.read(*message.body_as_Received());
+    case wire::Body::UniformChunks:
+      return reader.read(*message.body_as_UniformChunks());
     case wire::Body::Held:
       return reader.read(*message.body_as_Held());
     case wire::Body::Same:

@@ -6,6 +6,7 @@
 #include "common/core/text.hpp"
 #include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
 namespace runstone {
@@ -64,7 +65,8 @@ struct BodyBuilder {
   Offset<wire::Proof> operator()(const Proof& m) { return wire::CreateProof(b, bytes_of(b, m.signature)); }
   Offset<wire::Ready> operator()(const Ready& m) { return wire::CreateReady(b, m.author, m.decided); }
   Offset<wire::View> operator()(const View& m) {
-    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v);
+    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v, m.yaw, m.pitch,
+                            m.cone);
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
@@ -177,6 +179,10 @@ struct BodyBuilder {
     lines.reserve(m.lines.size());
     for (const std::string& line : m.lines) lines.push_back(b.CreateString(shown_line(line)));
     return wire::CreateCommandOutput(b, m.id, b.CreateVector(lines), m.is_done, m.is_ok);
+  }
+  Offset<wire::Received> operator()(const Received& m) { return wire::CreateReceived(b, m.chunk_bytes); }
+  Offset<wire::UniformChunks> operator()(const UniformChunks& m) {
+    return wire::CreateUniformChunks(b, bytes_of(b, encode_uniform(m.chunks)));
   }
 
   Offset<wire::Chunk> snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {

@@ -15,8 +15,8 @@ FrameClass frame_class_of(const Message& message) {
                                 std::is_same_v<T, Ready>;
         if constexpr (kOrder) return FrameClass::edits;
         constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
-                                std::is_same_v<T, Moment> || std::is_same_v<T, Same> ||
-                                std::is_same_v<T, ChunkEdits>;
+                                std::is_same_v<T, UniformChunks> || std::is_same_v<T, Moment> ||
+                                std::is_same_v<T, Same> || std::is_same_v<T, ChunkEdits>;
         return kChunk ? FrameClass::chunks : FrameClass::control;
       },
       message);

@@ -78,16 +78,25 @@ struct Ready {
   friend bool operator==(const Ready&, const Ready&) = default;
 };
 
-/// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`.
+/// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`; and where it
+/// looks, so that what lies there comes first.
 struct View {
   ChunkCoord centre;
   std::uint8_t radius_h = 0, radius_v = 0;
+  std::uint16_t yaw = 0;  // yaw and pitch as in Pose
+  std::int16_t pitch = 0;
+  std::uint16_t cone =
+      0;  // half the angle of what is seen, 65536 a turn, kViewConeMax at most; 0: all around
   friend bool operator==(const View&, const View&) = default;
   bool contains(ChunkCoord c) const {
     const std::int64_t dx = std::int64_t{c.x} - centre.x;
     const std::int64_t dy = std::int64_t{c.y} - centre.y;
     const std::int64_t dz = std::int64_t{c.z} - centre.z;
     return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v && -dy <= radius_v;
+  }
+  /// Whether the same chunks are in both, wherever they look.
+  bool same_chunks(const View& other) const {
+    return centre == other.centre && radius_h == other.radius_h && radius_v == other.radius_v;
   }
 };
 struct ChunkRequest {
@@ -100,6 +109,22 @@ struct ChunkSnapshot {
   Chunk chunk;
   friend bool operator==(const ChunkSnapshot&, const ChunkSnapshot&) = default;
 };
+/// Chunks of one material each, as snapshots: their digest follows from the material.
+struct UniformChunk {
+  ChunkKey key;
+  Material material = kEmpty;
+  Version version;
+  friend bool operator==(const UniformChunk&, const UniformChunk&) = default;
+};
+struct UniformChunks {
+  std::vector<UniformChunk> chunks;  // 1 .. kUniformChunksMax of lod 0, ascending by is_before_in_list()
+  friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
+};
+/// Column by column: by x, then z, then y.
+constexpr bool is_before_in_list(const ChunkCoord& a, const ChunkCoord& b) {
+  return a.x != b.x ? a.x < b.x : a.z != b.z ? a.z < b.z : a.y < b.y;
+}
+
 /// Why a chunk cannot be had. Values are on the wire; readers take reasons they do not know.
 enum class UnavailableReason : std::uint8_t {
   damaged = 1,  // its row in the server's database is damaged: until that is repaired and the server restarts
@@ -316,11 +341,17 @@ struct CommandOutput {
   friend bool operator==(const CommandOutput&, const CommandOutput&) = default;
 };
 
+/// How much terrain the client has read, so that the server can pace what follows.
+struct Received {
+  std::uint64_t chunk_bytes = 1;  // of frames of the class chunks, headers included, since the stream began
+  friend bool operator==(const Received&, const Received&) = default;
+};
+
 /// Order follows the union of the schema.
 using Message =
     std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
                  Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye, ChunkUnavailable, Travel,
-                 Moment, CommandRequest, CommandOutput, Held, Same, ChunkEdits>;
+                 Moment, CommandRequest, CommandOutput, Received, UniformChunks, Held, Same, ChunkEdits>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {

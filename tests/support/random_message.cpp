@@ -135,8 +135,12 @@ Proof any_proof(SplitMix64& rng) {
 }
 
 View any_view(SplitMix64& rng) {
-  return {any_coord(rng), static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
-          static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1))};
+  return {any_coord(rng),
+          static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
+          static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
+          static_cast<std::uint16_t>(rng.next()),
+          static_cast<std::int16_t>(rng.next()),
+          static_cast<std::uint16_t>(rng.below(kViewConeMax + 1U))};
 }
 
 ChunkRequest any_chunk_request(SplitMix64& rng) {
@@ -230,6 +234,24 @@ ChunkSnapshot any_snapshot(SplitMix64& rng) {
   m.chunk.voxels = random_chunk(rng, Extent::cube(kMessageEdge), random_order(rng), 1 + rng.below(300));
   m.chunk.version = any_version(rng);
   m.chunk.digest = digest_of(m.chunk.voxels);
+  return m;
+}
+
+UniformChunks any_uniform(SplitMix64& rng) {
+  UniformChunks m;
+  for (std::uint32_t left = 1 + rng.below(8); left > 0; --left) {
+    UniformChunk chunk{{0, any_coord(rng)}, static_cast<Material>(rng.next()), any_version(rng)};
+    for (std::uint32_t high = 1 + rng.below(5); high > 0; --high) {
+      m.chunks.push_back(chunk);
+      ++chunk.key.at.y;
+    }
+  }
+  const auto before = [](const UniformChunk& a, const UniformChunk& b) {
+    return is_before_in_list(a.key.at, b.key.at);
+  };
+  const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
+  std::sort(m.chunks.begin(), m.chunks.end(), before);
+  m.chunks.erase(std::unique(m.chunks.begin(), m.chunks.end(), same), m.chunks.end());
   return m;
 }
 
@@ -339,11 +361,15 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 22:
       return any_output(rng);
     case 23:
-      return any_held(rng);
+      return Received{1 + (any64(rng) >> 1)};
     case 24:
+      return any_uniform(rng);
+    case 25:
+      return any_held(rng);
+    case 26:
       return any_same(rng);
     default:
-      RUNSTONE_ASSERT(kind == 25);
+      RUNSTONE_ASSERT(kind == 27);
       return any_chunk_edits(rng);
   }
 }
@@ -355,7 +381,7 @@ Sender sender_of(const Message& message) {
       std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
       std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
       std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message) ||
-      std::holds_alternative<Held>(message);
+      std::holds_alternative<Received>(message) || std::holds_alternative<Held>(message);
   return client ? Sender::client : Sender::server;
 }
 

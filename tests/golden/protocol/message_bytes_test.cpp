@@ -231,6 +231,30 @@ TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[p
   CHECK(to_hex(encode_missing(edits.edits, edits.from)) == "13070100ac02223d640107030207283b6403");
 }
 
+TEST_CASE("a view of protocol 2 says where its client looks", "[protocol][golden]") {
+  const Message read_back = read(Sender::client, FrameClass::control,
+                                 "1000000052554e3108000c000700080008000000000000051800000014001800"
+                                 "0c001000140004000500060008000a00140000000603004000f0002001000000"
+                                 "feffffff03000000");
+  CHECK(read_back == Message(View{{1, -2, 3}, 6, 3, 16'384, -4'096, 8'192}));
+}
+
+TEST_CASE("received of protocol 2 is read", "[protocol][golden]") {
+  const Message read_back = read(Sender::client, FrameClass::control,
+                                 "1000000052554e3108000e000700080008000000000000180c00000000000600"
+                                 "0c000400060000008967452301000000");
+  CHECK(read_back == Message(Received{0x1'2345'6789}));
+}
+
+TEST_CASE("uniform chunks of protocol 2 are read", "[protocol][golden]") {
+  const Message read_back = read(Sender::server, FrameClass::chunks,
+                                 "1000000052554e3108000e000700080008000000000000190c00000000000600"
+                                 "0800040006000000040000000e00000002060301000002000e000703f4030000");
+  const std::vector<UniformChunk> chunks = {
+      {{0, {1, -2, 3}}, 0, {}}, {{0, {1, -1, 3}}, 0, {}}, {{0, {2, 5, 3}}, 7, {3, 500}}};
+  CHECK(read_back == Message(UniformChunks{chunks}));
+}
+
 TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]") {
   Hello hello = a_hello();
   hello.key = keys_of(2).public_key;

@@ -249,6 +249,14 @@ TEST_CASE("signatures, views, keys and poses keep their bounds", "[protocol]") {
   CHECK_FALSE(view(0, 65, 1));
   CHECK_FALSE(view(0, 1, 65));
 
+  const auto look = [](std::uint16_t cone) {
+    return passes_from_client(
+        [=](auto& b) { return wire::CreateView(b, 0, 0, 0, 1, 1, 65'535, -32'768, cone); });
+  };
+  CHECK(look(0));
+  CHECK(look(kViewConeMax));
+  CHECK_FALSE(look(kViewConeMax + 1));
+
   const auto request = [](const std::vector<wire::Key>& keys) {
     return passes_from_client(
         [&](auto& b) { return wire::CreateChunkRequest(b, b.CreateVectorOfStructs(keys)); });
@@ -290,6 +298,64 @@ TEST_CASE("a snapshot is refused with bad keys, versions, digests, bytes or size
   // Before welcome the size of chunks is not known.
   base.data = encode_chunk(uniform_chunk(Extent{8, 9, 10}, 1), ChunkEncoding::packed);
   CHECK(received(Sender::server, FrameClass::chunks, base, 0).has_value());
+}
+
+TEST_CASE("received counts from one on, and only clients say it", "[protocol]") {
+  CHECK(passes_from_client([](auto& b) { return wire::CreateReceived(b, 1); }));
+  CHECK(passes_from_client([](auto& b) { return wire::CreateReceived(b, ~0ULL); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateReceived(b, 0); }));
+  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateReceived(b, 1); }));
+}
+
+TEST_CASE("uniform chunks ascend, lie inside the world and are not too many", "[protocol]") {
+  const auto read = [](const Bytes& data) {
+    return received(Sender::server, FrameClass::chunks, [&](auto& b) {
+      return wire::CreateUniformChunks(b, b.CreateVector(data.data(), data.size()));
+    });
+  };
+  const auto entry = [](std::int64_t x, std::int64_t z, std::int64_t y, std::uint64_t more,
+                        std::uint64_t material = 1, std::uint64_t epoch = 0) {
+    Bytes out;
+    ByteWriter w(out);
+    w.svarint(x);
+    w.svarint(z);
+    w.svarint(y);
+    w.varint(more);
+    w.varint(material);
+    w.varint(epoch);
+    return out;
+  };
+  const auto joined = [](Bytes a, const Bytes& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  const auto whole = read(entry(0, 0, -5, 4'095));
+  REQUIRE(whole.has_value());
+  CHECK(std::get<UniformChunks>(*whole).chunks.size() == 4'096);
+  CHECK(std::get<UniformChunks>(*whole).chunks.back() == UniformChunk{{0, {0, 4'090, 0}}, 1, {}});
+  CHECK_FALSE(read({}).has_value());
+  CHECK_FALSE(read(entry(0, 0, 0, 4'096)).has_value());
+  CHECK_FALSE(read(joined(entry(0, 0, 0, 4'095), entry(1, 0, 0, 0))).has_value());  // too many in all
+  CHECK_FALSE(read(joined(entry(0, 0, 0, 3), entry(0, 0, 3, 0))).has_value());      // the same chunk twice
+  CHECK(read(joined(entry(0, 0, 0, 3), entry(0, 0, 4, 0))).has_value());
+  CHECK_FALSE(read(joined(entry(0, 0, 0, 0), entry(0, -1, 0, 0))).has_value());  // goes back
+  CHECK(read(joined(entry(0, 0, 0, 0), entry(1, -1, 0, 0))).has_value());
+  CHECK(read(entry(kReach - 1, -kReach, kReach - 4, 3)).has_value());
+  CHECK_FALSE(read(entry(kReach, 0, 0, 0)).has_value());
+  CHECK_FALSE(read(entry(0, -kReach - 1, 0, 0)).has_value());
+  CHECK_FALSE(read(entry(0, 0, kReach - 4, 4)).has_value());  // reaches out of the world at its top
+  CHECK_FALSE(
+      read(joined(entry(1, 0, 0, 0), entry(std::numeric_limits<std::int64_t>::max(), 0, 0, 0))).has_value());
+  CHECK_FALSE(read(entry(0, 0, 0, 0, 65'536)).has_value());
+  CHECK_FALSE(read(joined(entry(0, 0, 0, 0, 1, 3), {0})).has_value());  // half a version
+  CHECK(read(joined(entry(0, 0, 0, 0, 1, 3), {9})).has_value());
+  CHECK_FALSE(read(joined(entry(0, 0, 0, 0, 1, 1ULL << 32), {9})).has_value());
+  Bytes cut = entry(-300, 70'000, 9, 100, 300, 0);
+  CHECK_FALSE(read(joined(cut, {0})).has_value());
+  while (!cut.empty()) {
+    cut.pop_back();
+    CHECK_FALSE(read(cut).has_value());
+  }
 }
 
 TEST_CASE("unavailable chunks are named, and their reason may be one of the future", "[protocol]") {

@@ -130,6 +130,24 @@ TEST_CASE_METHOD(Fixture, "a snapshot that contains held back commits replaces t
   CHECK(news.edits[0].chunks == std::vector{kHere});
 }
 
+TEST_CASE_METHOD(Fixture, "chunks of one material come as snapshots do, and with their digest", "[replica]") {
+  const ChunkKey above{0, {kHere.at.x, kHere.at.y + 1, kHere.at.z}};
+  const Version old{1, 4}, newer{1, 9};
+  replica.receive(UniformChunks{{{kHere, 3, newer}, {above, 3, {}}}}, kNow);
+  for (const ChunkKey& key : {kHere, above}) {
+    const ChunkPtr chunk = replica.confirmed(key);
+    REQUIRE(chunk != nullptr);
+    CHECK(chunk->voxels.is_uniform());
+    CHECK(material_at(chunk->voxels, {1, 2, 3}) == 3);
+    CHECK(chunk->digest == digest_of(chunk->voxels));
+  }
+  CHECK(replica.confirmed(kHere)->version == newer);
+  replica.receive(UniformChunks{{{kHere, 2, old}}}, kNow);  // stale
+  CHECK(material_at(replica.confirmed(kHere)->voxels, {1, 2, 3}) == 3);
+  replica.receive(UniformChunks{{{{0, {1'000, 0, 0}}, 2, {}}}}, kNow);  // outside of the view
+  CHECK(replica.confirmed({0, {1'000, 0, 0}}) == nullptr);
+}
+
 TEST_CASE_METHOD(Fixture, "a stale snapshot never erases a newer edit", "[replica]") {
   const ChunkSnapshot stale = world.snapshot(kHere.at);
   load(kHere);
