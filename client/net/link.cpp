@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/net/read_report.hpp"
 #include "client/net/steady_clock.hpp"
 
 namespace runstone {
@@ -28,6 +29,7 @@ struct Link::State {
 
   // One connection.
   Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
+  void tell_read();
   void enqueue(ConnectionNumber to, const EncodedMessage& message);
   void close_socket();
 
@@ -46,7 +48,12 @@ struct Link::State {
   bool up = false;
   bool closing = false;  // close once everything is sent
   std::string why_closed;
-  std::uint16_t chunk_edge = 0;  // of this connection's world; 0 before welcome
+  std::uint16_t chunk_edge = 0;   // of this connection's world; 0 before welcome
+  std::uint64_t features = 0;     // in force; none before welcome
+  std::uint64_t chunk_bytes = 0;  // of frames of chunks read on this connection
+  ReadReport report;
+  asio::steady_timer report_due{io};
+  bool is_report_due_set = false;
   std::deque<EncodedMessage> edits, others;
   std::size_t queued_bytes = 0;
 };
@@ -63,7 +70,10 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
     auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
     if (!message) return Unexpected<Error>{message.error()};
     const std::int64_t end_ns = steady_now_ns();
-    if (const auto* welcome = std::get_if<Welcome>(&*message)) chunk_edge = welcome->chunk_edge;
+    if (const auto* welcome = std::get_if<Welcome>(&*message)) {
+      chunk_edge = welcome->chunk_edge;
+      features = welcome->features;
+    }
     NetReceived received;
     received.connection = connection;
     received.message = std::move(*message);
@@ -73,6 +83,24 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
     received.unpack_ns = end_ns - start_ns;
     events.on_received(std::move(received));
     return {};
+  });
+}
+
+// Tells the server what was read, now or when it is due.
+void Link::State::tell_read() {
+  if (!up || (features & kFeatureReceived) == 0) return;
+  const TimeUs now_us = steady_now_us();
+  if (report.is_due(chunk_bytes, now_us)) {
+    report.told(chunk_bytes, now_us);
+    enqueue(connection, encode_message(Received{chunk_bytes}));
+  }
+  const auto due_us = report.due(chunk_bytes);
+  if (!due_us || is_report_due_set) return;
+  is_report_due_set = true;
+  report_due.expires_after(std::chrono::microseconds(std::max<TimeUs>(*due_us - now_us, 0)));
+  report_due.async_wait([this](const std::error_code& /*cancelled*/) {
+    is_report_due_set = false;
+    tell_read();
   });
 }
 
@@ -115,6 +143,8 @@ asio::awaitable<void> read_messages(State& state) {
       state.why_closed = std::string("bad bytes from the server: ") + fed.error().what;
       break;
     }
+    state.chunk_bytes = reader.frame_bytes(FrameClass::chunks);
+    state.tell_read();
     while (!state.stopping && state.events.is_full()) {
       state.pause.expires_after(milliseconds(1));
       co_await state.pause.async_wait(kTuple);
@@ -122,6 +152,7 @@ asio::awaitable<void> read_messages(State& state) {
   }
   state.up = false;
   state.close_socket();
+  state.report_due.cancel();
   if (state.stopping) state.pause.cancel();  // stop() need not wait any longer
 }
 
@@ -187,6 +218,9 @@ asio::awaitable<void> keep_connected(State& state) {
       state.closing = false;
       state.why_closed.clear();
       state.chunk_edge = 0;
+      state.features = 0;
+      state.chunk_bytes = 0;
+      state.report = {};
       state.edits.clear();
       state.others.clear();
       state.queued_bytes = 0;

@@ -34,6 +34,9 @@ struct ServerConfig {
   std::uint64_t control_queue_kib = 16'384;    // per session, KiB, 64..1048576
   std::uint64_t edit_queue_kib = 4'096;        // per session, KiB, 64..1048576
   std::uint64_t chunk_queue_kib = 4'096;       // per session, KiB, 64..1048576
+  std::uint64_t session_kib_per_second = 0;    // to each session: beyond it terrain waits, 0: no limit
+  std::uint64_t server_kib_per_second =
+      0;  // to all together, shared by those with terrain to send, 0: no limit
   std::string
       operators;  // public keys in hex of those who may give every command, parted by blanks or commas
   // Edits.

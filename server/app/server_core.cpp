@@ -42,6 +42,8 @@ NetLimits net_limits(const ServerConfig& config) {
   limits.send.control_bytes = config.control_queue_kib * 1024;
   limits.send.edit_bytes = config.edit_queue_kib * 1024;
   limits.send.chunk_bytes = config.chunk_queue_kib * 1024;
+  limits.bytes_per_second = config.session_kib_per_second * 1024;
+  limits.server_bytes_per_second = config.server_kib_per_second * 1024;
   limits.connections_max = config.sessions_max + 64;  // some more may be in the handshake
   limits.handshakes_per_address = config.handshakes_per_address;
   limits.messages_per_second = config.messages_per_second;
@@ -389,12 +391,16 @@ void ServerCore::set_encoding(SessionId session, ChunkEncoding encoding) {
   if (NetSession* net = find(session)) net->set_encoding(encoding);
 }
 
+void ServerCore::set_features(SessionId session, std::uint64_t features) {
+  if (NetSession* net = find(session)) net->set_features(features);
+}
+
 void ServerCore::opened(SessionId session) { listener_->opened(session); }
 
 bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) {
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) return true;
-  const auto place = found->second->reserve_chunk();
+  const auto place = found->second->reserve_chunk(key);
   if (!place) return false;
   asio::post(workers_, [net = found->second, key, chunk, place = *place] {
     net->fill_chunk(place, encode_snapshot(key, *chunk, net->encoding()));
@@ -405,7 +411,7 @@ bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const Chu
 bool ServerCore::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version held) {
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) return true;
-  const auto place = found->second->reserve_chunk();
+  const auto place = found->second->reserve_chunk(key);
   if (!place) return false;
   asio::post(workers_, [this, net = found->second, key, chunk, held, place = *place] {
     const ChunkEncoding encoding = net->encoding();
@@ -422,6 +428,10 @@ bool ServerCore::send_update(SessionId session, const ChunkKey& key, const Chunk
     net->fill_chunk(place, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
   });
   return true;
+}
+
+void ServerCore::forget_outside(SessionId session, const View& view) {
+  if (NetSession* net = find(session)) net->forget_outside(view);
 }
 
 void ServerCore::close(SessionId session, GoodbyeReason reason, const std::string& text) {

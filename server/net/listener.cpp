@@ -64,6 +64,7 @@ Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::
 Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events)
     : io_(io),
       limits_(limits),
+      budget_(limits.server_bytes_per_second),
       chunk_edge_(chunk_edge),
       events_(events),
       strand_(asio::make_strand(asio::any_io_executor(io.get_executor()))),
@@ -128,8 +129,9 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  auto session = std::make_shared<NetSession>(id, asio::any_io_executor(io_.get_executor()),
-                                              std::move(stream), limits_, chunk_edge_, events_, counters_);
+  auto session =
+      std::make_shared<NetSession>(id, asio::any_io_executor(io_.get_executor()), std::move(stream), limits_,
+                                   chunk_edge_, budget_, events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);

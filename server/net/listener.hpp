@@ -55,6 +55,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
 
   asio::io_context& io_;
   const NetLimits limits_;
+  ByteBudget budget_;  // of all sessions
   const std::uint16_t chunk_edge_;
   NetEvents& events_;
   NetCounters counters_;

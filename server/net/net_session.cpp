@@ -19,11 +19,15 @@ namespace {
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 16 * 1024;
 
+asio::steady_timer::time_point time_point_of(TimeUs us) {
+  return asio::steady_timer::time_point(std::chrono::microseconds(us));
+}
+
 }  // namespace
 
 NetSession::NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
-                       const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events,
-                       NetCounters& counters)
+                       const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget,
+                       NetEvents& events, NetCounters& counters)
     : id_(id),
       limits_(limits),
       chunk_edge_(chunk_edge),
@@ -33,13 +37,13 @@ NetSession::NetSession(SessionId id, asio::any_io_executor executor, std::unique
       stream_(std::move(stream)),
       peer_(stream_->peer()),
       queue_(limits.send),
+      gate_(limits.bytes_per_second, budget),
       write_wake_(strand_),
       read_wake_(strand_),
       linger_(strand_),
       reader_(Sender::client),
       messages_(limits.messages_per_second, limits.message_burst) {
   // A timer that never comes by itself: cancelling it wakes the loop that waits on it.
-  write_wake_.expires_at(asio::steady_timer::time_point::max());
   read_wake_.expires_at(asio::steady_timer::time_point::max());
 }
 
@@ -63,10 +67,18 @@ bool NetSession::send(const EncodedMessage& message) {
   return true;
 }
 
-std::optional<ChunkPlace> NetSession::reserve_chunk() {
+std::optional<ChunkPlace> NetSession::reserve_chunk(const ChunkKey& key) {
   const std::lock_guard lock(mutex_);
   if (closing_) return ChunkPlace{0};  // names no place: filling it does nothing
-  return queue_.reserve_chunk();
+  return queue_.reserve_chunk(key);
+}
+
+void NetSession::forget_outside(const View& view) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.forget_outside(view);
+  }
+  wake_writer();  // there may be room again, or a chunk behind one that is gone
 }
 
 void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
@@ -76,6 +88,12 @@ void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
     queue_.fill(place, message);
   }
   wake_writer();
+}
+
+void NetSession::set_features(std::uint64_t features) {
+  if ((features & kFeatureReceived) == 0) return;
+  const std::lock_guard lock(mutex_);
+  gate_.pace();
 }
 
 void NetSession::close(GoodbyeReason reason, const std::string& text) {
@@ -137,8 +155,27 @@ Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
   }
+  if (const auto* received = std::get_if<Received>(&*message)) return on_received(*received);
   unhandled_.fetch_add(1);
   events_.on_message(id_, *std::move(message));
+  return {};
+}
+
+Result<void> NetSession::on_received(const Received& received) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!gate_.is_paced()) {
+      broken_rule_ = GoodbyeReason::unexpected_message;
+      return fail(ErrorCode::bad_value, "received, but its feature is not in force");
+    }
+    const auto acked = gate_.acked(received.chunk_bytes, steady_us());
+    if (!acked) {
+      broken_rule_ = GoodbyeReason::malformed_message;
+      return acked;
+    }
+    queue_.set_chunk_backlog(gate_.backlog_bytes());
+  }
+  wake_writer();
   return {};
 }
 
@@ -187,9 +224,17 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     bool has_batch = false;
     bool is_drained = false;
     bool is_last = false;
+    auto wake = asio::steady_timer::time_point::max();
     {
       const std::lock_guard lock(self->mutex_);
-      has_batch = self->queue_.take(batch);
+      self->writer_idle_ = false;
+      const TimeUs now_us = steady_us();
+      const bool has_chunk = self->queue_.has_chunk();
+      const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us) : 0;
+      has_batch = self->queue_.take(batch, chunk_body_max);
+      if (has_batch) self->gate_.sent(batch.chunk_bytes, batch.bytes - batch.chunk_bytes, now_us);
+      if (!has_chunk) self->gate_.ran_dry();
+      if (has_chunk && chunk_body_max == 0) wake = time_point_of(self->gate_.next_us(now_us));
       is_drained = self->queue_.take_drained();
       is_last = !has_batch && self->closing_;
       if (!has_batch && !is_last) self->writer_idle_ = true;
@@ -198,7 +243,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     if (is_last) break;
     if (!has_batch) {
       // Woken by cancel; a wake that came before this wait starts finds no waiter, but it was posted to this
-      // strand, so it cannot run between here and the wait.
+      // strand, so it cannot run between here and the wait. Terrain that has to wait sets the time.
+      self->write_wake_.expires_at(wake);
       const auto [error] = co_await self->write_wake_.async_wait(kTuple);
       (void)error;
       continue;

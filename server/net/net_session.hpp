@@ -1,7 +1,7 @@
 // NetSession: one connection: reads frames, verifies messages and hands them on; sends what is queued by
 // priority; ends with a numbered goodbye. A peer that breaks a rule ends its own session and nobody else's.
-// Threads: the two loops run on the session's strand; send(), reserve_chunk(), fill_chunk(), close(),
-// abort(), handled() and set_encoding() may be called from any thread and return at once.
+// Threads: the two loops run on the session's strand; send(), reserve_chunk(), fill_chunk(), forget_outside(), close(),
+// abort(), handled(), set_encoding() and set_features() may be called from any thread and return at once.
 #pragma once
 #include <asio/any_io_executor.hpp>
 #include <asio/steady_timer.hpp>
@@ -15,6 +15,7 @@
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/net/byte_stream.hpp"
+#include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"
 #include "server/net/send_queue.hpp"
 #include "server/world/token_bucket.hpp"
@@ -23,6 +24,8 @@ namespace runstone {
 
 struct NetLimits {
   SendLimits send;
+  std::uint64_t bytes_per_second = 0;          // per session: terrain waits where more would go; 0: no limit
+  std::uint64_t server_bytes_per_second = 0;   // all sessions together, likewise
   std::size_t notsent_bytes = 16 * 1024;       // TCP_NOTSENT_LOWAT
   std::size_t connections_max = 512;           // sockets, in any state
   std::size_t handshakes_per_address = 32;     // of those sockets: not yet authenticated, from one address
@@ -41,9 +44,10 @@ struct NetCounters {
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
-  /// `events` and `counters` must outlive the session. `chunk_edge`: of the world.
+  /// `budget` (of the server), `events` and `counters` must outlive the session. `chunk_edge`: of the world.
   NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
-             const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events, NetCounters& counters);
+             const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events,
+             NetCounters& counters);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
@@ -54,10 +58,14 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// False: the class is full, nothing was queued. After close() messages vanish and true is returned.
   bool send(const EncodedMessage& message);
   /// Takes a place for a chunk; nothing if the class is full.
-  std::optional<ChunkPlace> reserve_chunk();
+  std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key);
   void fill_chunk(ChunkPlace place, const EncodedMessage& message);
+  /// Snapshots outside of the view that nothing was sent of need not be sent.
+  void forget_outside(const View& view);
   void set_encoding(ChunkEncoding encoding) { encoding_.store(encoding); }
   ChunkEncoding encoding() const { return encoding_.load(); }
+  /// The optional parts of the protocol that are in force. Once, before the first chunk.
+  void set_features(std::uint64_t features);
 
   /// Sends goodbye after the edits and control messages queued, drops chunks, closes; at the latest after the
   /// linger time. Only the first call counts.
@@ -72,6 +80,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
   Result<void> on_message(FrameClass frame_class, ByteView body);
+  Result<void> on_received(const Received& received);
   void refuse(const Error& error);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
   void wake_writer();
@@ -89,8 +98,9 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> unhandled_{0};
   std::atomic<bool> reader_paused_{false};
 
-  std::mutex mutex_;  // a leaf: guards the next three
+  std::mutex mutex_;  // a leaf: guards the next four
   SendQueue queue_;
+  ChunkGate gate_;
   bool closing_ = false;
   bool writer_idle_ = false;
 

@@ -5,6 +5,11 @@
 #include "common/core/assert.hpp"
 
 namespace runstone {
+namespace {
+
+constexpr std::size_t kPassedFragments = 4;
+
+}  // namespace
 
 std::size_t SendQueue::limit(FrameClass c) const {
   switch (c) {
@@ -13,7 +18,7 @@ std::size_t SendQueue::limit(FrameClass c) const {
     case FrameClass::edits:
       return limits_.edit_bytes;
     case FrameClass::chunks:
-      return limits_.chunk_bytes;
+      return chunk_bytes_max();
   }
   return 0;
 }
@@ -27,18 +32,18 @@ bool SendQueue::push(const EncodedMessage& message) {
     refused_ = true;
     return false;
   }
-  mine.items.push_back({message.bytes, 0});
+  mine.items.push_back({message.bytes, 0, std::nullopt});
   mine.bytes += size;
   return true;
 }
 
-std::optional<ChunkPlace> SendQueue::reserve_chunk() {
+std::optional<ChunkPlace> SendQueue::reserve_chunk(const std::optional<ChunkKey>& key) {
   Lane& mine = lane(FrameClass::chunks);
-  if (mine.items.size() >= limits_.chunk_count || mine.bytes >= limits_.chunk_bytes) {
+  if (mine.items.size() >= limits_.chunk_count || mine.bytes >= chunk_bytes_max()) {
     refused_ = true;
     return std::nullopt;
   }
-  mine.items.push_back({nullptr, next_place_});
+  mine.items.push_back({nullptr, next_place_, key});
   return next_place_++;
 }
 
@@ -52,37 +57,63 @@ void SendQueue::fill(ChunkPlace place, const EncodedMessage& message) {
   mine.bytes += message.bytes->size();
 }
 
-bool SendQueue::cut(FrameClass frame_class, Batch& batch) {
+bool SendQueue::cut(FrameClass frame_class, std::size_t body_max, Batch& batch) {
+  if (!can_cut(frame_class)) return false;
   Lane& mine = lane(frame_class);
-  if (mine.items.empty() || mine.items.front().bytes == nullptr) return false;
   const std::shared_ptr<const Bytes>& bytes = mine.items.front().bytes;
-  const std::size_t count = std::min(kFragmentBytesMax, bytes->size() - mine.sent);
+  const std::size_t count = std::min(body_max, bytes->size() - mine.sent);
   const ByteView body = ByteView(*bytes).subspan(mine.sent, count);
   const bool more = mine.sent + count < bytes->size();
   batch.pieces.push_back({frames_.next(frame_class, count, more), body});
   batch.messages.push_back(bytes);
   batch.bytes += kFrameHeaderBytes + count;
   batch.has_edits = batch.has_edits || frame_class == FrameClass::edits;
+  if (frame_class == FrameClass::chunks) batch.chunk_bytes += kFrameHeaderBytes + count;
   mine.bytes -= count;
   mine.sent += count;
   if (!more) {
     mine.items.pop_front();
     mine.sent = 0;
   }
+  for (const FrameClass other : {FrameClass::control, FrameClass::chunks}) {
+    lane(other).passed = other != frame_class && can_cut(other) ? lane(other).passed + count : 0;
+  }
   return true;
 }
 
-bool SendQueue::take(Batch& batch) {
+bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
   batch.messages.clear();
   batch.pieces.clear();
   batch.bytes = 0;
   batch.has_edits = false;
+  batch.chunk_bytes = 0;
   while (batch.bytes < limits_.write_bytes) {
-    if (cut(FrameClass::edits, batch) || cut(FrameClass::control, batch)) continue;
-    cut(FrameClass::chunks, batch);
+    const bool is_chunks_turn =
+        chunk_body_max > 0 && lane(FrameClass::chunks).passed >= kPassedFragments * chunk_body_max;
+    const bool is_controls_turn = lane(FrameClass::control).passed >= kPassedFragments * kFragmentBytesMax;
+    if (is_chunks_turn && cut(FrameClass::chunks, chunk_body_max, batch)) break;
+    if (is_controls_turn && cut(FrameClass::control, kFragmentBytesMax, batch)) continue;
+    if (cut(FrameClass::edits, kFragmentBytesMax, batch)) continue;
+    if (cut(FrameClass::control, kFragmentBytesMax, batch)) continue;
+    if (chunk_body_max > 0) cut(FrameClass::chunks, chunk_body_max, batch);
     break;  // terrain in the kernel's buffer delays the next edit: one fragment per write is enough
   }
   return !batch.pieces.empty();
+}
+
+void SendQueue::forget_outside(const View& view) {
+  Lane& mine = lane(FrameClass::chunks);
+  const auto keeps = [&](const Item& item) { return !item.key || view.contains(item.key->at); };
+  std::deque<Item> kept;
+  for (std::size_t i = 0; i < mine.items.size(); ++i) {
+    Item& item = mine.items[i];
+    if (keeps(item) || (i == 0 && mine.sent > 0)) {
+      kept.push_back(std::move(item));
+    } else if (item.bytes != nullptr) {
+      mine.bytes -= item.bytes->size();
+    }
+  }
+  mine.items = std::move(kept);
 }
 
 void SendQueue::drop_chunks() {
@@ -90,6 +121,7 @@ void SendQueue::drop_chunks() {
   mine.items.clear();
   mine.bytes = 0;
   mine.sent = 0;
+  mine.passed = 0;
 }
 
 bool SendQueue::empty() const {

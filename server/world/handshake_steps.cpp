@@ -69,6 +69,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.durable_told = welcome.durable;
   mine.state = SessionState::awaits_proof;
   world.ports.set_encoding(session, welcome.encoding);
+  world.ports.set_features(session, welcome.features);
   send_or_close(world, session, welcome);
 }
 

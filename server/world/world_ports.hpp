@@ -35,6 +35,8 @@ class WorldPorts {
   virtual bool send(SessionId session, const EncodedMessage& message) = 0;
   /// The encoding agreed with a session; called once, before its first send_snapshot().
   virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
+  /// The optional parts of the protocol in force with a session; called once, before ready.
+  virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}
   /// The session has proved its key: from now on it is a player.
   virtual void opened(SessionId /*session*/) {}
   /// Encodes a snapshot on a worker in the session's encoding and queues it like send(). False as above; a
@@ -45,6 +47,8 @@ class WorldPorts {
   virtual bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version /*held*/) {
     return send_snapshot(session, key, chunk);
   }
+  /// The session's view is this one now: snapshots outside of it that nothing was sent of yet need not be sent.
+  virtual void forget_outside(SessionId /*session*/, const View& /*view*/) {}
   /// Sends goodbye after what is queued, then closes. disconnected() follows.
   virtual void close(SessionId session, GoodbyeReason reason, const std::string& text) = 0;
 

@@ -93,6 +93,85 @@ TEST_CASE("an edit overtakes terrain at the next fragment", "[net]") {
   CHECK(queue.empty());
 }
 
+TEST_CASE("terrain goes only as far as it may, in fragments as large as they may be", "[net]") {
+  SendQueue queue(limits());
+  const auto place = queue.reserve_chunk();
+  CHECK_FALSE(queue.has_chunk());
+  queue.fill(*place, message(FrameClass::chunks, 5'000));
+  CHECK(queue.has_chunk());
+  SendQueue::Batch batch;
+  CHECK_FALSE(queue.take(batch, 0));
+  CHECK(queue.push(message(FrameClass::edits, 10)));
+  REQUIRE(queue.take(batch, 0));  // edits never wait for it
+  CHECK(batch.chunk_bytes == 0);
+  REQUIRE(queue.take(batch, 2'000));
+  CHECK(batch.chunk_bytes == 2'000 + kFrameHeaderBytes);
+  CHECK(batch.bytes == batch.chunk_bytes);
+}
+
+TEST_CASE("terrain and control are not starved by edits without end", "[net]") {
+  SendLimits wide;
+  SendQueue queue(wide);
+  const auto place = queue.reserve_chunk();
+  queue.fill(*place, message(FrameClass::chunks, 3'000'000));
+  SendQueue::Batch batch;
+  std::size_t all = 0, chunks = 0, control = 0;
+  for (int i = 0; i < 300; ++i) {
+    while (queue.queued_bytes(FrameClass::edits) < 200'000)
+      REQUIRE(queue.push(message(FrameClass::edits, 30'000)));
+    while (queue.queued_bytes(FrameClass::control) < 50'000)
+      REQUIRE(queue.push(message(FrameClass::control, 10'000)));
+    REQUIRE(queue.take(batch));
+    all += batch.bytes;
+    chunks += batch.chunk_bytes;
+    for (const auto& piece : batch.pieces) control += piece.header[4] == 0 ? piece.body.size() : 0;
+  }
+  CHECK(chunks >= all / 8);
+  CHECK(control >= all / 12);
+  CHECK(chunks + control <= all / 2);  // and edits still come first
+}
+
+TEST_CASE("snapshots outside of the view are not sent any more, but for one that has begun", "[net]") {
+  SendQueue queue(limits());
+  const auto key = [](std::int32_t x) { return ChunkKey{0, {x, 0, 0}}; };
+  const auto begun = queue.reserve_chunk(key(50));
+  queue.fill(*begun, message(FrameClass::chunks, 100, 1));
+  SendQueue::Batch batch;
+  Wire wire;
+  REQUIRE(queue.take(batch, 60));
+  wire.append(batch);
+  const auto inside = queue.reserve_chunk(key(1));
+  const auto outside = queue.reserve_chunk(key(51));
+  const auto unfilled = queue.reserve_chunk(key(52));
+  queue.fill(*outside, message(FrameClass::chunks, 2'000, 9));
+  queue.forget_outside({{0, 0, 0}, 2, 0});
+  queue.fill(*inside, message(FrameClass::chunks, 10, 2));
+  queue.fill(*unfilled, message(FrameClass::chunks, 10, 9));
+  CHECK(queue.push(message(FrameClass::chunks, 10, 3)));  // no snapshot: it stays
+  queue.forget_outside({{0, 0, 0}, 2, 0});
+  CHECK(queue.queued_bytes(FrameClass::chunks) == 40 + 10 + 10);
+  wire.take_all(queue);
+  const auto got = wire.messages();
+  REQUIRE(got.size() == 3);
+  CHECK(got[0].second == Bytes(100, 1));
+  CHECK(got[1].second[0] == 2);
+  CHECK(got[2].second[0] == 3);
+}
+
+TEST_CASE("on a slow link fewer bytes of chunks wait", "[net]") {
+  SendQueue queue(limits());
+  queue.set_chunk_backlog(5'000);
+  const auto first = queue.reserve_chunk();
+  queue.fill(*first, message(FrameClass::chunks, 6'000));
+  CHECK_FALSE(queue.reserve_chunk().has_value());
+  SendQueue::Batch batch;
+  REQUIRE(queue.take(batch, 2'000));
+  CHECK_FALSE(queue.take_drained());
+  REQUIRE(queue.take(batch, 2'000));
+  CHECK(queue.take_drained());
+  CHECK(queue.reserve_chunk().has_value());
+}
+
 TEST_CASE("chunks keep the order of their places, however late they are filled", "[net]") {
   SendQueue queue(limits());
   const auto first = queue.reserve_chunk();
