@@ -291,9 +291,17 @@ void Client::follow_player(TimeUs now_us) {
   session_.set_pose(player_.pose());
   if (!session_.replica().opened()) return;
   const ChunkCoord centre = player_.chunk(session_.replica().chunk_edge());
-  if (view_pace_.step(session_.view().centre, centre, now_us)) {
-    session_.set_view({centre, options_.view_radius, options_.view_radius_v});
-    picture_.view_changed();
+  View view = session_.view();
+  view.centre = centre;
+  view.yaw = player_.pose().yaw;
+  view.pitch = player_.pose().pitch;
+  view.cone = kSightCone;
+  if (view_pace_.step(session_.view(), view, now_us)) {
+    const bool moves = !session_.view().same_chunks(view);
+    view.radius_h = options_.view_radius;
+    view.radius_v = options_.view_radius_v;
+    session_.set_view(view);
+    if (moves) picture_.view_changed();
   }
   picture_.joined(session_.view(), started_us_);
   picture_.set_eye(centre);

@@ -6,18 +6,24 @@
 
 namespace runstone {
 
-// Orders a heap so that the nearest chunk, of equally near ones the lowest key, is on top.
-auto SessionInterest::farther() const {
-  return [view = *view_](const ChunkKey& a, const ChunkKey& b) {
-    const std::int64_t da = distance2(view, a.at);
-    const std::int64_t db = distance2(view, b.at);
-    return da != db ? da > db : a > b;
-  };
+namespace {
+
+// A heap has its largest element on top.
+auto later(const ViewOrder& order) {
+  return [&order](const ChunkKey& a, const ChunkKey& b) { return order(b, a); };
 }
+
+}  // namespace
 
 SessionInterest::Moved SessionInterest::set_view(const View& view) {
   Moved moved;
   if (view_ == view) return moved;
+  if (view_ && view_->same_chunks(view)) {
+    std::erase_if(queue_, [&](const ChunkKey& key) { return !is_wanted(key); });
+    moved.steps = queue_.size();
+    set_order(view);
+    return moved;
+  }
   std::vector<ChunkCoord> cells;
   if (view_) append_difference(*view_, view, limit_, cells);
   for (const ChunkCoord at : cells) {
@@ -27,18 +33,25 @@ SessionInterest::Moved SessionInterest::set_view(const View& view) {
     --counter(found->second);
     chunks_.erase(found);
   }
+  moved.steps = cells.size() + queue_.size();
   std::erase_if(queue_, [&](const ChunkKey& key) { return !view.contains(key.at) || !is_wanted(key); });
   cells.clear();
   append_difference(view, view_, limit_, cells);
   for (const ChunkCoord at : cells) queue_.push_back({0, at});
   moved.entered = cells.size();
-  view_ = view;
-  std::make_heap(queue_.begin(), queue_.end(), farther());
+  moved.steps += cells.size();
+  set_order(view);
   return moved;
 }
 
+void SessionInterest::set_order(const View& view) {
+  view_ = view;
+  order_.emplace(view);
+  std::make_heap(queue_.begin(), queue_.end(), later(*order_));
+}
+
 void SessionInterest::pop_nearest() {
-  std::pop_heap(queue_.begin(), queue_.end(), farther());
+  std::pop_heap(queue_.begin(), queue_.end(), later(*order_));
   queue_.pop_back();
 }
 
@@ -69,7 +82,7 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
   }
   chunks_.erase(key);
   queue_.push_back(key);
-  std::push_heap(queue_.begin(), queue_.end(), farther());
+  std::push_heap(queue_.begin(), queue_.end(), later(*order_));
 }
 
 std::optional<ChunkKey> SessionInterest::next_for_audit() {

@@ -1,5 +1,5 @@
 // SessionInterest: the chunks one session sees or waits for. Every chunk of its view is in one state:
-//   wanted       in the queue, nearest first; the state of all chunks nothing was done for yet, so it
+//   wanted       in the queue, in the order of the view (ViewOrder); the state of all chunks nothing was done for yet, so it
 //                costs no entry: a peer that looks elsewhere again and again pays for its queue, not for a table
 //   waiting      not in memory: a load was asked for
 //   subscribed   a snapshot was sent; every later commit that touches the chunk goes to the session
@@ -17,6 +17,7 @@
 #include "common/core/coords.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/interest/view_cells.hpp"
+#include "server/interest/view_order.hpp"
 
 namespace runstone {
 
@@ -33,13 +34,14 @@ class SessionInterest {
   struct Moved {
     std::size_t entered = 0;  // chunks that came into the view
     std::vector<Left> left;   // those that left it and were not wanted
+    std::size_t steps = 0;    // chunks looked at: what it cost
   };
-  /// Moves the view: new chunks become wanted, those outside are forgotten. O(columns + chunks that change +
-  /// wanted), times log of the entries.
+  /// Moves the view: new chunks become wanted, those outside are forgotten, and what is wanted is put in the new
+  /// order. O(columns + chunks that change + wanted), times log of the entries; O(wanted) if it only turns.
   Moved set_view(const View& view);
   const std::optional<View>& view() const { return view_; }
 
-  /// Nearest wanted chunk (ties by key), which stays wanted. Amortised O(log wanted).
+  /// The wanted chunk that comes first in the view's order, which stays wanted. Amortised O(log wanted).
   std::optional<ChunkKey> nearest_wanted();
 
   /// Nothing for a chunk outside of the view.
@@ -57,14 +59,15 @@ class SessionInterest {
  private:
   std::size_t& counter(ChunkInterest state) { return counts_[static_cast<std::size_t>(state)]; }
   bool is_wanted(const ChunkKey& key) const { return !chunks_.contains(key); }  // of a key in the queue
-  auto farther() const;
   void pop_nearest();
+  void set_order(const View& view);
 
   CoordLimit limit_;
   std::optional<View> view_;
   std::map<ChunkKey, ChunkInterest> chunks_;  // but the wanted ones
   std::array<std::size_t, 6> counts_{};
-  // A heap with the nearest on top, of chunks of the view only. Holds every wanted chunk, and some that are
+  std::optional<ViewOrder> order_;  // of view_
+  // A heap with the first one on top, of chunks of the view only. Holds every wanted chunk, and some that are
   // not wanted any more or twice in it: nearest_wanted() drops those it meets, set_view() all of them.
   std::vector<ChunkKey> queue_;
   std::optional<ChunkKey> audited_;

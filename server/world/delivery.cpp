@@ -1,5 +1,8 @@
 #include "server/world/delivery.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "server/world/held_steps.hpp"
 #include "server/world/time_travel.hpp"
 
@@ -26,6 +29,7 @@ bool send_moment(WorldState& world, SessionId session, const Now& now) {
     mine.stalled_us = now.steady_us;
     return false;
   }
+  if (turns && !send_uniform(world, session, now)) return false;
   for (std::optional<Moment>* due : {&mine.begins_due, &mine.word_due}) {
     if (!*due) continue;
     if (!world.ports.send(session, encode_message(**due))) {
@@ -38,7 +42,56 @@ bool send_moment(WorldState& world, SessionId session, const Now& now) {
   return true;
 }
 
+/// Counts a chunk of one material as sent; it goes with others. False: too many wait already.
+bool gather_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
+                    const Now& now) {
+  WorldSession& mine = *world.find(session);
+  const bool is_full = mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
+  if (is_full) return false;
+  mine.uniform.push_back({key, material_at(chunk.voxels, {0, 0, 0}), chunk.version});
+  if (mine.uniform.size() >= kUniformGathered) send_uniform(world, session, now);
+  return true;
+}
+
+/// Gathered chunks wait only while more may come soon.
+void send_uniform_if_last(WorldState& world, SessionId session, const Now& now) {
+  WorldSession& mine = *world.find(session);
+  const bool more_come = world.interest.find(session)->count(ChunkInterest::waiting) > 0 ||
+                         (mine.visit && mine.visit->loading > 0);
+  if (!more_come) send_uniform(world, session, now);
+}
+
 }  // namespace
+
+bool send_uniform(WorldState& world, SessionId session, const Now& now) {
+  WorldSession& mine = *world.find(session);
+  if (mine.uniform.empty()) return true;
+  if (is_stalled(world, mine, now)) return false;
+  // A chunk that was gathered twice goes as it was gathered last.
+  const auto before = [](const UniformChunk& a, const UniformChunk& b) {
+    return is_before_in_list(a.key.at, b.key.at);
+  };
+  const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
+  UniformChunks message{mine.uniform};
+  std::reverse(message.chunks.begin(), message.chunks.end());
+  std::stable_sort(message.chunks.begin(), message.chunks.end(), before);
+  message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same), message.chunks.end());
+  if (!world.ports.send(session, encode_message(message))) {
+    ++world.counters.queue_full;
+    mine.stalled_us = now.steady_us;
+    return false;
+  }
+  mine.uniform.clear();
+  ++world.counters.uniform_messages;
+  return true;
+}
+
+void forget_unsent(WorldState& world, SessionId session) {
+  WorldSession& mine = *world.find(session);
+  const View& view = *world.interest.find(session)->view();
+  std::erase_if(mine.uniform, [&](const UniformChunk& chunk) { return !view.contains(chunk.key.at); });
+  world.ports.forget_outside(session, view);
+}
 
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
                   ChunkInterest then, const Now& now) {
@@ -58,7 +111,11 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     world.interest.set_state(session, key, then);
     return true;
   }
-  if (held == HeldAnswer::full || !world.ports.send_snapshot(session, key, chunk)) {
+  const auto send = [&] {
+    return chunk->voxels.is_uniform() ? gather_uniform(world, session, key, *chunk, now)
+                                      : world.ports.send_snapshot(session, key, chunk);
+  };
+  if (held == HeldAnswer::full || !send()) {
     put_off(world, session, key, now);
     return false;
   }
@@ -86,7 +143,10 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
   if (mine == nullptr || mine->state != SessionState::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
   if (!send_moment(world, session, now)) return;
-  if (mine->visit) return deliver_past(world, session, now);
+  if (mine->visit) {
+    deliver_past(world, session, now);
+    return send_uniform_if_last(world, session, now);
+  }
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
   while (interest.count(ChunkInterest::waiting) < world.config.loads_per_session_max) {
@@ -103,6 +163,7 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
   }
   const bool is_more = world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
   send_same(world, session, is_more);
+  send_uniform_if_last(world, session, now);
   start_loads(world);
 }
 

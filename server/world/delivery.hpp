@@ -10,6 +10,10 @@ namespace runstone {
 /// Sends the session's nearest wanted chunks: those in memory at once, the others after a load. Stops when
 /// its queue is full or it waits for enough loads.
 void deliver(WorldState& world, SessionId session, const Now& now);
+/// Sends the uniform chunks that were gathered for the session. False: its queue is full, and they go on waiting.
+bool send_uniform(WorldState& world, SessionId session, const Now& now);
+/// What left the session's view and was not sent yet need not be.
+void forget_unsent(WorldState& world, SessionId session);
 /// Queues the snapshot of a wanted chunk, which gets the state `then`; without a chunk, the word that there is none. False:
 /// the session's queue is full, and the chunk stays wanted.
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,

@@ -28,9 +28,14 @@ void take_effect(WorldState& world, SessionId id, const Now& now) {
   }
   mine.passed_views.clear();
   mine.has_passed_too_many = false;
+  const std::optional<View>& seen = world.interest.find(id)->view();
+  const bool only_turns = seen && seen->same_chunks(*mine.next_view);
   const std::size_t entered = world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
   world.view_chunks_left -= std::min(world.view_chunks_left, entered + 1);
-  forget_sent(mine);
+  if (!only_turns) {
+    forget_sent(mine);
+    forget_unsent(world, id);
+  }
   mine.viewed_us = now.steady_us;
   collect_released(world);
   deliver(world, id, now);
@@ -42,7 +47,7 @@ void on_view(WorldState& world, SessionId session, View view, const Now& now) {
   WorldSession& mine = *world.find(session);
   view.radius_h = std::min(view.radius_h, world.config.view_radius_max);
   view.radius_v = std::min(view.radius_v, world.config.view_radius_max);
-  if (mine.next_view && *mine.next_view != view) {
+  if (mine.next_view && !mine.next_view->same_chunks(view)) {
     // The client may have forgotten what lies outside of the view it leaves, so that has to be sent again.
     if (mine.passed_views.size() < kPassedViewsMax) {
       mine.passed_views.push_back(*mine.next_view);

@@ -14,6 +14,7 @@ struct WorldCounters {
   std::uint64_t commit_bytes = 0;  // serialised once each
   std::uint64_t commits_sent = 0;  // commit times receiver
   std::uint64_t snapshots_sent = 0;
+  std::uint64_t uniform_messages = 0;  // each with many of these
   std::uint64_t same_sent = 0;         // chunk times session: it held the chunk as it is
   std::uint64_t updates_sent = 0;      // likewise: it held an earlier version, and its edits may be fewer
   std::uint64_t claims_drifted = 0;    // held at the right version with other voxels: a snapshot repaired it

@@ -65,7 +65,9 @@ void retry_owed(WorldState& world, const Now& now) {
   for (const SessionId id : world.open_sessions()) {
     send_owed(world, id);
     deliver(world, id, now);
+    if (world.find(id) == nullptr) continue;
     send_same(world, id, false);  // more may come, but not for long
+    send_uniform(world, id, now);
   }
 }
 

@@ -17,6 +17,9 @@ namespace runstone {
 enum class SessionState { awaits_hello, awaits_proof, open };
 
 inline constexpr std::size_t kPassedViewsMax = 8;
+inline constexpr std::size_t kUniformGathered = 256;     // then they go
+inline constexpr std::size_t kUniformWaitingMax = 1024;  // for a queue with room: then chunks wait
+static_assert(kUniformWaitingMax <= kUniformChunksMax);
 /// An undo reads the log, so a session may not ask for very many.
 inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
@@ -56,6 +59,9 @@ struct WorldSession {
   // What it holds already (held_steps.hpp).
   HeldClaims claims;
   std::vector<SameChunk> same_due;  // subscribed, but not told yet
+  // Chunks of one material that were counted as sent, at these versions, and go in one message soon: a few
+  // wait for more while loads are under way.
+  std::vector<UniformChunk> uniform;
   // Time travel (time_travel.hpp).
   std::optional<Travel> next_travel;  // the newest wish that nothing was done for yet
   bool opens_moment = false;          // a worker is at one

@@ -80,6 +80,69 @@ TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {
   }));
 }
 
+TEST_CASE("what surrounds the viewer comes first, then what lies in the cone of sight, then the rest",
+          "[interest]") {
+  Interest interest(kLimit);
+  interest.open(1);
+  View view{{0, 0, 0}, 6, 2};
+  view.yaw = 16'384;  // along +x
+  view.cone = 8'192;  // 45 degrees to each side
+  interest.set_view(1, view);
+  std::vector<ChunkKey> order;
+  while (const auto key = interest.nearest_wanted(1)) {
+    order.push_back(*key);
+    interest.set_state(1, *key, ChunkInterest::subscribed);
+  }
+  REQUIRE(order.size() == cells_by_trying(view, kLimit).size());
+  const auto ring = [&](const ChunkKey& key) {
+    const ChunkCoord c = key.at;
+    if (distance2(view, c) <= 4) return 0;
+    return c.x >= 0 && c.x * c.x * 2 >= distance2(view, c) ? 1 : 2;  // cos(45 degrees)^2 is a half
+  };
+  // On the cone's very edge rounding decides.
+  std::erase_if(order, [](const ChunkKey& key) {
+    const ChunkCoord c = key.at;
+    return c.x * c.x == c.y * c.y + c.z * c.z;
+  });
+  CHECK(std::is_sorted(order.begin(), order.end(), [&](const ChunkKey& a, const ChunkKey& b) {
+    if (ring(a) != ring(b)) return ring(a) < ring(b);
+    const auto da = distance2(view, a.at);
+    const auto db = distance2(view, b.at);
+    return da != db ? da < db : a < b;
+  }));
+}
+
+TEST_CASE("who only turns changes the order of what is wanted, and nothing is sent again", "[interest]") {
+  SessionInterest interest(kLimit);
+  View view{{0, 0, 0}, 12, 4};
+  interest.set_view(view);
+  for (int i = 0; i < 500; ++i) interest.set_state(*interest.nearest_wanted(), ChunkInterest::subscribed);
+  const std::size_t wanted = cells_by_trying(view, kLimit).size() - 500;
+  view.yaw = 16'384;  // along +x
+  view.cone = 4'096;
+  const auto moved = interest.set_view(view);
+  CHECK(moved.entered == 0);
+  CHECK(moved.left.empty());
+  CHECK(moved.steps <= wanted);
+  CHECK(interest.count(ChunkInterest::subscribed) == 500);
+  const ChunkKey first = *interest.nearest_wanted();
+  CHECK(first.at.x > 0);
+  CHECK(4 * (first.at.y * first.at.y + first.at.z * first.at.z) <= first.at.x * first.at.x);
+}
+
+TEST_CASE("a step costs what it changes and what still waits, not the view", "[interest]") {
+  SessionInterest interest(kLimit);
+  constexpr std::uint8_t kRadius = 16;
+  interest.set_view({{0, 0, 0}, kRadius, kRadius});
+  while (const auto key = interest.nearest_wanted()) interest.set_state(*key, ChunkInterest::subscribed);
+  const std::size_t all = interest.chunks().size();
+  const auto moved = interest.set_view({{1, 0, 0}, kRadius, kRadius});
+  CHECK(moved.steps == moved.entered + moved.left.size());
+  CHECK(moved.steps < all / 10);
+  while (const auto key = interest.nearest_wanted()) interest.set_state(*key, ChunkInterest::subscribed);
+  CHECK(interest.set_view({{1, 0, 0}, kRadius, kRadius}).steps == 0);
+}
+
 TEST_CASE("a moved view wants only the new shell and releases what it left", "[interest]") {
   Interest interest(kLimit);
   interest.open(1);

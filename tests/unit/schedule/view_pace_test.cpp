@@ -10,12 +10,17 @@ namespace {
 struct Follower {
   /// The player is in chunk `x` at this time. Whether the view moved.
   bool turn(std::int32_t x, TimeUs now_us) {
-    if (!pace.step(view, {x, 0, 0}, now_us)) return false;
-    view = {x, 0, 0};
+    View next = view;
+    next.centre.x = x;
+    return look(next, now_us);
+  }
+  bool look(const View& next, TimeUs now_us) {
+    if (!pace.step(view, next, now_us)) return false;
+    view = next;
     return true;
   }
   ViewPace pace;
-  ChunkCoord view{0, 0, 0};
+  View view{{0, 0, 0}, 4, 2, 0, 0, kSightCone};
 };
 
 }  // namespace
@@ -37,15 +42,35 @@ TEST_CASE("a player who crosses a chunk every millisecond moves the view ten tim
   for (std::int32_t x = 1; x <= 1'000; ++x, now_us += 1'000) {
     const bool moved = follower.turn(x, now_us);
     moves += moved ? 1 : 0;
-    if (moved) CHECK(follower.view.x == x);  // the newest place, none in between
+    if (moved) CHECK(follower.view.centre.x == x);  // the newest place, none in between
   }
   CHECK(moves == 10);
-  CHECK(follower.view.x < 1'000);
+  CHECK(follower.view.centre.x < 1'000);
   const TimeUs stopped_us = now_us;
   while (!follower.turn(1'000, now_us)) {
     now_us += 1'000;
     REQUIRE(now_us - stopped_us <= kViewEveryUs);
   }
-  CHECK(follower.view.x == 1'000);
+  CHECK(follower.view.centre.x == 1'000);
   CHECK_FALSE(follower.turn(1'000, now_us + kViewEveryUs));
+}
+
+TEST_CASE("a view follows a turn of more than fifteen degrees, the short way round, and no smaller one",
+          "[schedule]") {
+  Follower follower;
+  const auto turned = [&](std::uint16_t yaw, std::int16_t pitch, TimeUs now_us) {
+    View next = follower.view;
+    next.yaw = yaw;
+    next.pitch = pitch;
+    return follower.look(next, now_us);
+  };
+  CHECK_FALSE(turned(kViewTurn, 0, 0));
+  CHECK_FALSE(turned(static_cast<std::uint16_t>(-kViewTurn), 0, 0));
+  CHECK_FALSE(turned(0, -kViewTurn, 0));
+  CHECK(turned(kViewTurn + 1, 0, 0));
+  CHECK_FALSE(turned(20'000, 0, kViewEveryUs - 1));  // not yet
+  CHECK(turned(20'000, 0, kViewEveryUs));
+  CHECK(turned(20'000, -kViewTurn - 1, 2 * kViewEveryUs));
+  follower.view.cone = 0;
+  CHECK_FALSE(turned(0, 0, 9 * kViewEveryUs));  // all around: nothing to turn
 }

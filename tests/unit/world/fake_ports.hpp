@@ -117,6 +117,15 @@ class FakePorts : public WorldPorts {
   }
 };
 
+/// Base chunk of a world of this edge that is not of one material: a voxel in its last corner.
+inline Chunk dotted_chunk(unsigned edge) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);
+  fill(chunk.voxels, chunk.voxels.volume() - 1, 1, 1);
+  chunk.digest = digest_of(chunk.voxels);
+  return chunk;
+}
+
 /// Empty base chunk of a world of this edge.
 inline Chunk empty_chunk(unsigned edge) {
   Chunk chunk;

@@ -24,7 +24,7 @@ struct TravelBench : WorldBench {
     while (!ports.past_loads.empty()) {
       const auto load = ports.past_loads.front();
       ports.past_loads.pop_front();
-      Chunk chunk = empty_chunk(kEdge);
+      Chunk chunk = dotted_chunk(kEdge);
       const Sequence seq = load.at / step * step;
       chunk.version = {seq == 0 ? 0U : 1U, seq};
       server.past_chunk(load.session, load.request, load.key, std::make_shared<const Chunk>(chunk), now());

@@ -55,7 +55,7 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
     if (!bench.ports.loads.empty()) {  // a worker needs a millisecond for each chunk
       const ChunkKey key = bench.ports.loads.front();
       bench.ports.loads.pop_front();
-      bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
+      bench.server.chunk_loaded(key, dotted_chunk(kEdge), bench.now());
       ++loads_answered;
     }
     if (!arrived_at && sent_to(bench, 1).size() == 10) arrived_at = loads_answered;
@@ -153,7 +153,7 @@ TEST_CASE("at a stop nothing is loaded any more but what snapshots need", "[worl
   std::set<ChunkKey> loaded;
   while (!bench.ports.loads.empty()) {
     loaded.insert(bench.ports.loads.front());
-    bench.server.chunk_loaded(bench.ports.loads.front(), empty_chunk(kEdge), bench.now());
+    bench.server.chunk_loaded(bench.ports.loads.front(), dotted_chunk(kEdge), bench.now());
     bench.ports.loads.pop_front();
   }
   CHECK(loaded.size() == 3);

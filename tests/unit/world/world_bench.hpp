@@ -71,7 +71,7 @@ struct WorldBench {
     while (!ports.loads.empty()) {
       const ChunkKey key = ports.loads.front();
       ports.loads.pop_front();
-      server.chunk_loaded(key, empty_chunk(kEdge), now());
+      server.chunk_loaded(key, dotted_chunk(kEdge), now());
     }
   }
   void edit(SessionId session, ClientSequence seq, const EditShape& shape, Material material = 1) {

@@ -212,7 +212,7 @@ TEST_CASE("no more loads wait for one session than allowed", "[world]") {
   CHECK(bench.ports.loads.size() == 4);
   const ChunkKey key = bench.ports.loads.front();
   bench.ports.loads.pop_front();
-  bench.server.chunk_loaded(key, test::empty_chunk(kEdge), bench.now());
+  bench.server.chunk_loaded(key, test::dotted_chunk(kEdge), bench.now());
   CHECK(bench.ports.loads.size() == 4);
   CHECK(bench.ports.snapshots.size() == 1);
 }
@@ -633,7 +633,7 @@ TEST_CASE("an audit finds a digest that does not fit its runs", "[world]") {
   bench.join(1, 1);
   bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
   bench.ports.loads.clear();
-  Chunk wrong = test::empty_chunk(kEdge);
+  Chunk wrong = test::dotted_chunk(kEdge);
   wrong.digest.lane[0] = 1;
   bench.server.chunk_loaded({}, wrong, bench.now());
   bench.tick(1'000'000);
