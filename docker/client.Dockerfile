@@ -18,7 +18,7 @@ RUN cmake --preset release -DRUNSTONE_TESTS=OFF && cmake --build --preset releas
 
 FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
-      libspdlog1.10 libfmt9 libzstd1 libhwy1 libsodium23 libtomlplusplus3 libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 libglfw3 \
+      libspdlog1.10 libfmt9 libsqlite3-0 libxxhash0 libzstd1 libhwy1 libsodium23 libtomlplusplus3 libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 libglfw3 \
       && rm -rf /var/lib/apt/lists/* && \
     groupadd --gid 10001 runstone && useradd --uid 10001 --gid 10001 runstone && install -d -o runstone -g runstone /out
 COPY --from=build /src/build/release/bin/runstone-client /usr/local/bin/

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "common/edits/edit_geometry.hpp"
-#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/commit_walk.hpp"
+#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/codec/wire_fields.hpp"

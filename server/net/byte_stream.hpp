@@ -17,7 +17,7 @@ namespace runstone {
 struct IoResult {
   asio::error_code error;
   std::size_t bytes = 0;
-  std::int64_t call_ns = 0;  // of a write: spent in the calls themselves, waiting not counted
+  std::int64_t call_ns = 0;  // of a write: processor time of the calls themselves
 };
 
 class ByteStream {

@@ -47,7 +47,7 @@ struct Grown {
 };
 
 /// What a program that draws holds.
-struct Held {
+struct Drawn {
   std::map<ChunkKey, RunChunk> chunks;
   std::size_t taken = 0;
   TimelapseWorld::Each each = [this](const ChunkKey& key, const RunChunk& voxels) {
@@ -68,7 +68,7 @@ std::vector<ChunkKey> near() {
   return keys;
 }
 
-void compare(const Grown& grown, const Held& held, Sequence seq) {
+void compare(const Grown& grown, const Drawn& held, Sequence seq) {
   for (const ChunkKey& key : near()) {
     const VoxelPos origin = origin_of(key.at, kEdge);
     DenseChunk dense = DenseChunk::of(grown.generator->generate(origin, Extent::cube(kEdge)));
@@ -84,7 +84,7 @@ TEST_CASE("who takes what a timelapse world hands out holds the world of each mo
   Grown grown(1);
   const Sequence from = GENERATE(Sequence{0}, Sequence{40});
   TimelapseWorld world = grown.open(from, kEdits);
-  Held held;
+  Drawn held;
   REQUIRE(world.begin(held.each).has_value());
   compare(grown, held, from);
   for (const Sequence seq : {from + 1, from + 3, from + 70, kEdits}) {
@@ -114,7 +114,7 @@ TEST_CASE("the stage holds all edits and the ground around them", "[server]") {
   CHECK(wide.stage().min.z <= edits.min.z - 3 * kEdge);
   CHECK(wide.chunk_count() > narrow.chunk_count());
   // The ground is there: the chunk with the surface, far from every edit.
-  Held held;
+  Drawn held;
   TimelapseWorld world = grown.open(0, kEdits, 4);
   REQUIRE(world.begin(held.each).has_value());
   const std::int32_t x = floor_div(edits.max.x, kEdge) + 3;
@@ -132,7 +132,7 @@ TEST_CASE("from where is looked there is ground, too", "[server]") {
 TEST_CASE("an imported world's ground is found where it lies", "[server]") {
   Grown grown(4, true);
   TimelapseWorld world = grown.open(0, 1, 3);
-  Held held;
+  Drawn held;
   REQUIRE(world.begin(held.each).has_value());
   CHECK(held.chunks.contains(kImported));
 }
@@ -141,7 +141,7 @@ TEST_CASE("where nothing is edited on the way, what was edited before is shown",
   Grown grown(5);
   TimelapseWorld world = grown.open(kEdits, kEdits);
   CHECK_FALSE(world.edited().empty());
-  Held held;
+  Drawn held;
   REQUIRE(world.begin(held.each).has_value());
   compare(grown, held, kEdits);
 }
