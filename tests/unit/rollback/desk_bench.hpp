@@ -31,6 +31,7 @@ class DeskBench : public RollbackDesk::Workers {
     GeneratorPin pin;
     pin.name = "empty";
     generator = *make_generator(pin, meta.materials);
+    bench.has_empty_base = true;  // as the generator makes it
   }
 
   void run(Work work, std::function<void(std::string)> then) override {

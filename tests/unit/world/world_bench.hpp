@@ -71,7 +71,7 @@ struct WorldBench {
     while (!ports.loads.empty()) {
       const ChunkKey key = ports.loads.front();
       ports.loads.pop_front();
-      server.chunk_loaded(key, dotted_chunk(kEdge), now());
+      server.chunk_loaded(key, has_empty_base ? empty_chunk(kEdge) : dotted_chunk(kEdge), now());
     }
   }
   void edit(SessionId session, ClientSequence seq, const EditShape& shape, Material material = 1) {
@@ -85,6 +85,7 @@ struct WorldBench {
 
   FakePorts ports;
   TimeUs time_us = 1'000'000;
+  bool has_empty_base = false;  // of chunks of one material; else a snapshot is sent of each
   WorldServer server;
 };
 
