@@ -89,6 +89,12 @@ void LightSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, ChunkSnapshot>) {
           crowd_.ground.add(m.key.at, m.chunk.voxels);
           book_.receive(m, arrival.now_us);
+        } else if constexpr (std::is_same_v<T, UniformChunks>) {
+          const Extent extent = Extent::cube(welcome_->chunk_edge);
+          for (const UniformChunk& chunk : m.chunks) {
+            crowd_.ground.add(chunk.key.at, uniform_chunk(extent, chunk.material));
+          }
+          book_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, ChunkUnavailable>) {
           book_.receive(m);
         } else if constexpr (std::is_same_v<T, Audit>) {

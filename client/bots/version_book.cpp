@@ -64,11 +64,19 @@ void VersionBook::forget(const Known& chunk) {
 }
 
 void VersionBook::receive(const ChunkSnapshot& snapshot, TimeUs now_us) {
-  const ChunkKey& key = snapshot.key;
-  const Version version = snapshot.chunk.version;
   if (!digest_holds(snapshot)) {
-    violations_.add("snapshot digest", "chunk " + text_of(key) + " at seq " + std::to_string(version.seq));
+    violations_.add("snapshot digest", "chunk " + text_of(snapshot.key) + " at seq " +
+                                           std::to_string(snapshot.chunk.version.seq));
   }
+  take(snapshot.key, snapshot.chunk.version, now_us);
+}
+
+void VersionBook::receive(const UniformChunks& uniform, TimeUs now_us) {
+  for (const UniformChunk& chunk : uniform.chunks) take(chunk.key, chunk.version, now_us);
+}
+
+/// A snapshot, of which the voxels do not matter any more.
+void VersionBook::take(const ChunkKey& key, Version version, TimeUs now_us) {
   if (version.epoch > epoch_) {
     violations_.add("epoch", "chunk " + text_of(key) + " is of epoch " + std::to_string(version.epoch));
   }

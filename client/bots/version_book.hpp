@@ -63,6 +63,7 @@ class VersionBook {
   void set_view(const View& view);
 
   void receive(const ChunkSnapshot& snapshot, TimeUs now_us);
+  void receive(const UniformChunks& uniform, TimeUs now_us);
   void receive(const ChunkUnavailable& unavailable);
   void receive(const Audit& audit, TimeUs now_us);
   /// One edit of a commit touches this chunk, which stood at `previous` before.
@@ -93,6 +94,7 @@ class VersionBook {
     bool is_asked = false;            // it was too long
     std::vector<Link> waiting;        // ascending
   };
+  void take(const ChunkKey& key, Version version, TimeUs now_us);
   void settle(Known& chunk, TimeUs now_us);
   void forget(const Known& chunk);
 

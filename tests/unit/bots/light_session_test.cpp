@@ -210,6 +210,16 @@ TEST_CASE("a light session offers edits that the server does not know again", "[
   CHECK(bench.session->openings() == 2);
 }
 
+TEST_CASE("chunks of one material are seen, and built upon", "[bots][light]") {
+  Bench bench;
+  bench.session->set_view({kHere, 0, 1});
+  CHECK_FALSE(bench.session->loaded());
+  bench.give(UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, {0, 1, 0}}, kEmpty, {}}}});
+  CHECK(bench.session->loaded());
+  CHECK(bench.crowd.ground.chunks() == 3);
+  CHECK(bench.crowd.ground.surface(1, 1) == kEdge - 1);
+}
+
 TEST_CASE("a message that no server sends unasked ends the session with its reason", "[bots][light]") {
   Bench bench;
   bench.give(CommandOutput{1, {}, true, true});

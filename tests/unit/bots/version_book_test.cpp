@@ -134,6 +134,21 @@ TEST_CASE("an older snapshot is ignored, and so is what is out of view", "[bots]
   CHECK(book.behind() == 0);
 }
 
+TEST_CASE("chunks of one material stand for snapshots", "[bots][light]") {
+  VersionBook book;
+  book.open(1);
+  book.set_view({kHere, 0, 1});
+  book.follow(kHere, 4, 6, 0);
+  book.receive(UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, kHere}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
+               0);
+  CHECK(book.known() == 3);
+  CHECK(book.version(kHere) == 6);
+  CHECK(book.counts().snapshots == 3);
+  CHECK(book.violations().total() == 0);
+  book.receive(UniformChunks{{{{0, kHere}, 0, {2, 9}}}}, 0);
+  CHECK(book.violations().all().contains("epoch"));
+}
+
 TEST_CASE("a chunk that cannot be had counts as known and is not followed", "[bots][light]") {
   VersionBook book = book_at(4);
   book.follow(kHere, 5, 6, 0);
