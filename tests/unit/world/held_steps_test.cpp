@@ -128,7 +128,8 @@ TEST_CASE_METHOD(Fixture, "what does not fit the queue is said later", "[world]"
 TEST_CASE_METHOD(Fixture, "the same is said before a session turns to the past", "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
-  server.received(2, kSmall, now());
+  server.received(2, View{{0, 0, 0}, 2, 0}, now());  // others have to be loaded: it waits for them
+  CHECK(ports.messages<Same>(2, kEdge).empty());
   server.received(2, Travel{1, TravelTo::sequence, 0, 0}, now());
   server.moment_opened(2, 1, OpenedMoment{0, 0}, now());
   std::vector<std::string> order;
