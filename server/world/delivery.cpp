@@ -67,14 +67,13 @@ bool send_uniform(WorldState& world, SessionId session, const Now& now) {
   WorldSession& mine = *world.find(session);
   if (mine.uniform.empty()) return true;
   if (is_stalled(world, mine, now)) return false;
-  // A chunk that was gathered twice goes as it was gathered last.
+  // A chunk that was gathered twice goes at its newer version.
   const auto before = [](const UniformChunk& a, const UniformChunk& b) {
-    return is_before_in_list(a.key.at, b.key.at);
+    return a.key != b.key ? is_before_in_list(a.key.at, b.key.at) : b.version < a.version;
   };
   const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
   UniformChunks message{mine.uniform};
-  std::reverse(message.chunks.begin(), message.chunks.end());
-  std::stable_sort(message.chunks.begin(), message.chunks.end(), before);
+  std::sort(message.chunks.begin(), message.chunks.end(), before);
   message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same), message.chunks.end());
   if (!world.ports.send(session, encode_message(message))) {
     ++world.counters.queue_full;

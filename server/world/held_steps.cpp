@@ -64,10 +64,11 @@ bool send_same(WorldState& world, SessionId session, bool is_more) {
     const std::size_t count = std::min(due.size(), kSameChunksMax);
     const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
     Same same{{due.begin(), end}};
-    // A chunk that left the view and came back may be due twice: what was said last counts.
-    std::reverse(same.chunks.begin(), same.chunks.end());
-    const auto by_key = [](const SameChunk& a, const SameChunk& b) { return a.key < b.key; };
-    std::stable_sort(same.chunks.begin(), same.chunks.end(), by_key);
+    // A chunk that left the view and came back may be due twice: the newer version counts.
+    const auto newest_first = [](const SameChunk& a, const SameChunk& b) {
+      return a.key != b.key ? a.key < b.key : a.seq > b.seq;
+    };
+    std::sort(same.chunks.begin(), same.chunks.end(), newest_first);
     const auto one_key = [](const SameChunk& a, const SameChunk& b) { return a.key == b.key; };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key), same.chunks.end());
     if (!world.ports.send(session, encode_message(same))) {
