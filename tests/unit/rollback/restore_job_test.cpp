@@ -66,7 +66,7 @@ struct JobBench {
 }  // namespace
 
 TEST_CASE("a job whose slice has more edits than the log has room for writes it in parts", "[rollback]") {
-  const std::size_t room = GENERATE(1, 2, 3, 5, 9);
+  const auto room = static_cast<std::size_t>(GENERATE(1, 2, 3, 5, 9));
   CAPTURE(room);
   JobBench b;
   b.bench.ports.log_records_max = room;
