@@ -28,85 +28,71 @@ bool write_file(const std::string& file, const std::function<void(std::ostream&)
   return false;
 }
 
-int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
-  const auto result = run_mesh_bench(options, err);
+/// Prints a result and writes its CSV, where it has one, and its JSON, to the files that the options name; or says
+/// why there is none. Returns the exit code.
+template <class T, class Options, class Print>
+int finish(const Result<T, std::string>& result, const Options& options, std::ostream& err, Print&& print) {
   if (!result) {
     fmt::print(err, "runstone-bench: {}\n", result.error());
     return 1;
   }
-  write_machine(result->machine, out);
-  fmt::print(out, "{} repetitions of each mesher in each cell, shuffled\n", result->repetitions);
-  write_tables(*result, out);
-  for (const std::string& cell : result->skipped) fmt::print(out, "\nskipped: {}", cell);
-  fmt::print(out, "\n\n");
-  write_overview(*result, out);
-  fmt::print(out, "\n");
-  write_bars(result->bars, out);
-  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
-  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
-  return csv && json ? 0 : 1;
+  print(*result);
+  bool done = true;
+  if constexpr (requires(std::ostream & to) { write_csv(*result, to); }) {
+    done = write_file(
+        options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  }
+  return write_file(
+             options.json, [&](std::ostream& to) { write_json(*result, to); }, err) &&
+                 done
+             ? 0
+             : 1;
+}
+
+int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_mesh_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    fmt::print(out, "{} repetitions of each mesher in each cell, shuffled\n", result.repetitions);
+    write_tables(result, out);
+    for (const std::string& cell : result.skipped) fmt::print(out, "\nskipped: {}", cell);
+    fmt::print(out, "\n\n");
+    write_overview(result, out);
+    fmt::print(out, "\n");
+    write_bars(result.bars, out);
+  });
 }
 
 int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err) {
-  const auto rows = run_chunk_edge(options, err);
-  if (!rows) {
-    fmt::print(err, "runstone-bench: {}\n", rows.error());
-    return 1;
-  }
-  write_machine(this_machine(), out);
-  write_table(*rows, out);
-  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*rows, to); }, err);
-  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*rows, to); }, err);
-  return csv && json ? 0 : 1;
+  return finish(run_chunk_edge(options, err), options, err, [&](const auto& rows) {
+    write_machine(this_machine(), out);
+    write_table(rows, out);
+  });
 }
 
 int edits(const BenchOptions& options, std::ostream& out, std::ostream& err) {
-  const auto result = run_edit_bench(options, err);
-  if (!result) {
-    fmt::print(err, "runstone-bench: {}\n", result.error());
-    return 1;
-  }
-  write_machine(result->machine, out);
-  write_table(*result, out);
-  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
-  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
-  return csv && json ? 0 : 1;
+  return finish(run_edit_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
 }
 
 int log(const BenchOptions& options, std::ostream& out, std::ostream& err) {
-  const auto result = run_log_bench(options, err);
-  if (!result) {
-    fmt::print(err, "runstone-bench: {}\n", result.error());
-    return 1;
-  }
-  write_machine(this_machine(), out);
-  write_table(*result, out);
-  return write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err) ? 0 : 1;
+  return finish(run_log_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(this_machine(), out);
+    write_table(result, out);
+  });
 }
 
 int net(const NetOptions& options, std::ostream& out, std::ostream& err) {
-  const auto result = run_net_bench(options, err);
-  if (!result) {
-    fmt::print(err, "runstone-bench: {}\n", result.error());
-    return 1;
-  }
-  write_tables(*result, out);
-  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
-  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
-  return csv && json ? 0 : 1;
+  return finish(run_net_bench(options, err), options, err,
+                [&](const auto& result) { write_tables(result, out); });
 }
 
 int bytes(const BenchOptions& options, std::ostream& out, std::ostream& err) {
-  const auto result = run_bytes_bench(options, err);
-  if (!result) {
-    fmt::print(err, "runstone-bench: {}\n", result.error());
-    return 1;
-  }
-  write_machine(result->machine, out);
-  write_table(*result, out);
-  const bool csv = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
-  const bool json = write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err);
-  return csv && json ? 0 : 1;
+  return finish(run_bytes_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
 }
 
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {

@@ -62,7 +62,7 @@ MeshScene random_scene(SplitMix64& rng, unsigned side_max) {
   // Materials beyond the table are opaque to the mesher; two or three materials make the largest faces.
   const unsigned materials = rng.below(4) == 0 ? 2 + rng.below(12) : kMeshMaterialCount;
   MeshScene scene;
-  scene.chunk = random_chunk(rng, random_extent(rng, side_max), random_order(rng), materials);
+  scene.chunk = random_chunk(rng, side_max, materials);
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     if (rng.below(4) == 0) continue;
     Extent extent = scene.chunk.extent;

@@ -150,6 +150,12 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
   return random_chunk(rng, extent, order, materials, static_cast<Shape>(rng.below(kShapeCount)));
 }
 
+RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials) {
+  const Extent extent = random_extent(rng, side_max);  // a statement each: arguments have no order
+  const AxisOrder order = random_order(rng);
+  return random_chunk(rng, extent, order, materials);
+}
+
 RunChunk random_chunk(SplitMix64& rng) {
   const Extent extent = rng.below(32) == 0 ? random_extent(rng, kSideMax) : random_extent(rng);
   const AxisOrder order = random_order(rng);

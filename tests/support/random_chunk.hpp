@@ -20,6 +20,8 @@ inline constexpr int kShapeCount = 8;
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials, Shape shape);
 /// Any shape.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials);
+/// Any shape and order over sides 8 .. side_max.
+RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials);
 /// Any shape, order and materials over sides 8 .. 40; one chunk in thirty-two reaches up to 128.
 RunChunk random_chunk(SplitMix64& rng);
 

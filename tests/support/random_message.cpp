@@ -231,7 +231,8 @@ CommandOutput any_output(SplitMix64& rng) {
 ChunkSnapshot any_snapshot(SplitMix64& rng) {
   ChunkSnapshot m;
   m.key.at = any_coord(rng);
-  m.chunk.voxels = random_chunk(rng, Extent::cube(kMessageEdge), random_order(rng), 1 + rng.below(300));
+  const AxisOrder order = random_order(rng);
+  m.chunk.voxels = random_chunk(rng, Extent::cube(kMessageEdge), order, 1 + rng.below(300));
   m.chunk.version = any_version(rng);
   m.chunk.digest = digest_of(m.chunk.voxels);
   return m;

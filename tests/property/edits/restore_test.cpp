@@ -85,7 +85,7 @@ TEST_CASE("restoring equals going back through each voxel's own history", "[edit
   std::size_t with_differences = 0;
   std::size_t told_apart = 0;
   for (int round = 0; round < 220; ++round) {
-    const RunChunk start = random_chunk(rng, random_extent(rng, 16), random_order(rng), 6);
+    const RunChunk start = random_chunk(rng, 16, 6);
     const VoxelPos origin = {rng.between(-40, 40), rng.between(-40, 40), rng.between(-40, 40)};
     ChunkRestore restore(start, origin);
     HistoryOracle oracle(DenseChunk::of(start), origin);
@@ -123,7 +123,7 @@ TEST_CASE("changes written into another chunk are those stretches and nothing el
   SplitMix64 rng{42 + Catch::rngSeed()};
   ApplyScratch scratch;
   for (int round = 0; round < 300; ++round) {
-    RunChunk chunk = random_chunk(rng, random_extent(rng, 20), random_order(rng), 5);
+    RunChunk chunk = random_chunk(rng, 20, 5);
     RunChunk other = random_chunk(rng, chunk.extent, chunk.order, 5);
     Digest digest = digest_of(chunk);
     const DenseChunk before = DenseChunk::of(chunk);

@@ -32,7 +32,8 @@ MeshScene scene_of_many(SplitMix64& rng, int i) {
   const auto other = static_cast<std::uint8_t>(rng.between(8, 128));
   const auto least = static_cast<std::uint8_t>(rng.between(8, 10));
   const Extent turns[] = {{longest, other, least}, {least, longest, other}, {other, least, longest}};
-  return scene_of_extent(rng, turns[rng.below(3)], random_order(rng));
+  const Extent extent = turns[rng.below(3)];
+  return scene_of_extent(rng, extent, random_order(rng));
 }
 
 TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property]") {

@@ -36,17 +36,20 @@ TEST_CASE("packed is no larger than raw but for its few bytes of palette", "[pro
   }
 }
 
-TEST_CASE("no truncation and no extra byte of a chunk passes", "[protocol][property]") {
+TEST_CASE("no truncation and no extra byte of a chunk passes for that chunk", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   for (int step = 0; step < 30; ++step) {
-    const RunChunk chunk = random_chunk(rng, random_extent(rng, 16), random_order(rng), 1 + rng.below(6));
+    const RunChunk chunk = random_chunk(rng, 16, 1 + rng.below(6));
     for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       const Bytes bytes = encode_chunk(chunk, encoding);
       const std::size_t stride = 1 + bytes.size() / 500;
       for (std::size_t size = 0; size < bytes.size(); size += stride) {
         CAPTURE(Catch::rngSeed(), step, size);
         const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-        REQUIRE_FALSE(decode_chunk(cut).has_value());
+        const auto decoded = decode_chunk(cut);
+        if (encoding != ChunkEncoding::coded) REQUIRE_FALSE(decoded.has_value());
+        // Coded runs are not counted: what is left may be the one spelling of other runs that fill the chunk.
+        if (decoded) REQUIRE(encode_chunk(*decoded, encoding) == cut);
       }
       for (const int extra : {0, 1, 0x28, 0xff}) {
         Bytes longer = bytes;
@@ -60,7 +63,7 @@ TEST_CASE("no truncation and no extra byte of a chunk passes", "[protocol][prope
 TEST_CASE("a flipped byte of a chunk gives an error or a valid chunk", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 3};
   for (int step = 0; step < 40; ++step) {
-    const RunChunk chunk = random_chunk(rng, random_extent(rng, 16), random_order(rng), 1 + rng.below(300));
+    const RunChunk chunk = random_chunk(rng, 16, 1 + rng.below(300));
     for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       Bytes bytes = encode_chunk(chunk, encoding);
       const std::size_t stride = 1 + bytes.size() / 300;

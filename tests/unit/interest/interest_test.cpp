@@ -221,7 +221,7 @@ TEST_CASE("random views and states keep users and states in step", "[interest][p
                                   static_cast<std::uint8_t>(rng.below(4)),
                                   static_cast<std::uint8_t>(rng.below(2))});
     } else {
-      const ChunkKey key = key_of(rng.between(-5, 5), rng.between(-2, 2), rng.between(-5, 5));
+      const ChunkKey key{0, {rng.between(-5, 5), rng.between(-2, 2), rng.between(-5, 5)}};
       interest.set_state(session, key, static_cast<ChunkInterest>(rng.below(4)));
     }
     if (step % 50 != 0) continue;

@@ -38,7 +38,7 @@ TEST_CASE("work on runs expands nothing", "[runs][dense]") {
 TEST_CASE("a dense buffer and its runs turn into each other", "[runs][dense]") {
   SplitMix64 rng(2);
   for (int i = 0; i < 60; ++i) {
-    const RunChunk chunk = test::random_chunk(rng, test::random_extent(rng, 20), test::random_order(rng), 5);
+    const RunChunk chunk = test::random_chunk(rng, 20, 5);
     const std::vector<Material> dense = to_dense(chunk);
     REQUIRE(dense.size() == chunk.volume());
     const auto oracle = test::DenseChunk::of(chunk);

@@ -36,7 +36,7 @@ TEST_CASE("a cursor steps through every run", "[runs][cursor]") {
 TEST_CASE("find_run and a cursor's seek find the run of every voxel", "[runs][cursor]") {
   SplitMix64 rng(2);
   for (int round = 0; round < 40; ++round) {
-    const RunChunk chunk = test::random_chunk(rng, test::random_extent(rng, 12), test::random_order(rng), 4);
+    const RunChunk chunk = test::random_chunk(rng, 12, 4);
     chunk.runs.visit([&](auto runs) {
       std::size_t expected = 0;
       RunCursor walking(runs);
@@ -55,7 +55,7 @@ TEST_CASE("seeks of every distance from every kind of start land as a plain sear
   for (int round = 0; round < 30; ++round) {
     const RunChunk chunk =
         round % 5 == 4 ? test::random_chunk(rng, {40, 41, 42}, AxisOrder::yxz, 5, test::Shape::speckled)
-                       : test::random_chunk(rng, test::random_extent(rng, 16), test::random_order(rng), 3);
+                       : test::random_chunk(rng, 16, 3);
     chunk.runs.visit([&](auto runs) {
       RunCursor cursor(runs);
       for (std::uint32_t voxel = 0; voxel < chunk.volume();) {
