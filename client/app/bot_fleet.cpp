@@ -190,6 +190,7 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
     const TimeUs began_us = steady_now_us();
     fleet.crowd.begin(began_us);
     for (const auto& member : fleet.members) member->bot().begin(began_us);
+    fleet.turns.hasten(began_us);  // they were to ping next, some time after their first edits are due
     // Ends early when no bot has an edit left to make.
     fleet.play_until([&] { return fleet.options.edits && fleet.all(is_settled); }, fleet.options.seconds,
                      stop);

@@ -54,14 +54,13 @@ Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::strin
   words.insert(words.end(), flags.begin(), flags.end());
   auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));
   if (!program) return failure(program.error());
-  LabServer out{*std::move(program), ""};
-  std::uint16_t port = 0;
+  LabServer out{*std::move(program), "", 0};
   const bool listens = wait_until(kStartSeconds, [&] {
     std::ifstream in(port_file);
-    return static_cast<bool>(in >> port) || out.program->wait(0).has_value();
+    return static_cast<bool>(in >> out.port) || out.program->wait(0).has_value();
   });
-  if (!listens || port == 0) return failure(out.program->explain("did not start"));
-  const auto entrance = link.entrance(port);
+  if (!listens || out.port == 0) return failure(out.program->explain("did not start"));
+  const auto entrance = link.entrance(out.port);
   if (!entrance) return failure(entrance.error());
   out.address = fmt::format("{}:{}", link.server_address(), *entrance);
   return out;

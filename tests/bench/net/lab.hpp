@@ -27,7 +27,8 @@ using Done = Result<void, std::string>;
 /// A server that listens, and where clients find it.
 struct LabServer {
   std::unique_ptr<Child> program;
-  std::string address;  // HOST:PORT for clients
+  std::string address;     // HOST:PORT for clients
+  std::uint16_t port = 0;  // where it listens itself, without the link
 };
 
 class Lab {

@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 
+#include "tests/bench/net/attack_case.hpp"
 #include "tests/bench/net/crowd_case.hpp"
 #include "tests/bench/net/join_case.hpp"
 #include "tests/bench/net/latency_case.hpp"
@@ -18,10 +19,11 @@ struct Experiment {
   const char* name;
   Done (*measure)(Lab&, LabFindings&);
 };
-constexpr std::array<Experiment, 4> kExperiments = {{{"latency", measure_latency},
+constexpr std::array<Experiment, 5> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
                                                      {"transfer", measure_transfers},
-                                                     {"crowd", measure_crowds}}};
+                                                     {"crowd", measure_crowds},
+                                                     {"attack", measure_attacks}}};
 
 /// How TCP of this machine, and of namespaces made on it, answers loss and delay.
 std::string congestion_control() {

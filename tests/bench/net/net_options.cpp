@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/bench/measured_worlds.hpp"
+#include "tests/bench/net/attack.hpp"
 
 namespace runstone::bench {
 
@@ -15,7 +16,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments, "which; all by default")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd"}));
+      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -41,11 +42,27 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--crowd-seconds", options.crowd_seconds, "for which a crowd edits")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
-  net->add_option("--seed", options.seed, "draws losses, jitter and places of edits")->capture_default_str();
+  std::set<std::string> attacks;
+  for (const Attack& attack : all_attacks()) attacks.emplace(attack.name);
+  net->add_option("--attacks", options.attacks, "which; all by default")
+      ->delimiter(',')
+      ->check(CLI::IsMember(attacks));
+  net->add_option("--attack-seconds", options.attack_seconds, "of each attack, and before and after it")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 600.0));
+  net->add_option("--attackers", options.attackers, "hostile clients, or threads that make many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 200));
+  net->add_option("--seed", options.seed, "draws losses, jitter, places of edits and what attackers do")
+      ->capture_default_str();
   net->add_option("--csv", options.csv, "write all figures to this file");
   net->add_option("--json", options.json, "write all figures and bars to this file");
   net->add_flag("--quick", options.quick,
-                "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, unless said otherwise");
+                "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, attacks of 2, unless "
+                "said otherwise");
   return net;
 }
 
@@ -55,6 +72,7 @@ void finish_net_options(const CLI::App& command, NetOptions& options) {
   if (command.count("--min-runs") == 0) options.repetitions = 1;
   if (command.count("--clients") == 0) options.clients = {1, 20};
   if (command.count("--crowd-seconds") == 0) options.crowd_seconds = 3;
+  if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
 }
 
 }  // namespace runstone::bench

@@ -14,7 +14,7 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  std::vector<std::string> experiments = {"latency", "join", "transfer", "crowd"};
+  std::vector<std::string> experiments = {"latency", "join", "transfer", "crowd", "attack"};
   std::vector<std::string> profiles;  // of the lab; empty: all
   std::vector<std::string> worlds;    // of the transfers; empty: all
   std::string luanti;                 // folder of the real world
@@ -23,6 +23,10 @@ struct NetOptions {
   unsigned repetitions = 5;           // joins and transfers
   std::vector<unsigned> clients = {1, 10, 100, 300, 1000};  // of the crowds
   double crowd_seconds = 20;
+  std::vector<std::string> attacks;  // empty: all
+  double attack_seconds = 8;         // of each attack, and before and after it
+  unsigned attackers = 8;            // threads with a hostile client each
+  unsigned attack_bots = 20;         // who see what comes of it
   std::uint64_t seed = 1;
   bool quick = false;
   std::string csv, json;  // files; empty: none

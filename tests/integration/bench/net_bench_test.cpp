@@ -91,4 +91,31 @@ TEST_CASE("the lab measures crowds", "[lab]") {
   CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
   CHECK(figure(lab, "crowd", "3 clients", "received_kb_s_each") > 0);
 }
+
+TEST_CASE(
+    "attacks are answered by name, and honest clients neither lose their connection nor see a broken rule",
+    "[lab]") {
+  std::string tables;
+  const json lab =
+      run_lab({"--experiments", "attack", "--attacks", "absurd-views,claims,half-open,unread-pings",
+               "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
+              tables);
+  for (const char* attack : {"absurd-views", "claims", "half-open", "unread-pings"}) {
+    for (const std::string phase : {"before", "during", "after"}) {
+      CAPTURE(attack, phase);
+      CHECK(figure(lab, "attack", attack, phase + "_samples") > 0);
+      CHECK(figure(lab, "attack", attack, phase + "_never") == 0);
+      CHECK(figure(lab, "attack", attack, phase + "_disconnects") == 0);
+      CHECK(figure(lab, "attack", attack, phase + "_violations") == 0);
+      CHECK(figure(lab, "attack", attack, phase + "_server_resident_mb") > 0);
+    }
+    CHECK(figure(lab, "attack", attack, "joins_open") == figure(lab, "attack", attack, "joins_tried"));
+  }
+  CHECK(figure(lab, "attack", "absurd-views", "told malformed_message") > 0);
+  CHECK(figure(lab, "attack", "absurd-views", "logged malformed_message") > 0);
+  CHECK(figure(lab, "attack", "claims", "told flooding") > 0);
+  CHECK(figure(lab, "attack", "half-open", "attacker_connections") > 32);
+  CHECK(figure(lab, "attack", "half-open", "told closed without a word") > 0);
+  CHECK(tables.find("view radius exceeds 64 chunks") != std::string::npos);
+}
 #endif

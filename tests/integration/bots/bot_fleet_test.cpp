@@ -45,6 +45,18 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
   CHECK(server->stop().digests.seq == 500);
 }
 
+TEST_CASE("edits that are due soon after the start are made when they are due, not with the next ping",
+          "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 4);
+  options.rate = 4;
+  options.seconds = 0.4;  // the first ones are due within the first quarter of a second
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.due >= 4);
+}
+
 TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());

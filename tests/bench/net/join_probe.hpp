@@ -1,0 +1,31 @@
+// JoinProbe: a newcomer with honest intentions that joins and leaves again and again while something else goes on: whether, and
+// how soon, a server lets it in. From an address of its own, on a thread of its own.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+namespace runstone::bench {
+
+class JoinProbe {
+ public:
+  explicit JoinProbe(std::uint16_t port);
+  ~JoinProbe();
+  JoinProbe(const JoinProbe&) = delete;
+  JoinProbe& operator=(const JoinProbe&) = delete;
+
+  struct Joins {
+    unsigned tried = 0, open = 0;
+    double slowest_ms = 0;  // of the open ones, to the end of the handshake
+  };
+  /// Ends it. Once.
+  Joins finish();
+
+ private:
+  void run(std::uint16_t port);
+  std::atomic<bool> is_over_{false};
+  Joins joins_;
+  std::thread thread_;
+};
+
+}  // namespace runstone::bench
