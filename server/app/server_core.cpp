@@ -13,6 +13,7 @@
 #include "server/app/logging.hpp"
 #include "server/history/missing_edits.hpp"
 #include "server/net/steady_us.hpp"
+#include "server/net/thread_cpu_ns.hpp"
 
 namespace runstone {
 namespace {
@@ -214,7 +215,10 @@ void ServerCore::start() {
 void ServerCore::schedule_commit() {
   if (!world_->has_queued() || std::exchange(commit_posted_, true)) return;
   const TimeUs now_us = steady_us();
-  const TimeUs due_us = commit_pace_.due(now_us, listener_->counters().commit_send_ns.load() / 1'000);
+  const NetCounters& net = listener_->counters();
+  const CommitSending sending{net.commit_send_ns.load() / 1'000, net.commit_sends.load(),
+                              net.commits_due.load()};
+  const TimeUs due_us = commit_pace_.due(now_us, sending);
   if (due_us <= now_us) {
     // Runs behind everything that is queued on the strand now: edits that arrived together become one commit.
     asio::post(strand_, [this] { commit_now(); });
@@ -260,14 +264,16 @@ void ServerCore::log_counters() {
         "resident_bytes={} chunks_failed={} snapshots_sent={} same_sent={} updates_sent={} claims_drifted={} "
         "chunks_requested={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
-        "audit_mismatches={} commit_send_ms={} bytes_in={} bytes_out={} stack_depths=\"{}\" "
+        "audit_mismatches={} commits_sent={} commit_enqueue_us={} commit_sends={} commit_send_ms={} "
+        "bytes_in={} bytes_out={} stack_depths=\"{}\" "
         "dense_expansions={}",
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
         world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.same_sent, w.updates_sent,
         w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent,
-        w.audit_mismatches, n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
+        w.audit_mismatches, w.commits_sent, enqueue_ns_ / 1'000, n.commit_sends.load(),
+        n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
         world_->stack_depths().text(), dense_expansions());
   });
 }
@@ -385,6 +391,14 @@ NetSession* ServerCore::find(SessionId session) {
 bool ServerCore::send(SessionId session, const EncodedMessage& message) {
   NetSession* net = find(session);
   return net == nullptr || net->send(message);  // to one who is gone everything fits
+}
+
+std::vector<SessionId> ServerCore::send_to_all(std::span<const SessionId> sessions,
+                                               const EncodedMessage& message) {
+  const std::int64_t began_ns = thread_cpu_ns();
+  std::vector<SessionId> full = WorldPorts::send_to_all(sessions, message);
+  enqueue_ns_ += thread_cpu_ns() - began_ns;
+  return full;
 }
 
 void ServerCore::set_encoding(SessionId session, ChunkEncoding encoding) {

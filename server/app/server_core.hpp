@@ -69,6 +69,8 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
 
   // ---- WorldPorts, on the world strand
   bool send(SessionId session, const EncodedMessage& message) override;
+  std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
+                                     const EncodedMessage& message) override;
   void set_encoding(SessionId session, ChunkEncoding encoding) override;
   void set_features(SessionId session, std::uint64_t features) override;
   void opened(SessionId session) override;
@@ -142,6 +144,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   std::unordered_map<SessionId, std::shared_ptr<NetSession>> sessions_;
   bool commit_posted_ = false;
   CommitPace commit_pace_;
+  std::int64_t enqueue_ns_ = 0;  // processor time of send_to_all(), without the sending itself
   TimeUs counters_us_ = 0;
   std::optional<std::promise<bool>> stopped_;  // while begin_stop() waits for its answer
   bool has_stopped_ = false;

@@ -60,7 +60,10 @@ bool Interest::set_state(SessionId session, const ChunkKey& key, ChunkInterest s
 }
 
 void Interest::enter(SessionId session, const ChunkKey& key, ChunkInterest now) {
-  if (now == ChunkInterest::subscribed) users_[key].subscribers.push_back(session);
+  if (now == ChunkInterest::subscribed) {
+    std::vector<SessionId>& subscribers = users_[key].subscribers;
+    subscribers.insert(std::lower_bound(subscribers.begin(), subscribers.end(), session), session);
+  }
   if (now == ChunkInterest::waiting) users_[key].waiting.push_back(session);
 }
 

@@ -39,7 +39,7 @@ class Interest {
   /// Moves a chunk of the session's view to a state; returns false if the view does not hold it.
   bool set_state(SessionId session, const ChunkKey& key, ChunkInterest state);
 
-  /// In the order in which they subscribed. The span lives until the next change.
+  /// Ascending. The span lives until the next change.
   std::span<const SessionId> subscribers(const ChunkKey& key) const;
   /// Copies, because the caller answers each of them by changing its state.
   std::vector<SessionId> waiting(const ChunkKey& key) const;
@@ -51,7 +51,8 @@ class Interest {
 
  private:
   struct Users {
-    std::vector<SessionId> subscribers, waiting;
+    std::vector<SessionId> subscribers;  // ascending, so that those of many chunks are joined in one pass
+    std::vector<SessionId> waiting;      // in the order in which they came
   };
   void leave(SessionId session, const ChunkKey& key, ChunkInterest was);
   void enter(SessionId session, const ChunkKey& key, ChunkInterest now);

@@ -129,9 +129,8 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  auto session =
-      std::make_shared<NetSession>(id, asio::any_io_executor(io_.get_executor()), std::move(stream), limits_,
-                                   chunk_edge_, budget_, events_, counters_);
+  auto session = std::make_shared<NetSession>(id, io_, std::move(stream), limits_, chunk_edge_, budget_,
+                                              events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);

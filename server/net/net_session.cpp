@@ -25,7 +25,7 @@ asio::steady_timer::time_point time_point_of(TimeUs us) {
 
 }  // namespace
 
-NetSession::NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
+NetSession::NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream,
                        const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget,
                        NetEvents& events, NetCounters& counters)
     : id_(id),
@@ -33,7 +33,7 @@ NetSession::NetSession(SessionId id, asio::any_io_executor executor, std::unique
       chunk_edge_(chunk_edge),
       events_(events),
       counters_(counters),
-      strand_(asio::make_strand(executor)),
+      strand_(asio::make_strand(io)),
       stream_(std::move(stream)),
       peer_(stream_->peer()),
       queue_(limits.send),
@@ -62,8 +62,13 @@ bool NetSession::send(const EncodedMessage& message) {
     const std::lock_guard lock(mutex_);
     if (closing_) return true;
     if (!queue_.push(message)) return false;
+    if (!std::exchange(writer_idle_, false)) return true;
+    if (message.frame_class == FrameClass::edits) {
+      is_due_ = true;
+      counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
+    }
   }
-  wake_writer();
+  post_wake();
   return true;
 }
 
@@ -129,9 +134,12 @@ void NetSession::abort() {
 void NetSession::wake_writer() {
   {
     const std::lock_guard lock(mutex_);
-    if (!writer_idle_) return;
-    writer_idle_ = false;
+    if (!std::exchange(writer_idle_, false)) return;
   }
+  post_wake();
+}
+
+void NetSession::post_wake() {
   const auto wake = [self = shared_from_this()] { self->write_wake_.cancel(); };
   asio::post(strand_, wake);
 }
@@ -228,6 +236,9 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     {
       const std::lock_guard lock(self->mutex_);
       self->writer_idle_ = false;
+      if (std::exchange(self->is_due_, false)) {
+        self->counters_.commits_due.fetch_sub(1, std::memory_order_relaxed);
+      }
       const TimeUs now_us = steady_us();
       const bool has_chunk = self->queue_.has_chunk();
       const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us) : 0;
@@ -257,7 +268,10 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     const IoResult wrote = co_await self->stream_->write(buffers);
     if (wrote.error) break;
     self->counters_.bytes_out.fetch_add(wrote.bytes, std::memory_order_relaxed);
-    if (batch.has_edits) self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
+    if (batch.has_edits) {
+      self->counters_.commit_send_ns.fetch_add(wrote.call_ns, std::memory_order_relaxed);
+      self->counters_.commit_sends.fetch_add(1, std::memory_order_relaxed);
+    }
   }
   self->stream_->shutdown_send();
   self->close(GoodbyeReason::closing, "write failed");  // the linger timer ends a reader that waits for ever

@@ -3,7 +3,7 @@
 // Threads: the two loops run on the session's strand; send(), reserve_chunk(), fill_chunk(), forget_outside(), close(),
 // abort(), handled(), set_encoding() and set_features() may be called from any thread and return at once.
 #pragma once
-#include <asio/any_io_executor.hpp>
+#include <asio/io_context.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/strand.hpp>
 #include <atomic>
@@ -40,14 +40,15 @@ struct NetCounters {
       malformed{0};
   std::atomic<std::int64_t> commit_send_ns{
       0};  // in calls that sent edits class bytes (and what went with them)
+  std::atomic<std::uint64_t> commit_sends{0};  // writes of such bytes
+  std::atomic<std::uint64_t> commits_due{0};  // sessions told of such bytes that have not got to sending them
 };
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `events` and `counters` must outlive the session. `chunk_edge`: of the world.
-  NetSession(SessionId id, asio::any_io_executor executor, std::unique_ptr<ByteStream> stream,
-             const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events,
-             NetCounters& counters);
+  NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream, const NetLimits& limits,
+             std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events, NetCounters& counters);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
@@ -75,7 +76,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void abort();
 
  private:
-  using Strand = asio::strand<asio::any_io_executor>;
+  using Strand = asio::strand<asio::io_context::executor_type>;
   static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
@@ -84,6 +85,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void refuse(const Error& error);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
   void wake_writer();
+  void post_wake();
   void loop_ended();
 
   const SessionId id_;
@@ -98,11 +100,12 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> unhandled_{0};
   std::atomic<bool> reader_paused_{false};
 
-  std::mutex mutex_;  // a leaf: guards the next four
+  std::mutex mutex_;  // a leaf: guards the next five
   SendQueue queue_;
   ChunkGate gate_;
   bool closing_ = false;
   bool writer_idle_ = false;
+  bool is_due_ = false;  // counted in commits_due
 
   // On the strand from here on.
   asio::steady_timer write_wake_, read_wake_, linger_;

@@ -1,6 +1,5 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include <algorithm>
 #include <asio/experimental/as_tuple.hpp>
@@ -9,18 +8,12 @@
 #include <utility>
 
 #include "server/net/byte_stream.hpp"
+#include "server/net/thread_cpu_ns.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
-
-/// Of this thread: on a busy machine the clock on the wall would count other programs' turns.
-std::int64_t cpu_ns() {
-  timespec at{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
-  return std::int64_t{at.tv_sec} * 1'000'000'000 + at.tv_nsec;
-}
 
 class TcpStream : public ByteStream {
  public:
@@ -48,10 +41,10 @@ class TcpStream : public ByteStream {
     rest_ = buffers;
     std::size_t first = 0;  // of rest_: the first buffer that is not written wholly
     while (first < rest_.size()) {
-      const std::int64_t began_ns = cpu_ns();
+      const std::int64_t began_ns = thread_cpu_ns();
       const std::size_t written =
           socket_.write_some(std::span<const asio::const_buffer>(rest_).subspan(first), result.error);
-      result.call_ns += cpu_ns() - began_ns;
+      result.call_ns += thread_cpu_ns() - began_ns;
       result.bytes += written;
       for (std::size_t left = written; first < rest_.size();) {
         const std::size_t taken = std::min(left, rest_[first].size());

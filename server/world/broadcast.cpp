@@ -1,7 +1,9 @@
 #include "server/world/broadcast.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <span>
 
 #include "server/world/delivery.hpp"
 
@@ -16,23 +18,29 @@ std::vector<PlayerRow> unsaved_players_of(WorldState& world, const std::vector<E
   return players;
 }
 
-/// Also notes whose edits these are.
+/// Adds ascending sessions to ascending ones. Chunks in one place mostly have the same subscribers: those cost a
+/// comparison.
+void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessions,
+                  std::vector<SessionId>& scratch) {
+  if (std::ranges::equal(more, sessions)) return;
+  scratch.clear();
+  std::ranges::set_union(sessions, more, std::back_inserter(scratch));
+  sessions.swap(scratch);
+}
+
+/// Ascending. Also notes whose edits these are.
 std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch) {
   std::set<std::pair<AuthorId, ClientInstance>> authors;
   for (const OrderedEdit& edit : batch.commit.edits) authors.emplace(edit.op.author, edit.op.instance);
-  std::vector<SessionId> receivers;
-  for (const ChunkKey& key : batch.touched) {
-    const auto subscribers = world.interest.subscribers(key);
-    receivers.insert(receivers.end(), subscribers.begin(), subscribers.end());
-  }
+  std::vector<SessionId> receivers, own, scratch;
+  for (const ChunkKey& key : batch.touched) add_sessions(world.interest.subscribers(key), receivers, scratch);
   for (auto& [id, session] : world.sessions) {
     if (session.state == SessionState::open && authors.contains({session.author, session.instance})) {
-      receivers.push_back(id);
+      own.push_back(id);
       session.awaits_durable = world.authority.head();
     }
   }
-  std::sort(receivers.begin(), receivers.end());
-  receivers.erase(std::unique(receivers.begin(), receivers.end()), receivers.end());
+  add_sessions(own, receivers, scratch);
   return receivers;
 }
 
@@ -61,14 +69,11 @@ void commit_and_broadcast(WorldState& world, const Now& now) {
     world.counters.edits_ordered += batch->records.size();
     std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
     world.ports.log_append(std::move(players), std::move(batch->records));
-    for (const SessionId session : receivers_of(world, *batch)) {
-      if (world.ports.send(session, encoded)) {
-        ++world.counters.commits_sent;
-        continue;
-      }
-      ++world.counters.queue_full;
-      drop_commit_for(world, session, *batch, now);
-    }
+    const std::vector<SessionId> receivers = receivers_of(world, *batch);
+    const std::vector<SessionId> full = world.ports.send_to_all(receivers, encoded);
+    world.counters.commits_sent += receivers.size() - full.size();
+    world.counters.queue_full += full.size();
+    for (const SessionId session : full) drop_commit_for(world, session, *batch, now);
     for (const ChunkKey& key : batch->touched) {
       if (world.authority.chunks().stack_size(key) > world.config.restack_load_edits) ask_load(world, key);
     }

@@ -33,6 +33,15 @@ class WorldPorts {
   /// the message was dropped; the caller decides what that means (commits: chunk marked stale; control:
   /// session closed).
   virtual bool send(SessionId session, const EncodedMessage& message) = 0;
+  /// As send() to each, in this order. Returns those whose queue is full.
+  virtual std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
+                                             const EncodedMessage& message) {
+    std::vector<SessionId> full;
+    for (const SessionId session : sessions) {
+      if (!send(session, message)) full.push_back(session);
+    }
+    return full;
+  }
   /// The encoding agreed with a session; called once, before its first send_snapshot().
   virtual void set_encoding(SessionId /*session*/, ChunkEncoding /*encoding*/) {}
   /// The optional parts of the protocol in force with a session; called once, before ready.

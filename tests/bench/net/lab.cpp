@@ -110,6 +110,19 @@ double number_in(const nlohmann::json& value) {
   return value == "inf" ? std::numeric_limits<double>::infinity() : 0;
 }
 
+double counter_in(const std::string& log, std::string_view name) {
+  std::ifstream in(log);
+  double out = 0;
+  const std::string wanted = fmt::format(" {}=", name);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t at = line.find(wanted);
+    if (line.find("counters ") != std::string::npos && at != std::string::npos) {
+      out = std::strtod(line.c_str() + at + wanted.size(), nullptr);
+    }
+  }
+  return out;
+}
+
 bool output_has(const std::string& log, std::string_view what) {
   std::ifstream in(log);
   for (std::string line; std::getline(in, line);) {

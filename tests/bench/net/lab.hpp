@@ -73,6 +73,9 @@ Result<nlohmann::json, std::string> read_report(const std::string& file);
 /// A number in it, or infinite for "inf"; 0 where there is null or nothing.
 double number_in(const nlohmann::json& value);
 
+/// The number behind `name=` in the last line of counters of a server's log; 0 if there is none.
+double counter_in(const std::string& log, std::string_view name);
+
 /// Whether a line of a program's log holds `what`.
 bool output_has(const std::string& log, std::string_view what);
 

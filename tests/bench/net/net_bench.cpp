@@ -10,6 +10,7 @@
 #include "tests/bench/net/crowd_case.hpp"
 #include "tests/bench/net/join_case.hpp"
 #include "tests/bench/net/latency_case.hpp"
+#include "tests/bench/net/memory_case.hpp"
 #include "tests/bench/net/transfer_case.hpp"
 
 namespace runstone::bench {
@@ -19,11 +20,13 @@ struct Experiment {
   const char* name;
   Done (*measure)(Lab&, LabFindings&);
 };
-constexpr std::array<Experiment, 5> kExperiments = {{{"latency", measure_latency},
+constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
                                                      {"transfer", measure_transfers},
                                                      {"crowd", measure_crowds},
-                                                     {"attack", measure_attacks}}};
+                                                     {"attack", measure_attacks},
+
+                                                     {"memory", measure_memory}}};
 
 /// How TCP of this machine, and of namespaces made on it, answers loss and delay.
 std::string congestion_control() {

@@ -9,14 +9,15 @@
 namespace runstone::bench {
 
 CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
-  CLI::App* net = app.add_subcommand(
-      "net",
-      "the network lab: edits, joins, transfers and crowds over links with delay, jitter, rate and loss");
+  CLI::App* net = app.add_subcommand("net",
+                                     "the network lab: edits, joins, transfers and crowds over links with "
+                                     "delay, jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments, "which; all by default")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack"}));
+      ->check(
+          CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack", "memory"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));

@@ -14,7 +14,7 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  std::vector<std::string> experiments = {"latency", "join", "transfer", "crowd", "attack"};
+  std::vector<std::string> experiments = {"latency", "join", "transfer", "crowd", "attack", "memory"};
   std::vector<std::string> profiles;  // of the lab; empty: all
   std::vector<std::string> worlds;    // of the transfers; empty: all
   std::string luanti;                 // folder of the real world

@@ -90,6 +90,17 @@ TEST_CASE("the lab measures crowds", "[lab]") {
   CHECK(figure(lab, "crowd", "3 clients", "disconnects") == 0);
   CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
   CHECK(figure(lab, "crowd", "3 clients", "received_kb_s_each") > 0);
+  CHECK(figure(lab, "crowd", "3 clients", "enqueue_us_per_receiver") > 0);
+}
+
+TEST_CASE("the lab measures what loaded chunks take of the server's memory", "[lab]") {
+  std::string tables;
+  const json lab = run_lab({"--experiments", "memory"}, tables);
+  const double cells = figure(lab, "memory", "real world", "cells");
+  CHECK(cells >= 1000);
+  CHECK(figure(lab, "memory", "real world", "mixed") <= cells);
+  CHECK(figure(lab, "memory", "real world", "loaded") >= cells);
+  CHECK(figure(lab, "memory", "real world", "grown_bytes") > 0);
 }
 
 TEST_CASE(

@@ -18,14 +18,15 @@ Crowd run(TimeUs every_us, TimeUs cost_us, int seconds) {
   CommitPace pace;
   const TimeUs end = crowd.clock_us + seconds * 1'000'000;
   TimeUs edit_us = crowd.clock_us;
-  TimeUs sending = 0;
+  CommitSending sending;
   while (edit_us < end) {
     const TimeUs due = pace.due(edit_us, sending);
     crowd.waits.push_back(due - edit_us);
-    sending += cost_us;
+    sending.spent_us += cost_us;
+    ++sending.calls;
     while (edit_us <= due) edit_us += every_us;  // these came while it waited
   }
-  crowd.sent_us = sending;
+  crowd.sent_us = sending.spent_us;
   return crowd;
 }
 
@@ -55,10 +56,22 @@ TEST_CASE("however dear sending is, no edit gathers longer than the bound", "[wo
 
 TEST_CASE("after a burst, calm pays back, and a clock that stands still does no harm", "[world]") {
   CommitPace pace;
-  static_cast<void>(pace.due(1'000'000, 0));
-  CHECK(pace.due(1'000'000, 40'000) == 1'000'000 + CommitPace::kGatherUsMax);
-  CHECK(pace.due(999'000, 40'000) == 999'000 + CommitPace::kGatherUsMax);
-  CHECK(pace.due(1'200'000, 40'000) == 1'200'000);
+  static_cast<void>(pace.due(1'000'000, {}));
+  const CommitSending burst{40'000, 1, 0};
+  CHECK(pace.due(1'000'000, burst) == 1'000'000 + CommitPace::kGatherUsMax);
+  CHECK(pace.due(999'000, burst) == 999'000 + CommitPace::kGatherUsMax);
+  CHECK(pace.due(1'200'000, burst) == 1'200'000);
+}
+
+TEST_CASE("receivers whose turn has not come count as if they had been sent to", "[world]") {
+  CommitPace pace;
+  CHECK(pace.due(1'000'000, {0, 0, 0}) == 1'000'000);
+  // The first commit went to a thousand receivers, and none was sent to yet: some 10 ms of sending, half a core.
+  CHECK(pace.due(1'000'500, {0, 0, 1'000}) == 1'000'500 + 2 * 10'000 - 2 * CommitPace::kSavedUsMax);
+  // Half of them were, at 20 us each.
+  CHECK(pace.due(1'000'500, {10'000, 500, 500}) == 1'000'500 + CommitPace::kGatherUsMax);
+  // A receiver that does not read is due to nobody: the count is of those who wait for us.
+  CHECK(pace.due(1'100'000, {20'000, 1'000, 0}) == 1'100'000);
 }
 
 }  // namespace runstone::test
