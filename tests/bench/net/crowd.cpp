@@ -78,17 +78,4 @@ Result<CrowdSight, std::string> Crowd::finish(Lab& lab) {
   return out;
 }
 
-double counter_in(const std::string& log, std::string_view name) {
-  std::ifstream in(log);
-  double out = 0;
-  const std::string wanted = fmt::format(" {}=", name);
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t at = line.find(wanted);
-    if (line.find("counters ") != std::string::npos && at != std::string::npos) {
-      out = std::strtod(line.c_str() + at + wanted.size(), nullptr);
-    }
-  }
-  return out;
-}
-
 }  // namespace runstone::bench

@@ -42,7 +42,4 @@ class Crowd {
   double joined_s_ = 0;
 };
 
-/// The number behind `name=` in the last line of counters of a server's log; 0 if there is none.
-double counter_in(const std::string& log, std::string_view name);
-
 }  // namespace runstone::bench

@@ -25,7 +25,6 @@ constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency
                                                      {"transfer", measure_transfers},
                                                      {"crowd", measure_crowds},
                                                      {"attack", measure_attacks},
-
                                                      {"memory", measure_memory}}};
 
 /// How TCP of this machine, and of namespaces made on it, answers loss and delay.
