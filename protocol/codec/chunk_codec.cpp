@@ -16,7 +16,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 static_assert(std::is_trivially_copyable_v<PackedRun> && offsetof(PackedRun, material) == 2);
 
-constexpr std::uint8_t kChunkBytesVersion = 1;
+constexpr std::uint8_t version_of(ChunkEncoding encoding) {
+  return encoding == ChunkEncoding::packed ? 2 : 1;
+}
 constexpr std::uint8_t kZstdFlag = 8;  // in the axis order byte of packed chunks
 
 void append_bytes(Bytes& out, const void* from, std::size_t count) {
@@ -34,7 +36,7 @@ void write_runs(Bytes& out, const WideRuns& runs) {
 
 void write_head(ByteWriter& w, const RunChunk& chunk, ChunkEncoding encoding, std::uint8_t flags) {
   w.u8(static_cast<std::uint8_t>(encoding));
-  w.u8(kChunkBytesVersion);
+  w.u8(version_of(encoding));
   w.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(chunk.order) | flags));
   if (encoding == ChunkEncoding::raw) w.u8(0);
   for (const std::uint8_t side : chunk.extent.sides()) w.u8(side);
@@ -59,13 +61,12 @@ void write_palette(ByteWriter& w, std::span<const Material> palette) {
 }
 
 void encode_packed(const RunChunk& chunk, Bytes& out) {
-  const PackedBody packed = pack(chunk.runs);
+  const PackedBody packed = pack(chunk.runs, ordered(chunk.extent, chunk.order).f);
   const ByteView body = packed.compressed.empty() ? packed.body : packed.compressed;
   ByteWriter w(out);
   write_head(w, chunk, ChunkEncoding::packed, packed.compressed.empty() ? 0 : kZstdFlag);
   w.varint(chunk.runs.size());
   write_palette(w, packed.palette);
-  w.varint(packed.body.size());
   w.bytes(body);
 }
 
@@ -86,7 +87,7 @@ struct Head {
 
 Head read_head(ByteReader& r, ChunkEncoding encoding, const Extent* expected) {
   Head head;
-  if (r.u8() != kChunkBytesVersion) r.reject(ErrorCode::bad_version, "unknown version of chunk bytes");
+  if (r.u8() != version_of(encoding)) r.reject(ErrorCode::bad_version, "unknown version of chunk bytes");
   std::uint8_t order = r.u8();
   if (encoding == ChunkEncoding::packed) {
     head.zstd = (order & kZstdFlag) != 0;
@@ -150,17 +151,15 @@ std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
 
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
-  const std::uint32_t volume = head.extent.volume();
   PackedShape shape;
-  shape.runs = static_cast<std::size_t>(r.varint_max(volume, "more runs than voxels"));
+  shape.side = ordered(head.extent, head.order).f;
+  shape.volume = head.extent.volume();
+  shape.runs = static_cast<std::size_t>(r.varint_max(shape.volume, "more runs than voxels"));
   const std::vector<Material> palette = read_palette(r, shape.runs);
-  shape.body_bytes =
-      static_cast<std::size_t>(r.varint_max(6ULL * kVolumeMax, "body larger than any chunk's"));
-  if (r.ok() && !shape.plausible(palette.size()))
-    r.reject(ErrorCode::bad_value, "body size does not fit the run count");
   if (!r.ok()) return Unexpected<Error>{r.error()};
+  shape.materials = palette.size();
   const std::size_t body_at = r.offset();
-  auto runs = unpack(r.bytes(r.left()), head.zstd, shape, palette, volume);
+  auto runs = unpack(r.bytes(r.left()), head.zstd, shape, palette);
   if (!runs) {
     const Error& e = runs.error();
     // Errors of runs name the run; those of the body as a whole, its first byte.

@@ -1,10 +1,11 @@
 // Chunk bytes: runs as they lie on the wire, on disk and in caches. docs/protocol.md gives all layouts.
 //   raw:    u8 1 | u8 version 1 | u8 axis order | u8 0 | u8 x, y, z sides | u8 0 | u32 run count | runs as in
 //           memory: narrow {u16 end, u16 material} each, or wide all u32 ends, then all u16 materials
-//   packed: u8 2 | u8 version 1 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint run count
+//   packed: u8 2 | u8 version 2 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint run count
 //           | varint palette size | palette (varint ids, ascending, first as is, then differences - 1)
-//           | varint body bytes unpacked | body: a plane of palette indices (u8 each, u16 if the palette
-//           exceeds 256), then a plane of run lengths as varints without the last one
+//           | body to the end, plain or one zstd frame without its magic: a plane of palette indices (u8 each, u16
+//           if the palette exceeds 256), a plane of a byte for each length but the last, material by material,
+//           and the long lengths as varints
 //   coded:  u8 3 | u8 version 1 | u8 axis order | u8 x, y, z sides | palette as above | body to the end: range-coded
 //           bits (coded_body.hpp); none if the palette has one material
 // `packed` and `coded` become the run array in one linear pass over runs, never per voxel.

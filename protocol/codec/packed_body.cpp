@@ -3,8 +3,11 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/core/assert.hpp"
@@ -13,9 +16,34 @@
 namespace runstone {
 namespace {
 
-constexpr int kZstdLevel = 3;
-constexpr std::size_t kZstdBodyBytesMin = 24;       // a zstd frame has 12 bytes of its own
+constexpr int kZstdLevel = 5;                       // docs/performance.md has what the others give
+constexpr std::size_t kZstdBodyBytesMin = 16;       // a zstd frame has 5 to 8 bytes of its own here
 constexpr std::size_t kScratchBytesKept = 1 << 20;  // one huge chunk must not hold memory for ever
+
+// Every zstd frame begins with it, so it is left out.
+constexpr std::array<std::uint8_t, 4> kZstdMagic = {0x28, 0xb5, 0x2f, 0xfd};
+static_assert(ZSTD_MAGICNUMBER == 0xfd2fb528);
+
+// Tokens of the plane of lengths.
+constexpr std::uint32_t kLongLength = 0;   // a varint of the last plane tells the length
+constexpr std::uint32_t kLengthEnd = 192;  // a token below is the length itself
+constexpr std::uint32_t kToLineEnd = 255;  // to the end of the line it begins in; one less: of the line after
+constexpr std::uint32_t kLineEndTokens = 64;
+static_assert(kLengthEnd + kLineEndTokens == kToLineEnd + 1);
+
+/// What tokens mean by a line: side voxels, or the largest power of two that divides the side, so that no position is
+/// ever divided.
+struct Line {
+  explicit Line(std::uint32_t side)
+      : bits(static_cast<unsigned>(std::countr_zero(side))), mask((1u << bits) - 1) {}
+  /// Lines that a run touches if it ends with one of them.
+  std::uint32_t count(std::uint32_t begin, std::uint32_t end) const {
+    return (end - (begin & ~mask)) >> bits;
+  }
+  bool ends_at(std::uint32_t at) const { return (at & mask) == 0; }
+  unsigned bits;
+  std::uint32_t mask;
+};
 
 struct FreeContext {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
@@ -24,8 +52,9 @@ struct FreeContext {
 
 struct Scratch {
   RunPalette palette;
-  std::vector<std::uint8_t> used;  // by palette index
-  Bytes body, compressed;
+  std::vector<std::uint32_t> next;  // token of each material, by palette index
+  Bytes body, long_lengths;
+  Bytes frame;  // a whole zstd frame
   std::unique_ptr<ZSTD_CCtx, FreeContext> compressor;
   std::unique_ptr<ZSTD_DCtx, FreeContext> decompressor;
 };
@@ -39,43 +68,70 @@ void keep_small(Bytes& bytes) {
   if (bytes.capacity() > kScratchBytesKept) Bytes().swap(bytes);
 }
 
-template <class Runs>
-void write_planes(const Runs& runs, Scratch& s) {
-  const std::size_t count = runs.size();
-  const bool wide = s.palette.ids().size() > 256;
-  s.body.resize(count * (wide ? 2 : 1));
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t index = s.palette.index_of(runs.material(i));
-    if (wide) {
-      std::memcpy(s.body.data() + 2 * i, &index, 2);
-    } else {
-      s.body[i] = static_cast<std::uint8_t>(index);
-    }
-  }
-  ByteWriter w(s.body);
-  std::uint32_t begin = 0;
-  for (std::size_t i = 0; i + 1 < count; ++i) {
-    w.varint(runs.end(i) - begin);
-    begin = runs.end(i);
-  }
+/// From the number of tokens of each material to the place of its first one.
+void counts_to_places(std::vector<std::uint32_t>& next) {
+  std::uint32_t place = 0;
+  for (std::uint32_t& one : next) place += std::exchange(one, place);
 }
 
-/// The body as one zstd frame, or nothing where that is no smaller.
+/// The first plane; and the place of the first token of each material.
+template <class Index, class Runs>
+void write_indices(const Runs& runs, Scratch& s) {
+  s.next.assign(s.palette.ids().size(), 0);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto index = static_cast<Index>(s.palette.index_of(runs.material(i)));
+    std::memcpy(s.body.data() + i * sizeof(Index), &index, sizeof(Index));
+    ++s.next[index];
+  }
+  --s.next[s.palette.index_of(runs.material(runs.size() - 1))];  // the last run has no token
+  counts_to_places(s.next);
+}
+
+template <class Index, class Runs>
+void write_planes(const Runs& runs, Line line, Scratch& s) {
+  const std::size_t count = runs.size(), tokens_at = count * sizeof(Index);
+  s.body.resize(tokens_at + count - 1);
+  write_indices<Index>(runs, s);
+  s.long_lengths.clear();
+  ByteWriter long_lengths(s.long_lengths);
+  std::uint32_t begin = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const std::uint32_t end = runs.end(i), length = end - begin, lines = line.count(begin, end);
+    std::uint32_t token = length < kLengthEnd ? length : kLongLength;
+    if (line.ends_at(end) && lines <= kLineEndTokens) {
+      token = kToLineEnd + 1 - lines;
+    } else if (token == kLongLength) {
+      long_lengths.varint(length);
+    }
+    Index index;
+    std::memcpy(&index, s.body.data() + i * sizeof(Index), sizeof(Index));
+    s.body[tokens_at + s.next[index]++] = static_cast<std::uint8_t>(token);
+    begin = end;
+  }
+  s.body.insert(s.body.end(), s.long_lengths.begin(), s.long_lengths.end());
+}
+
+/// The body as one zstd frame without its magic number, or nothing where that is no smaller.
 ByteView compress(Scratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
   RUNSTONE_ASSERT(s.compressor != nullptr);
-  s.compressed.resize(s.body.size() - 1);  // zstd stops when it runs out of room: no gain
-  const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.compressed.data(), s.compressed.size(),
+  s.frame.resize(kZstdMagic.size() + s.body.size() - 1);  // zstd stops when it runs out of room: no gain
+  const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.frame.data(), s.frame.size(),
                                              s.body.data(), s.body.size(), kZstdLevel);
   if (ZSTD_isError(size) != 0) return {};
-  return ByteView(s.compressed).first(size);
+  return ByteView(s.frame).first(size).subspan(kZstdMagic.size());
 }
 
-/// Exactly one frame that announces and holds `bytes` bytes.
-Result<ByteView> decompress(ByteView frame, std::size_t bytes, Scratch& s) {
-  if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != bytes) {
-    return fail(ErrorCode::bad_value, "zstd frame of another size than the body");
+/// Exactly one frame that announces a plausible size and holds it.
+Result<ByteView> decompress(ByteView in, const PackedShape& shape, Scratch& s) {
+  keep_small(s.frame);
+  s.frame.assign(kZstdMagic.begin(), kZstdMagic.end());
+  s.frame.insert(s.frame.end(), in.begin(), in.end());
+  const ByteView frame = s.frame;
+  const std::uint64_t announced = ZSTD_getFrameContentSize(frame.data(), frame.size());
+  if (!shape.plausible(announced)) {  // as are the numbers that stand for an error and for no size
+    return fail(ErrorCode::bad_value, "zstd frame of a size that does not fit the run count");
   }
   if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
     return fail(ErrorCode::trailing_bytes, "zstd frame is cut or something follows it");
@@ -83,6 +139,7 @@ Result<ByteView> decompress(ByteView frame, std::size_t bytes, Scratch& s) {
   if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
   RUNSTONE_ASSERT(s.decompressor != nullptr);
   keep_small(s.body);
+  const auto bytes = static_cast<std::size_t>(announced);
   s.body.resize(bytes);
   const std::size_t size =
       ZSTD_decompressDCtx(s.decompressor.get(), s.body.data(), bytes, frame.data(), frame.size());
@@ -90,38 +147,70 @@ Result<ByteView> decompress(ByteView frame, std::size_t bytes, Scratch& s) {
   return ByteView(s.body);
 }
 
+/// Places of the tokens of each material. Every material has a run.
+template <class Index>
+Result<void> read_indices(const std::uint8_t* indices, std::size_t count, std::size_t materials,
+                          std::vector<std::uint32_t>& next) {
+  next.assign(materials, 0);
+  Index index = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(&index, indices + i * sizeof(Index), sizeof(Index));
+    if (index >= materials) return fail(ErrorCode::broken_invariant, "palette index behind the palette", i);
+    ++next[index];
+  }
+  if (std::find(next.begin(), next.end(), 0) != next.end()) {
+    return fail(ErrorCode::not_canonical, "palette names a material that no run has");
+  }
+  --next[index];  // the last run has no token
+  counts_to_places(next);
+  return {};
+}
+
+/// A length of the last plane; 0 where there is none, or no plain one.
+std::uint32_t read_long_length(const std::uint8_t*& at, const std::uint8_t* stop) {
+  std::uint32_t length = 0;
+  for (unsigned shift = 0; shift < 21 && at != stop; shift += 7) {
+    const std::uint32_t byte = *at++;
+    length |= (byte & 0x7f) << shift;
+    if (byte < 0x80) return byte == 0 ? 0 : length;  // a last byte of 0 says nothing
+  }
+  return 0;
+}
+
 /// The one pass over runs: calls put(run, end, material) for each.
 template <class Index, class Put>
-Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
-                         std::uint32_t volume, std::uint8_t* used, Put&& put) {
-  const std::uint8_t* index_at = body.data();
-  const std::uint8_t* at = index_at + count * sizeof(Index);
+Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<const Material> palette,
+                         std::vector<std::uint32_t>& next_of, Put&& put) {
+  const std::size_t count = shape.runs;
+  const std::uint8_t* const indices = body.data();
+  const std::uint8_t* const tokens = indices + count * sizeof(Index);
+  const std::uint8_t* at = tokens + count - 1;
   const std::uint8_t* const stop = body.data() + body.size();
+  if (const auto read = read_indices<Index>(indices, count, palette.size(), next_of); !read) return read;
+  std::uint32_t* const next = next_of.data();
+  const Line line(shape.side);
   std::uint32_t end = 0;
-  for (std::size_t i = 0; i < count; ++i, index_at += sizeof(Index)) {
-    Index index;
-    std::memcpy(&index, index_at, sizeof(Index));
-    if (index >= palette.size())
-      return fail(ErrorCode::broken_invariant, "palette index behind the palette", i);
-    used[index] = 1;
-    if (i + 1 == count) {
-      end = volume;
-    } else {
-      if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
-      std::uint32_t length = *at++;
-      for (unsigned shift = 7; length >> shift != 0; shift += 7) {  // the last byte read said "more"
-        if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
-        const std::uint32_t byte = *at++;
-        if (byte == 0) return fail(ErrorCode::broken_invariant, "run length is longer than needed", i);
-        length = (length & ((1u << shift) - 1)) | byte << shift;
-        if (shift == 14 && byte >= 0x80)
-          return fail(ErrorCode::broken_invariant, "run length exceeds 21 bits", i);
-      }
-      if (length > volume - end) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
-      end += length;
+  Index index;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    std::memcpy(&index, indices + i * sizeof(Index), sizeof(Index));
+    const std::uint32_t token = tokens[next[index]++], begin = end;
+    std::uint32_t length = token;
+    if (token == kLongLength) {
+      length = read_long_length(at, stop);
+      if (length < kLengthEnd)
+        return fail(ErrorCode::broken_invariant, "long run length is cut, longer than needed or short", i);
     }
+    // Which of the two it is cannot be foretold, so both are made.
+    const std::uint32_t line_end = (begin & ~line.mask) + ((kToLineEnd + 1 - token) << line.bits);
+    const bool to_line_end = token >= kLengthEnd;
+    end = to_line_end ? line_end : begin + length;
+    if ((line.ends_at(end) && line.count(begin, end) <= kLineEndTokens) != to_line_end)
+      return fail(ErrorCode::broken_invariant, "run to the end of a line is spelt as a length", i);
+    if (end >= shape.volume) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
     put(i, end, palette[index]);
   }
+  std::memcpy(&index, indices + (count - 1) * sizeof(Index), sizeof(Index));
+  put(count - 1, shape.volume, palette[index]);
   if (at != stop) {
     return fail(ErrorCode::trailing_bytes, "bytes follow the run lengths",
                 static_cast<std::uint64_t>(at - body.data()));
@@ -130,45 +219,52 @@ Result<void> read_planes(ByteView body, std::size_t count, std::span<const Mater
 }
 
 template <class Put>
-Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
-                         std::uint32_t volume, std::uint8_t* used, Put&& put) {
-  if (palette.size() > 256) return read_planes<std::uint16_t>(body, count, palette, volume, used, put);
-  return read_planes<std::uint8_t>(body, count, palette, volume, used, put);
+Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<const Material> palette,
+                         std::vector<std::uint32_t>& next, Put&& put) {
+  if (shape.has_wide_indices()) return read_planes<std::uint16_t>(body, shape, palette, next, put);
+  return read_planes<std::uint8_t>(body, shape, palette, next, put);
 }
 
 }  // namespace
 
-PackedBody pack(const RunList& runs) {
+bool PackedShape::plausible(std::uint64_t body_bytes) const {
+  const std::uint64_t least = runs * (has_wide_indices() ? 3u : 2u) - 1;
+  return body_bytes >= least && body_bytes <= least + 3ULL * (volume / kLengthEnd);
+}
+
+PackedBody pack(const RunList& runs, std::uint32_t side) {
   RUNSTONE_ASSERT(runs.size() > 0);
   Scratch& s = scratch();
   keep_small(s.body);
-  keep_small(s.compressed);
-  runs.visit([&s](const auto& list) {
+  keep_small(s.frame);
+  runs.visit([&](const auto& list) {
     s.palette.find(list);
-    write_planes(list, s);
+    if (s.palette.ids().size() > kNarrowPaletteMax) {
+      write_planes<std::uint16_t>(list, Line(side), s);
+    } else {
+      write_planes<std::uint8_t>(list, Line(side), s);
+    }
   });
   const ByteView compressed = compress(s);
   return {s.palette.ids(), s.body, compressed};
 }
 
-Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette,
-                       std::uint32_t volume) {
-  RUNSTONE_ASSERT(shape.plausible(palette.size()) && shape.runs <= volume);
+Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
+                       std::span<const Material> palette) {
+  RUNSTONE_ASSERT(shape.runs >= 1 && shape.runs <= shape.volume && shape.materials == palette.size());
   Scratch& s = scratch();
   if (zstd) {
-    const auto unpacked = decompress(body, shape.body_bytes, s);
+    const auto unpacked = decompress(body, shape, s);
     if (!unpacked) return Unexpected<Error>{unpacked.error()};
     body = *unpacked;
-  } else if (body.size() != shape.body_bytes) {
-    return fail(body.size() < shape.body_bytes ? ErrorCode::truncated : ErrorCode::trailing_bytes,
-                "body of another size than announced");
+  } else if (!shape.plausible(body.size())) {
+    return fail(ErrorCode::bad_value, "body size does not fit the run count");
   }
-  s.used.assign(palette.size(), 0);
   Result<void> read;
   RunList runs;
-  if (volume <= kNarrowVolumeMax) {
+  if (shape.volume <= kNarrowVolumeMax) {
     std::vector<PackedRun> narrow(shape.runs);
-    read = read_planes(body, shape.runs, palette, volume, s.used.data(),
+    read = read_planes(body, shape, palette, s.next,
                        [out = narrow.data()](std::size_t i, std::uint32_t end, Material material) {
                          out[i] = {static_cast<std::uint16_t>(end), material};
                        });
@@ -177,7 +273,7 @@ Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::
     std::vector<std::uint32_t> ends(shape.runs);
     std::vector<Material> materials(shape.runs);
     read = read_planes(
-        body, shape.runs, palette, volume, s.used.data(),
+        body, shape, palette, s.next,
         [e = ends.data(), m = materials.data()](std::size_t i, std::uint32_t end, Material material) {
           e[i] = end;
           m[i] = material;
@@ -185,9 +281,6 @@ Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::
     runs = RunList::of_wide(std::move(ends), std::move(materials));
   }
   if (!read) return Unexpected<Error>{read.error()};
-  if (std::find(s.used.begin(), s.used.end(), 0) != s.used.end()) {
-    return fail(ErrorCode::not_canonical, "palette names a material that no run has");
-  }
   return runs;
 }
 

@@ -12,32 +12,33 @@
 
 namespace runstone {
 
+inline constexpr std::size_t kNarrowPaletteMax = 256;  // beyond, an index takes two bytes
+
 /// Views of this thread's scratch: they live until the next pack() or unpack() of the thread.
 struct PackedBody {
   std::span<const Material> palette;  // ascending
-  ByteView body;                      // plane of palette indices, then plane of run lengths
-  ByteView compressed;                // one zstd frame; empty where that would not be smaller
+  ByteView body;                      // palette indices, tokens of lengths by material, long lengths
+  ByteView compressed;  // one zstd frame without its magic; empty where that would not be smaller
 };
 
-/// Requires at least one run. O(runs + largest id / 64).
-PackedBody pack(const RunList& runs);
+/// Requires canonical runs and the side of the fastest axis, 8 .. 128. O(runs + largest id / 64).
+PackedBody pack(const RunList& runs, std::uint32_t side);
 
 /// What the head of a packed chunk announces.
 struct PackedShape {
   std::size_t runs = 0;
-  std::size_t body_bytes = 0;  // without zstd
-  /// Whether so many runs can fill so many bytes: each has an index, and each but the last a length of one to
-  /// three bytes (lengths stay below 2^21).
-  bool plausible(std::size_t palette) const {
-    const std::size_t indices = runs * (palette > 256 ? 2 : 1);
-    return runs >= 1 && body_bytes >= indices + (runs - 1) && body_bytes <= indices + 3 * (runs - 1);
-  }
+  std::size_t materials = 0;  // in the palette
+  std::uint32_t side = 0;     // side of the fastest axis
+  std::uint32_t volume = 0;
+  bool has_wide_indices() const { return materials > kNarrowPaletteMax; }
+  /// Whether so many runs can fill so many bytes before compression: each has an index, each but the last a
+  /// token, and long lengths are few.
+  bool plausible(std::uint64_t body_bytes) const;
 };
 
-/// Runs of a body. Requires a plausible shape, an ascending palette of at most `shape.runs` ids and
-/// runs <= volume. The ends are inside the volume and the palette is used up; the rest is for validate().
-/// broken_invariant names a run, the other errors a byte of the body. O(runs).
-Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette,
-                       std::uint32_t volume);
+/// Runs of a body. Requires an ascending palette of at most `runs` ids, and at least one run, at most `volume`.
+/// The ends ascend inside the volume and the palette is used up; the rest is for validate(). broken_invariant
+/// names a run, the other errors a byte of the body. O(runs).
+Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette);
 
 }  // namespace runstone

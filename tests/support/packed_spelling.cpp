@@ -14,17 +14,17 @@ Bytes zstd_frame(ByteView body, bool announce) {
   ZSTD_freeCCtx(context);
   if (ZSTD_isError(size) != 0) throw std::runtime_error("zstd does not compress");
   out.resize(size);
+  out.erase(out.begin(), out.begin() + 4);
   return out;
 }
 
-PackedSpelling::PackedSpelling() : palette({0, 0, 298}), body({1, 0, 2, 3, 0xc5, 0x01}) {}
+PackedSpelling::PackedSpelling() : palette({0, 0, 298}), body({1, 0, 2, 231, 3}) {}
 
 Bytes PackedSpelling::bytes() const {
   Bytes out{encoding, version, order, sides[0], sides[1], sides[2]};
   spell_varint(out, runs);
   spell_varint(out, palette_size.value_or(palette.size()));
   for (const std::uint64_t step : palette) spell_varint(out, step);
-  spell_varint(out, body_bytes.value_or(body.size()));
   const Bytes& rest = stored ? *stored : body;
   out.insert(out.end(), rest.begin(), rest.end());
   return out;

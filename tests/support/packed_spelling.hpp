@@ -25,20 +25,19 @@ inline void spell_varint(Bytes& out, std::uint64_t v, int extra = 0) {
   out.push_back(0);
 }
 
-/// One zstd frame. `announce` is whether it tells its content size.
+/// One zstd frame without its magic number. `announce` is whether it tells its content size.
 Bytes zstd_frame(ByteView body, bool announce = true);
 
 /// By default: 8x8x8, three runs of 3, 197 and 312 voxels of materials 1, 0 and 300.
 struct PackedSpelling {
   PackedSpelling();
-  std::uint8_t encoding = 2, version = 1, order = 2;
+  std::uint8_t encoding = 2, version = 2, order = 2;
   std::array<std::uint8_t, 3> sides{8, 8, 8};
   std::uint64_t runs = 3;
   std::vector<std::uint64_t> palette;         // first id, then differences - 1
   std::optional<std::uint64_t> palette_size;  // if it should not be palette.size()
   Bytes body;
-  std::optional<std::uint64_t> body_bytes;  // if it should not be body.size()
-  std::optional<Bytes> stored;              // what follows instead of the body, for example a zstd frame
+  std::optional<Bytes> stored;  // what follows instead of the body, for example a zstd frame
 
   Bytes bytes() const;
 };

@@ -49,14 +49,13 @@ TEST_CASE("raw chunk bytes of a large volume are pinned", "[protocol][golden]") 
 
 TEST_CASE("packed chunk bytes are pinned", "[protocol][golden]") {
   check_bytes(three_runs(), ChunkEncoding::packed,
-              "02 01 02  08 08 08  03"
+              "02 02 02  08 08 08  03"
               "03 00 00 aa02"  // palette: 0, 0 + 1 + 0, 1 + 1 + 298
-              "06"             // bytes of the body
               "01 00 02"       // palette indices
-              "03 c501");      // lengths 3 and 197; the last run fills up
-  check_bytes(two_wide_runs(), ChunkEncoding::packed, "02 01 00  40 40 40  02  02 00 01  05  01 00  f0a204");
-  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::packed,
-              "02 01 00  20 20 20  01  01 01  01  00");
+              "e7"             // of material 0: to the end of the 25th line
+              "03");           // of material 1: length 3; the last run fills up
+  check_bytes(two_wide_runs(), ChunkEncoding::packed, "02 02 00  40 40 40  02  02 00 01  01 00  00  f0a204");
+  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::packed, "02 02 00  20 20 20  01  01 01  00");
 }
 
 TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
@@ -87,8 +86,8 @@ TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
     builder.append(24, 0);
   }
   const auto decoded =
-      decode_chunk(from_hex("02 01 0d  10 10 10  8001  02 00 00  ff01"
-                            "28b52ffd20ff6d0000200100281802001aa478973a2c"));
+      decode_chunk(from_hex("02 02 0d  10 10 10  8001  02 00 00"
+                            "20ff7d0000200100fe28030004920c27dd5deab0"));
   REQUIRE(decoded.has_value());
   CHECK(*decoded == builder.finish());
 }

@@ -77,7 +77,7 @@ TEST_CASE("packed bytes that lie are refused", "[protocol]") {
     std::function<void(PackedSpelling&)> bend;
     ErrorCode code;
   } cases[] = {
-      {"version", [](auto& s) { s.version = 2; }, ErrorCode::bad_version},
+      {"version", [](auto& s) { s.version = 1; }, ErrorCode::bad_version},
       {"order", [](auto& s) { s.order = 6; }, ErrorCode::bad_value},
       {"unknown flag", [](auto& s) { s.order = 2 + 16; }, ErrorCode::bad_value},
       {"side", [](auto& s) { s.sides = {8, 8, 129}; }, ErrorCode::bad_value},
@@ -92,27 +92,32 @@ TEST_CASE("packed bytes that lie are refused", "[protocol]") {
       {"palette above every limit", [](auto& s) { s.palette_size = 1ULL << 60; }, ErrorCode::bad_value},
       {"id beyond 16 bits", [](auto& s) { s.palette = {0, 0, 65'534}; }, ErrorCode::bad_value},
       {"id step beyond 16 bits", [](auto& s) { s.palette = {0, 0, 1ULL << 40}; }, ErrorCode::bad_value},
-      {"unused palette entry", [](auto& s) { s.body = {1, 0, 1, 3, 0xc5, 0x01}; }, ErrorCode::not_canonical},
-      {"index behind the palette", [](auto& s) { s.body = {1, 0, 3, 3, 0xc5, 0x01}; },
+      {"unused palette entry", [](auto& s) { s.body = {1, 0, 1, 231, 3}; }, ErrorCode::not_canonical},
+      {"index behind the palette", [](auto& s) { s.body = {1, 0, 3, 231, 3}; }, ErrorCode::broken_invariant},
+      {"equal neighbours", [](auto& s) { s.runs = 4, s.body = {1, 0, 0, 2, 2, 3, 6}; },
        ErrorCode::broken_invariant},
-      {"equal neighbours", [](auto& s) { s.runs = 4, s.body = {1, 0, 0, 2, 3, 5, 6}; },
+      {"nothing left for the last run", [](auto& s) { s.body = {1, 0, 2, 192, 3}; },
        ErrorCode::broken_invariant},
-      {"empty run", [](auto& s) { s.body = {1, 0, 2, 0, 5}; }, ErrorCode::broken_invariant},
-      {"nothing left for the last run", [](auto& s) { s.body = {1, 0, 2, 3, 0xfd, 0x03}; },
+      {"length behind the volume", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xff, 0x03}; },
        ErrorCode::broken_invariant},
-      {"length behind the volume", [](auto& s) { s.body = {1, 0, 2, 3, 0xfe, 0x03}; },
+      {"line behind the volume", [](auto& s) { s.body = {1, 0, 2, 192, 255}; }, ErrorCode::broken_invariant},
+      {"end of a line as a length", [](auto& s) { s.body = {1, 0, 2, 5, 3}; }, ErrorCode::broken_invariant},
+      {"end of a line as a long length", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc5, 0x01}; },
        ErrorCode::broken_invariant},
-      {"length of two bytes that fits one", [](auto& s) { s.body = {1, 0, 2, 0x83, 0x00, 9}; },
+      {"long length that fits a token", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xbf, 0x01}; },
        ErrorCode::broken_invariant},
-      {"length of 22 bits", [](auto& s) { s.body = {1, 0, 2, 3, 0x80, 0x80, 0x80, 0x01}, s.body_bytes = 8; },
+      {"long length of three bytes that fits two", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6, 0x81, 0}; },
        ErrorCode::broken_invariant},
-      {"lengths end early", [](auto& s) { s.body = {1, 0, 2, 3, 0xc5}; }, ErrorCode::truncated},
-      {"a length too many", [](auto& s) { s.body = {1, 0, 2, 3, 5, 7}; }, ErrorCode::trailing_bytes},
-      {"body shorter than announced", [](auto& s) { s.body_bytes = 7; }, ErrorCode::truncated},
-      {"body longer than announced", [](auto& s) { s.body_bytes = 5; }, ErrorCode::trailing_bytes},
-      {"body too small for its runs", [](auto& s) { s.body_bytes = 4; }, ErrorCode::bad_value},
-      {"body too large for its runs", [](auto& s) { s.body_bytes = 10; }, ErrorCode::bad_value},
-      {"body beyond 64 bits of sense", [](auto& s) { s.body_bytes = ~0ULL; }, ErrorCode::bad_value},
+      {"long length of 22 bits",
+       [](auto& s) { s.sides = {32, 32, 32}, s.body = {1, 0, 2, 0, 3, 0x80, 0x80, 0x80, 1}; },
+       ErrorCode::broken_invariant},
+      {"long length is missing", [](auto& s) { s.body = {1, 0, 2, 0, 3}; }, ErrorCode::broken_invariant},
+      {"long length is cut", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6}; }, ErrorCode::broken_invariant},
+      {"a token too many", [](auto& s) { s.body = {1, 0, 2, 231, 3, 7}; }, ErrorCode::trailing_bytes},
+      {"body too small for its runs", [](auto& s) { s.body = {1, 0, 2, 231}; }, ErrorCode::bad_value},
+      {"no body", [](auto& s) { s.body = {}; }, ErrorCode::bad_value},
+      {"body too large for its runs", [](auto& s) { s.body.resize(5 + 3 * (512 / 192) + 1); },
+       ErrorCode::bad_value},
   };
   for (const auto& c : cases) {
     CAPTURE(c.what);
@@ -123,9 +128,9 @@ TEST_CASE("packed bytes that lie are refused", "[protocol]") {
 }
 
 TEST_CASE("a varint of the head in more bytes than needed is refused", "[protocol]") {
-  Bytes bytes{2, 1, 2, 8, 8, 8};
+  Bytes bytes{2, 2, 2, 8, 8, 8};
   spell_varint(bytes, 3, 1);
-  bytes = concat(bytes, {3, 0, 0, 0xaa, 0x02, 6, 1, 0, 2, 3, 0xc5, 0x01});
+  bytes = concat(bytes, {3, 0, 0, 0xaa, 0x02, 1, 0, 2, 231, 3});
   CHECK(error_of(bytes) == ErrorCode::not_canonical);
 }
 
@@ -140,9 +145,11 @@ TEST_CASE("zstd that does not hold exactly the body is refused", "[protocol]") {
   REQUIRE_FALSE(error_with(good));
   CHECK(error_with({}) == ErrorCode::bad_value);
   CHECK(error_with(zstd_frame(s.body, false)) == ErrorCode::bad_value);  // tells no size
-  CHECK(error_with(zstd_frame(Bytes(7, 1))) == ErrorCode::bad_value);    // another size
+  CHECK(error_with(zstd_frame(Bytes(4, 1))) == ErrorCode::bad_value);    // another size
+  CHECK(error_with(zstd_frame(Bytes(12, 1))) == ErrorCode::bad_value);
+  CHECK(error_with(concat(from_hex("28b52ffd"), good)) == ErrorCode::bad_value);  // the magic number
   CHECK(error_with(concat(good, {0})) == ErrorCode::trailing_bytes);
-  CHECK(error_with(concat(good, good)) == ErrorCode::trailing_bytes);  // a second frame
+  CHECK(error_with(concat(concat(good, from_hex("28b52ffd")), good)) == ErrorCode::trailing_bytes);
   const Bytes skippable = from_hex("502a4d18 00000000");
   CHECK(error_with(concat(good, skippable)) == ErrorCode::trailing_bytes);
   CHECK(error_with(concat(skippable, good)) == ErrorCode::bad_value);
@@ -166,9 +173,36 @@ TEST_CASE("zstd is used exactly where it makes the body smaller", "[protocol]") 
     ++compressed;
     const Bytes bytes = encode_chunk(chunk, ChunkEncoding::packed);
     const std::size_t body_least = 2 * chunk.runs.size() - 1;
-    CHECK(bytes.size() < 6 + 3 + 2 + 12 + 3 + 2 * body_least);
+    CHECK(bytes.size() < 6 + 3 + 2 + 12 + 2 * body_least);
   }
   CHECK(compressed > 20);
+}
+
+TEST_CASE("lengths of runs take the token that docs/protocol.md gives them", "[protocol]") {
+  const auto tokens_of = [](Extent extent, std::uint32_t first, std::uint32_t second) {
+    RunBuilder builder(extent, AxisOrder::xyz);
+    builder.append_to(first, 0);
+    builder.append_to(second, 1);
+    builder.append_to(extent.volume(), 2);
+    const RunChunk chunk = builder.finish();
+    const Bytes bytes = encode_chunk(chunk, ChunkEncoding::packed);
+    REQUIRE(bytes[2] == 0);  // plain
+    REQUIRE(decode_chunk(bytes).value() == chunk);
+    return Bytes(bytes.begin() + 6 + 1 + 4 + 3, bytes.end());
+  };
+  const Extent cube = Extent::cube(32), odd{24, 32, 32};
+  CHECK(tokens_of(cube, 1, 31) == Bytes{1, 30});
+  CHECK(tokens_of(cube, 32, 64) == Bytes{255, 255});
+  CHECK(tokens_of(cube, 31, 32) == Bytes{31, 255});
+  CHECK(tokens_of(cube, 31, 64) == Bytes{31, 254});
+  CHECK(tokens_of(cube, 191, 383) == Bytes{191, 0, 0xc0, 0x01});
+  CHECK(tokens_of(cube, 192, 193) == Bytes{250, 1});
+  CHECK(tokens_of(cube, 64 * 32, 64 * 32 + 1) == Bytes{192, 1});
+  CHECK(tokens_of(cube, 65 * 32, 65 * 32 + 1) == Bytes{0, 1, 0xa0, 0x10});
+  CHECK(tokens_of(cube, 31, 64 * 32) == Bytes{31, 192});
+  CHECK(tokens_of(cube, 31, 65 * 32) == Bytes{31, 0, 0x81, 0x10});
+  CHECK(tokens_of(odd, 8, 12) == Bytes{255, 4});  // of 24, the line is 8
+  CHECK(tokens_of(odd, 12, 24) == Bytes{12, 254});
 }
 
 TEST_CASE("palettes of more than 256 materials take two bytes an index", "[protocol]") {
