@@ -1,35 +1,27 @@
-// ClientSession: one client's side of the protocol, around a Replica: handshake, view, edits, pings,
-// resumption. It consumes messages and produces messages; who carries them (a socket, a simulated link) is
-// not its business.
-//   offline -> connected() -> greeting (hello sent) -> proving (welcome checked, proof sent) -> open (ready
-//   came). disconnected() leads back to offline from everywhere; the replica and own edits stay, and are
-//   resumed.
-// The server proves its key with a signature; the key is pinned per world (first use trusts it, a change
-// refuses). Pure: randomness and times are arguments (microseconds of the client's steady clock). One thread.
+// ClientSession: one client's side of the protocol, around a Replica: view, edits, travels, commands, the others, resumption,
+// upon a ServerConnection. It consumes messages and produces messages; who carries them (a socket, a simulated link) is not
+// its business. When the connection ends, the replica and own edits stay, and are resumed by the next one. Pure: randomness
+// and times are arguments (microseconds of the client's steady clock). One thread.
 #pragma once
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/replica/cache_question.hpp"
-#include "client/replica/clock_offset.hpp"
-#include "client/replica/greeting.hpp"
 #include "client/replica/replica.hpp"
+#include "client/replica/server_connection.hpp"
 #include "common/core/result.hpp"
-#include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
-inline constexpr TimeUs kPingEveryUs = 1'000'000;
 inline constexpr TimeUs kPingEveryFirstUs =
     50'000;  // until kPingsFirst pongs are in: the clock offset is wanted soon
 inline constexpr unsigned kPingsFirst = 4;
-inline constexpr TimeUs kServerSilenceUsMax = 15'000'000;  // with a ping a second, silence means a dead link
-inline constexpr TimeUs kMoveEveryUs = 50'000;             // poses sent at most
 inline constexpr TimeUs kOffsetWaitUsMax =
     1'000'000;  // edits wait this long for the first pong, then go without
 /// Ready travels with the edits; messages of the other classes may overtake it. So many are held back for it.
@@ -37,16 +29,6 @@ inline constexpr std::size_t kEarlyMessagesMax = 4096;
 inline constexpr TimeUs kCacheWaitUsMax = 250'000;      // that a view waits for what a cache has of it
 inline constexpr std::size_t kCommandLinesKept = 4096;  // of one command's output
 inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered by then is offered again
-
-enum class SessionState { offline, greeting, proving, open };
-
-/// Why the last connection ended, as far as the protocol knows.
-struct SessionEnd {
-  GoodbyeReason reason = GoodbyeReason::closing;
-  std::string text;
-  bool by_server = false;  // it said goodbye; otherwise we did
-  bool final = false;      // trying again with the same configuration is pointless
-};
 
 struct OtherPlayer {
   std::string name;
@@ -66,11 +48,11 @@ class ClientSession {
   /// Pings, repeated requests, silence. Call about every 10 ms.
   void tick(TimeUs now_us);
   /// Messages to send, in order. Edits may overtake the others (they travel in a class of their own).
-  std::vector<Message> take_outgoing();
+  std::vector<Message> take_outgoing() { return connection_.take_outgoing(); }
   /// The connection should be closed once what is queued is sent.
-  bool wants_close() const { return wants_close_; }
+  bool wants_close() const { return connection_.wants_close(); }
   /// Says goodbye; wants_close() is true afterwards.
-  void close(GoodbyeReason reason, std::string text);
+  void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
   /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency counts from there.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
@@ -98,60 +80,47 @@ class ClientSession {
   void answer(std::vector<KeptChunk> found, TimeUs now_us);
   /// The world as its server describes it now; nothing unless open.
   std::optional<CachedWorld> cached_world() const;
-  void set_pose(const Pose& pose) { pose_ = pose; }
+  void set_pose(const Pose& pose) { connection_.set_pose(pose); }
 
-  SessionState state() const { return state_; }
-  bool is_open() const { return state_ == SessionState::open; }
-  const std::optional<SessionEnd>& end() const { return end_; }
+  SessionState state() const { return connection_.state(); }
+  bool is_open() const { return connection_.is_open(); }
+  const std::optional<SessionEnd>& end() const { return connection_.end(); }
   /// Of the current or last connection; empty before the first.
-  const std::optional<Welcome>& welcome() const { return welcome_; }
-  AuthorId author() const { return author_; }
-  OperationId operation(ClientSequence seq) const { return {author_, config_.instance, seq}; }
+  const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
+  AuthorId author() const { return connection_.author(); }
+  OperationId operation(ClientSequence seq) const { return {author(), connection_.config().instance, seq}; }
   /// The view in force: the wished one within the server's limits.
-  View view() const;
+  View view() const { return connection_.view(); }
   /// Number of chunks in view.
   std::size_t view_chunks() const;
   /// Of every chunk in view the snapshot came on this connection, or the word that it is unavailable; and
   /// none waits to be repaired.
   bool loaded() const;
   /// Counts pongs; a ping sent after a moment has come back once it rises by two from then.
-  std::uint64_t pongs() const { return pongs_; }
-  const ClockOffset& clock() const { return clock_; }
+  std::uint64_t pongs() const { return connection_.pongs(); }
+  const ClockOffset& clock() const { return connection_.clock(); }
   const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
   /// Server keys by world: those given, and those of worlds seen for the first time.
-  const std::map<WorldId, PublicKey>& pinned() const { return config_.pinned; }
-  std::uint64_t openings() const { return openings_; }
+  const std::map<WorldId, PublicKey>& pinned() const { return connection_.config().pinned; }
+  std::uint64_t openings() const { return connection_.openings(); }
 
   Replica& replica() { return replica_; }
   const Replica& replica() const { return replica_; }
 
  private:
-  void on_welcome(Welcome welcome);
   void on_ready(const Ready& ready, TimeUs now_us);
-  void on_goodbye(const Goodbye& goodbye);
   void on_command_output(CommandOutput output);
   void on_roster(const Roster& roster);
   void on_poses(const PlayerPoses& poses);
   void on_moment(const Moment& moment);
-  void fail_with(GoodbyeReason reason, std::string text, bool final);
   /// Sends the view, and before it what of it is held; waits for the cache if there is something to ask it.
   void wish_view();
   void send_view();
   void send_waiting_edits(TimeUs now_us);
 
-  SessionConfig config_;
-  SessionState state_ = SessionState::offline;
+  ServerConnection connection_;
   Replica replica_;
-  ClockOffset clock_;
-  std::vector<Message> outgoing_;
   std::vector<std::pair<Message, Arrival>> early_;  // came before ready
-  bool wants_close_ = false;
-  std::optional<SessionEnd> end_;
-  Hello hello_;
-  std::optional<Welcome> welcome_;
-  AuthorId author_ = 0;
-  std::uint64_t openings_ = 0;
-  std::uint64_t pongs_ = 0;
 
   std::uint32_t travel_request_ = 0;  // of the newest wish on this connection; 0: none
   std::uint32_t travelled_ = 0;       // the newest one that was fulfilled or refused
@@ -161,16 +130,12 @@ class ClientSession {
   std::vector<std::string> command_lines_;  // kCommandLinesKept at most
 
   std::vector<ClientSequence> waiting_;  // own edits to send, ascending
-  std::optional<View> view_sent_;
   // Of this connection: what the cache was or will be asked for, and how many answers are to come.
   std::set<ChunkKey> asked_;
   std::vector<ChunkKey> questions_;
   std::size_t answers_due_ = 0, answers_stale_ = 0;
   std::optional<TimeUs> view_waits_since_us_;
-  TimeUs now_us_ = 0;  // of the last call that told it
-  Pose pose_;
-  std::optional<Pose> pose_sent_;
-  TimeUs opened_us_ = 0, ping_us_ = 0, heard_us_ = 0, move_us_ = 0;
+  TimeUs now_us_ = 0, opened_us_ = 0;  // now: of the last call that told it
   std::map<AuthorId, OtherPlayer> others_;
 };
 

@@ -1,0 +1,156 @@
+#include "client/replica/server_connection.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+bool is_final(GoodbyeReason reason) {
+  return reason == GoodbyeReason::wrong_protocol || reason == GoodbyeReason::not_authenticated;
+}
+
+}  // namespace
+
+// ---- from offline to open, and back
+
+void ServerConnection::connected(const Nonce& nonce, TimeUs now_us) {
+  disconnected();
+  end_.reset();
+  hello_ = hello_of(config_, nonce);
+  outgoing_.push_back(hello_);
+  state_ = SessionState::greeting;
+  heard_us_ = now_us;
+}
+
+void ServerConnection::disconnected() {
+  state_ = SessionState::offline;
+  outgoing_.clear();
+  view_sent_.reset();
+  pose_sent_.reset();
+  wants_close_ = false;
+}
+
+ServerConnection::Heard ServerConnection::receive(Message& message, const Arrival& arrival) {
+  if (!listens()) return Heard::handled;
+  heard_us_ = arrival.now_us;
+  if (const auto* goodbye = std::get_if<Goodbye>(&message)) {
+    end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_final(goodbye->reason)};
+    wants_close_ = true;
+    return Heard::handled;
+  }
+  if (auto* welcome = std::get_if<Welcome>(&message)) {
+    if (state_ == SessionState::greeting) return on_welcome(std::move(*welcome));
+    fail_with(GoodbyeReason::unexpected_message, "welcome twice");
+    return Heard::handled;
+  }
+  if (const auto* ready = std::get_if<Ready>(&message)) {
+    if (state_ != SessionState::proving) {
+      fail_with(GoodbyeReason::unexpected_message, "ready out of turn");
+      return Heard::handled;
+    }
+    on_ready(*ready, arrival.now_us);
+    return Heard::ready;
+  }
+  if (const auto* pong = std::get_if<Pong>(&message); pong != nullptr && is_open()) {
+    clock_.add(pong->sent_us, pong->server_us, arrival.received_us);
+    ++pongs_;
+    return Heard::handled;
+  }
+  return Heard::for_session;
+}
+
+ServerConnection::Heard ServerConnection::on_welcome(Welcome welcome) {
+  if (const auto fault = check_welcome(hello_, welcome, config_.pinned)) {
+    end_ = SessionEnd{fault->reason, fault->text, false, true};
+    close(fault->reason, fault->text);
+    return Heard::handled;
+  }
+  const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
+  if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
+  outgoing_.push_back(Proof{sign(config_.keys, client_transcript(hello_, welcome))});
+  welcome_ = std::move(welcome);
+  state_ = SessionState::proving;
+  return is_another_world ? Heard::another_world : Heard::handled;
+}
+
+void ServerConnection::on_ready(const Ready& ready, TimeUs now_us) {
+  author_ = ready.author;
+  ++openings_;
+  state_ = SessionState::open;
+  ping_us_ = now_us - kPingEveryUs;
+  move_us_ = now_us - kMoveEveryUs;
+}
+
+void ServerConnection::close(GoodbyeReason reason, std::string text) {
+  if (listens()) outgoing_.push_back(Goodbye{reason, std::move(text)});
+  wants_close_ = true;
+}
+
+void ServerConnection::fail_with(GoodbyeReason reason, std::string text) {
+  end_ = SessionEnd{reason, text, false, false};
+  close(reason, std::move(text));
+}
+
+// ---- what is sent
+
+bool ServerConnection::tick(TimeUs now_us, TimeUs ping_every_us) {
+  if (!listens()) return false;
+  if (now_us - heard_us_ > kServerSilenceUsMax) {
+    fail_with(GoodbyeReason::timed_out, "server is silent");
+    return false;
+  }
+  if (!is_open()) return false;
+  if (now_us - ping_us_ >= ping_every_us) {
+    outgoing_.push_back(Ping{now_us});
+    ping_us_ = now_us;
+  }
+  if (now_us - move_us_ >= kMoveEveryUs && pose_sent_ != pose_) {
+    outgoing_.push_back(Move{pose_});
+    pose_sent_ = pose_;
+    move_us_ = now_us;
+  }
+  return true;
+}
+
+TimeUs ServerConnection::tick_due_us(TimeUs ping_every_us) const {
+  if (state_ == SessionState::offline) return std::numeric_limits<TimeUs>::max();
+  TimeUs due_us = heard_us_ + kServerSilenceUsMax + 1;
+  if (!is_open()) return due_us;
+  due_us = std::min(due_us, ping_us_ + ping_every_us);
+  if (pose_sent_ != pose_) due_us = std::min(due_us, move_us_ + kMoveEveryUs);
+  return due_us;
+}
+
+void ServerConnection::send_edit(ClientSequence seq, const OwnEdit& own) {
+  outgoing_.push_back(EditRequest{seq, clock_.to_server(own.submitted_us).value_or(0), own.edit});
+}
+
+void ServerConnection::request_chunks(const std::vector<ChunkKey>& keys) {
+  for (std::size_t first = 0; first < keys.size(); first += kChunkRequestKeysMax) {
+    const std::size_t last = std::min(keys.size(), first + kChunkRequestKeysMax);
+    outgoing_.push_back(ChunkRequest{{keys.begin() + static_cast<std::ptrdiff_t>(first),
+                                      keys.begin() + static_cast<std::ptrdiff_t>(last)}});
+  }
+}
+
+View ServerConnection::view() const {
+  View view = config_.view;
+  const std::uint8_t limit = welcome_ ? welcome_->view_radius_max : std::uint8_t{kViewRadiusMax};
+  view.radius_h = std::min(view.radius_h, limit);
+  view.radius_v = std::min(view.radius_v, limit);
+  return view;
+}
+
+bool ServerConnection::send_view() {
+  const View view = this->view();
+  if (view_sent_ == view) return false;
+  outgoing_.push_back(view);
+  view_sent_ = view;
+  return true;
+}
+
+std::vector<Message> ServerConnection::take_outgoing() { return std::exchange(outgoing_, {}); }
+
+}  // namespace runstone

@@ -1,0 +1,344 @@
+#include "client/replica/server_connection.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+using namespace runstone;
+
+namespace {
+
+using Heard = ServerConnection::Heard;
+
+KeyPair keys(std::uint8_t seed) {
+  KeySeed bytes{};
+  bytes[0] = seed;
+  return key_pair_of(bytes);
+}
+
+SessionConfig config() {
+  SessionConfig out;
+  out.keys = keys(1);
+  out.name = "ada";
+  out.view = {{0, 0, 0}, 9, 2};
+  return out;
+}
+
+/// A connection, and its server answered by hand.
+struct Fixture {
+  Heard receive(Message message) { return connection.receive(message, {now, now, now}); }
+  /// Of what is to be sent now, all of one kind; the rest is dropped.
+  template <class T>
+  std::vector<T> take() {
+    std::vector<T> out;
+    for (const Message& message : connection.take_outgoing()) {
+      if (const auto* wanted = std::get_if<T>(&message)) out.push_back(*wanted);
+    }
+    return out;
+  }
+  void greet() {
+    connection.connected({5}, now);
+    const auto hellos = take<Hello>();
+    REQUIRE(hellos.size() == 1);
+    hello = hellos[0];
+  }
+  Welcome welcome() const {
+    Welcome out;
+    out.world_id = world_id;
+    out.epoch = epoch;
+    out.chunk_edge = 16;
+    out.materials = default_material_table();
+    out.server_key = server.public_key;
+    out.view_radius_max = 4;
+    out.signature = sign(server, server_transcript(hello, out));
+    return out;
+  }
+  void open() {
+    greet();
+    receive(welcome());
+    REQUIRE(receive(Ready{6, 0}) == Heard::ready);
+    REQUIRE(connection.is_open());
+    connection.take_outgoing();
+  }
+  bool goes_on(TimeUs ping_every_us = kPingEveryUs) { return connection.tick(now, ping_every_us); }
+
+  KeyPair server = keys(9);
+  WorldId world_id{1, 2, 3};
+  Epoch epoch = 1;
+  Hello hello;
+  TimeUs now = 1'000'000;
+  ServerConnection connection{config()};
+};
+
+Pose pose_at(double x) {
+  Pose out;
+  out.at = {x, 0, 0};
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "a connection opens by hello, welcome, proof and ready", "[replica]") {
+  CHECK(connection.state() == SessionState::offline);
+  CHECK_FALSE(connection.listens());
+  greet();
+  CHECK(hello.name == "ada");
+  CHECK(connection.state() == SessionState::greeting);
+  CHECK(connection.listens());
+  CHECK(receive(welcome()) == Heard::handled);
+  CHECK(connection.state() == SessionState::proving);
+  const auto proofs = take<Proof>();
+  REQUIRE(proofs.size() == 1);
+  CHECK(verify(hello.key, client_transcript(hello, welcome()), proofs[0].signature));
+  CHECK_FALSE(goes_on());
+  CHECK(receive(Ready{6, 0}) == Heard::ready);
+  CHECK(connection.is_open());
+  CHECK(connection.author() == 6);
+  CHECK(connection.openings() == 1);
+  CHECK(goes_on());
+  connection.disconnected();
+  CHECK(connection.state() == SessionState::offline);
+  CHECK_FALSE(goes_on());
+  CHECK(connection.take_outgoing().empty());
+  CHECK(connection.welcome());
+  open();
+  CHECK(connection.openings() == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with one goodbye", "[replica]") {
+  SECTION("ready before welcome") {
+    greet();
+    CHECK(receive(Ready{6, 0}) == Heard::handled);
+  }
+  SECTION("welcome twice") {
+    greet();
+    receive(welcome());
+    CHECK(receive(welcome()) == Heard::handled);
+  }
+  SECTION("ready twice") {
+    open();
+    CHECK(receive(Ready{6, 0}) == Heard::handled);
+  }
+  REQUIRE(connection.wants_close());
+  REQUIRE(connection.end());
+  CHECK(connection.end()->reason == GoodbyeReason::unexpected_message);
+  CHECK_FALSE(connection.end()->by_server);
+  CHECK_FALSE(connection.end()->final);
+  CHECK(receive(Ready{6, 0}) == Heard::handled);
+  connection.fail_with(GoodbyeReason::malformed_message, "and another fault");
+  connection.close(GoodbyeReason::closing, "done");
+  CHECK_FALSE(goes_on());
+  const auto goodbyes = take<Goodbye>();
+  REQUIRE(goodbyes.size() == 1);
+  CHECK(goodbyes[0].reason == GoodbyeReason::unexpected_message);
+}
+
+TEST_CASE_METHOD(Fixture, "what is not of the connection is left to the session, whole", "[replica]") {
+  greet();
+  Message message = Durable{1, 7};
+  CHECK(connection.receive(message, {now, now, now}) == Heard::for_session);
+  CHECK(std::get<Durable>(message).seq == 7);
+  receive(welcome());
+  CHECK(receive(Pong{now, now}) == Heard::for_session);  // to no ping: none is sent before ready
+  CHECK(connection.pongs() == 0);
+  receive(Ready{6, 0});
+  CHECK(receive(Durable{1, 7}) == Heard::for_session);
+  CHECK_FALSE(connection.wants_close());
+  connection.disconnected();
+  CHECK(receive(Durable{1, 7}) == Heard::handled);
+}
+
+TEST_CASE_METHOD(Fixture, "a server's goodbye is not answered, and says whether trying again is any use",
+                 "[replica]") {
+  greet();
+  GoodbyeReason reason = GoodbyeReason::closing;
+  bool is_final = false;
+  SECTION("later perhaps") {}
+  SECTION("another protocol") {
+    reason = GoodbyeReason::wrong_protocol;
+    is_final = true;
+  }
+  SECTION("not believed") {
+    reason = GoodbyeReason::not_authenticated;
+    is_final = true;
+  }
+  CHECK(receive(Goodbye{reason, "bye"}) == Heard::handled);
+  CHECK(connection.wants_close());
+  CHECK(connection.end()->by_server);
+  CHECK(connection.end()->text == "bye");
+  CHECK(connection.end()->final == is_final);
+  CHECK(connection.take_outgoing().empty());
+  connection.connected({6}, now);
+  CHECK_FALSE(connection.end());
+  CHECK_FALSE(connection.wants_close());
+}
+
+TEST_CASE_METHOD(Fixture, "a server is silent for so long and no longer, ready or not", "[replica]") {
+  bool is_opened = false;
+  SECTION("while greeting") { greet(); }
+  SECTION("once open") {
+    open();
+    is_opened = true;
+  }
+  now += kServerSilenceUsMax;
+  CHECK(goes_on() == is_opened);
+  CHECK_FALSE(connection.wants_close());
+  if (is_opened) {
+    receive(Pong{now, now});
+  } else {
+    connection.heard(now);
+  }
+  now += kServerSilenceUsMax;
+  CHECK(goes_on() == is_opened);
+  now += 1;
+  CHECK_FALSE(goes_on());
+  CHECK(connection.wants_close());
+  CHECK(connection.end()->reason == GoodbyeReason::timed_out);
+  CHECK_FALSE(connection.end()->final);
+  now += 1;
+  CHECK_FALSE(goes_on());
+  CHECK(take<Goodbye>().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "pings go out at once and then as often as asked", "[replica]") {
+  open();
+  CHECK(goes_on());
+  CHECK(take<Ping>() == std::vector{Ping{now}});
+  now += kPingEveryUs - 1;
+  goes_on();
+  CHECK(take<Ping>().empty());
+  now += 1;
+  goes_on();
+  CHECK(take<Ping>() == std::vector{Ping{now}});
+  now += 50'000;
+  goes_on(50'000);
+  CHECK(take<Ping>() == std::vector{Ping{now}});
+  goes_on(50'000);
+  CHECK(take<Ping>().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a pong tells the server's clock, with which edits are sent", "[replica]") {
+  open();
+  OwnEdit own;
+  own.edit = {SetVoxel{{1, 2, 3}}, {}, 4};
+  own.submitted_us = now;
+  connection.send_edit(1, own);
+  CHECK(take<EditRequest>() == std::vector{EditRequest{1, 0, own.edit}});
+  CHECK(receive(Pong{now - 200, now + 4'900}) == Heard::handled);
+  CHECK(connection.pongs() == 1);
+  connection.send_edit(2, own);
+  CHECK(take<EditRequest>() == std::vector{EditRequest{2, now + 5'000, own.edit}});
+}
+
+TEST_CASE_METHOD(Fixture, "poses go out when they change, one in so long", "[replica]") {
+  open();
+  CHECK(goes_on());
+  CHECK(take<Move>() == std::vector{Move{pose_at(0)}});  // the first one of a connection, wherever it is
+  connection.set_pose(pose_at(1));
+  now += kMoveEveryUs - 1;
+  goes_on();
+  CHECK(take<Move>().empty());
+  connection.set_pose(pose_at(2));
+  now += 1;
+  goes_on();
+  CHECK(take<Move>() == std::vector{Move{pose_at(2)}});
+  now += kMoveEveryUs;
+  connection.set_pose(pose_at(2));
+  goes_on();
+  CHECK(take<Move>().empty());
+  connection.disconnected();
+  open();
+  goes_on();
+  CHECK(take<Move>() == std::vector{Move{pose_at(2)}});
+}
+
+TEST_CASE_METHOD(Fixture, "a connection knows when its next tick is due", "[replica]") {
+  CHECK(connection.tick_due_us(kPingEveryUs) == std::numeric_limits<TimeUs>::max());
+  greet();
+  CHECK(connection.tick_due_us(kPingEveryUs) == now + kServerSilenceUsMax + 1);
+  open();
+  CHECK(connection.tick_due_us(kPingEveryUs) <= now);
+  goes_on();
+  CHECK(connection.tick_due_us(kPingEveryUs) == now + kPingEveryUs);
+  CHECK(connection.tick_due_us(70'000) == now + 70'000);
+  connection.set_pose(pose_at(1));
+  CHECK(connection.tick_due_us(70'000) == now + kMoveEveryUs);
+  connection.set_pose(pose_at(0));
+  now += kServerSilenceUsMax;
+  goes_on();
+  CHECK(connection.tick_due_us(kPingEveryUs) == now + 1);  // nothing was heard meanwhile
+}
+
+TEST_CASE_METHOD(Fixture, "a view goes out within the server's limits, when it is another one", "[replica]") {
+  CHECK(connection.view() == View{{0, 0, 0}, 9, 2});
+  open();
+  CHECK(connection.view() == View{{0, 0, 0}, 4, 2});
+  CHECK_FALSE(connection.view_was_sent());
+  CHECK(connection.send_view());
+  CHECK(connection.view_was_sent());
+  CHECK(take<View>() == std::vector{View{{0, 0, 0}, 4, 2}});
+  connection.set_view({{0, 0, 0}, 8, 2});
+  CHECK_FALSE(connection.send_view());
+  connection.set_view({{1, 0, 0}, 2, 8});
+  CHECK(connection.send_view());
+  CHECK(take<View>() == std::vector{View{{1, 0, 0}, 2, 4}});
+  connection.disconnected();
+  CHECK_FALSE(connection.view_was_sent());
+  open();
+  CHECK(connection.send_view());
+}
+
+TEST_CASE_METHOD(Fixture, "chunks are asked for in messages that a server takes", "[replica]") {
+  open();
+  connection.request_chunks({});
+  CHECK(connection.take_outgoing().empty());
+  std::vector<ChunkKey> keys;
+  for (std::size_t i = 0; i < 2 * kChunkRequestKeysMax + 1; ++i) {
+    keys.push_back({0, {static_cast<std::int32_t>(i), 0, 0}});
+  }
+  connection.request_chunks(keys);
+  const auto requests = take<ChunkRequest>();
+  REQUIRE(requests.size() == 3);
+  std::vector<ChunkKey> asked;
+  for (const ChunkRequest& request : requests) {
+    CHECK(request.keys.size() <= kChunkRequestKeysMax);
+    asked.insert(asked.end(), request.keys.begin(), request.keys.end());
+  }
+  CHECK(asked == keys);
+}
+
+TEST_CASE_METHOD(Fixture, "a server keeps its pin through a restart, and another world gets its own",
+                 "[replica]") {
+  open();
+  receive(Pong{now - 200, now});
+  REQUIRE(connection.clock().known());
+  connection.disconnected();
+  open();
+  CHECK(connection.clock().known());
+  ++epoch;
+  greet();
+  CHECK(receive(welcome()) == Heard::handled);
+  CHECK_FALSE(connection.clock().known());  // a restarted server has another clock
+  receive(Ready{6, 0});
+  receive(Pong{now - 200, now});
+  const WorldId first = world_id;
+  const PublicKey first_key = server.public_key;
+  world_id[0] ^= 1U;
+  server = keys(8);
+  greet();
+  CHECK(receive(welcome()) == Heard::another_world);
+  CHECK_FALSE(connection.clock().known());
+  CHECK(connection.config().pinned.at(first) == first_key);
+  CHECK(connection.config().pinned.at(world_id) == server.public_key);
+  // Back at the first world, whoever has its key is believed, and nobody else.
+  world_id = first;
+  greet();
+  CHECK(receive(welcome()) == Heard::handled);
+  CHECK(connection.wants_close());
+  CHECK(connection.end()->reason == GoodbyeReason::not_authenticated);
+  CHECK(connection.end()->final);
+  CHECK(connection.config().pinned.at(first) == first_key);
+  CHECK(take<Goodbye>().size() == 1);
+  server = keys(9);
+  greet();
+  CHECK(receive(welcome()) == Heard::another_world);
+}
