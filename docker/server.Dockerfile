@@ -9,6 +9,7 @@ WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./
 COPY cmake cmake
 COPY common common
+COPY process process
 COPY protocol protocol
 COPY server server
 RUN cmake --preset release -DRUNSTONE_CLIENT=OFF -DRUNSTONE_TESTS=OFF && \

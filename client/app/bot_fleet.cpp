@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "client/app/crowd_member.hpp"
-#include "client/app/open_files.hpp"
 #include "client/app/step_turns.hpp"
 #include "client/net/key_file.hpp"
-#include "client/net/steady_clock.hpp"
 #include "common/core/hash.hpp"
+#include "process/open_files.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

@@ -18,9 +18,9 @@
 
 #include "client/app/body_marker.hpp"
 #include "client/net/key_file.hpp"
-#include "client/net/steady_clock.hpp"
 #include "client/replica/surface.hpp"
 #include "common/core/key_text.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

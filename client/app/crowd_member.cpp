@@ -5,7 +5,7 @@
 #include "client/app/fleet.hpp"
 #include "client/bots/light_bot.hpp"
 #include "client/bots/replica_bot.hpp"
-#include "client/net/steady_clock.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

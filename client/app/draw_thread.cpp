@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "client/app/low_priority.hpp"
-#include "client/net/steady_clock.hpp"
 #include "common/core/assert.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "client/net/steady_clock.hpp"
 #include "client/replica/layer_diff.hpp"
 #include "common/core/assert.hpp"
 #include "common/mesh/visibility.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "client/net/steady_clock.hpp"
 #include "common/mesh/visibility.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 

@@ -12,7 +12,7 @@
 #include "client/app/fleet.hpp"
 #include "client/app/histogram_report.hpp"
 #include "client/net/key_file.hpp"
-#include "client/net/steady_clock.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

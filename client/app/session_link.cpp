@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "client/net/key_file.hpp"
-#include "client/net/steady_clock.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "client/net/read_report.hpp"
-#include "client/net/steady_clock.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/hex.hpp"
+#include "process/steady_clock.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/app/progress_line.hpp"
 #include "server/app/replay.hpp"
@@ -19,10 +20,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Of an even number the mean of the two in the middle. Requires one at least.
 double median(std::vector<double> values) {

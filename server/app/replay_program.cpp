@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/core/hex.hpp"
+#include "process/steady_clock.hpp"
 #include "server/app/digest_list.hpp"
 #include "server/app/keyframes_program.hpp"
 #include "server/app/moments_program.hpp"
@@ -22,10 +23,6 @@
 namespace runstone {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double rate_of(const ReplayReport& report, double seconds) {
   return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;

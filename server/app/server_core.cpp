@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "common/runs/dense.hpp"
+#include "process/steady_clock.hpp"
 #include "server/admin/operators.hpp"
 #include "server/app/logging.hpp"
 #include "server/history/missing_edits.hpp"
-#include "server/net/steady_us.hpp"
 #include "server/net/thread_cpu_ns.hpp"
 
 namespace runstone {
@@ -35,7 +35,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 Now now() {
   const auto utc = std::chrono::system_clock::now().time_since_epoch();
-  return {steady_us(), std::chrono::duration_cast<std::chrono::microseconds>(utc).count()};
+  return {steady_now_us(), std::chrono::duration_cast<std::chrono::microseconds>(utc).count()};
 }
 
 NetLimits net_limits(const ServerConfig& config) {
@@ -214,7 +214,7 @@ void ServerCore::start() {
 
 void ServerCore::schedule_commit() {
   if (!world_->has_queued() || std::exchange(commit_posted_, true)) return;
-  const TimeUs now_us = steady_us();
+  const TimeUs now_us = steady_now_us();
   const NetCounters& net = listener_->counters();
   const CommitSending sending{net.commit_send_ns.load() / 1'000, net.commit_sends.load(),
                               net.commits_due.load()};

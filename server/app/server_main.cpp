@@ -17,9 +17,9 @@
 #include <string>
 
 #include "common/runs/dense.hpp"
+#include "process/open_files.hpp"
 #include "server/app/console.hpp"
 #include "server/app/logging.hpp"
-#include "server/app/open_files.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
 

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "process/steady_clock.hpp"
 #include "server/app/camera_path.hpp"
 #include "server/app/draw_child.hpp"
 #include "server/app/oblique_camera.hpp"
@@ -89,10 +90,6 @@ std::vector<ChunkCoord> eyes_of(const CameraPath& path, const std::vector<Sequen
     eyes.insert(chunk_of({voxel(camera.x), voxel(camera.y), voxel(camera.z)}, edge));
   }
   return {eyes.begin(), eyes.end()};
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace

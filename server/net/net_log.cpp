@@ -5,7 +5,7 @@
 #include <mutex>
 #include <utility>
 
-#include "server/net/steady_us.hpp"
+#include "process/steady_clock.hpp"
 #include "server/world/token_bucket.hpp"
 
 namespace runstone {
@@ -17,7 +17,7 @@ void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason r
   std::uint64_t missed = 0;
   {
     const std::lock_guard lock(mutex);
-    if (!lines.take(1, steady_us())) {
+    if (!lines.take(1, steady_now_us())) {
       ++left_out;
       return;
     }

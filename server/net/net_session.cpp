@@ -10,8 +10,8 @@
 #include <chrono>
 #include <utility>
 
+#include "process/steady_clock.hpp"
 #include "server/net/net_log.hpp"
-#include "server/net/steady_us.hpp"
 
 namespace runstone {
 namespace {
@@ -154,7 +154,7 @@ asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> s
 
 Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
   counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
-  if (!messages_.take(1, steady_us())) {
+  if (!messages_.take(1, steady_now_us())) {
     broken_rule_ = GoodbyeReason::flooding;
     return fail(ErrorCode::limit_exceeded, "more messages than the rate allows");
   }
@@ -176,7 +176,7 @@ Result<void> NetSession::on_received(const Received& received) {
       broken_rule_ = GoodbyeReason::unexpected_message;
       return fail(ErrorCode::bad_value, "received, but its feature is not in force");
     }
-    const auto acked = gate_.acked(received.chunk_bytes, steady_us());
+    const auto acked = gate_.acked(received.chunk_bytes, steady_now_us());
     if (!acked) {
       broken_rule_ = GoodbyeReason::malformed_message;
       return acked;
@@ -239,7 +239,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       if (std::exchange(self->is_due_, false)) {
         self->counters_.commits_due.fetch_sub(1, std::memory_order_relaxed);
       }
-      const TimeUs now_us = steady_us();
+      const TimeUs now_us = steady_now_us();
       const bool has_chunk = self->queue_.has_chunk();
       const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us) : 0;
       has_batch = self->queue_.take(batch, chunk_body_max);

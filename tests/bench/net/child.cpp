@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,9 +14,12 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <thread>
 #include <utility>
+
+#include "process/open_files.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -43,11 +45,7 @@ void on_signal(int signal) {
     ::dup2(out, STDOUT_FILENO);
     ::dup2(out, STDERR_FILENO);
     ::close_range(STDERR_FILENO + 1, ~0U, 0);
-    rlimit files{};
-    if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {  // a crowd has many sockets
-      files.rlim_cur = files.rlim_max;
-      ::setrlimit(RLIMIT_NOFILE, &files);
-    }
+    allow_open_files(std::numeric_limits<std::size_t>::max());  // a crowd has many sockets
     ::execv(words[0], words);
   }
   ::_exit(127);

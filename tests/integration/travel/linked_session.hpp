@@ -9,8 +9,8 @@
 
 #include "client/net/key_file.hpp"
 #include "client/net/link.hpp"
-#include "client/net/steady_clock.hpp"
 #include "client/replica/client_session.hpp"
+#include "process/steady_clock.hpp"
 
 namespace runstone::test {
 

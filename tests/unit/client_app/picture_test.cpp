@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "client/net/steady_clock.hpp"
 #include "client/net/wake_up.hpp"
+#include "process/steady_clock.hpp"
 #include "tests/support/authority_model.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/unit/client_app/fake_screen.hpp"

@@ -1,4 +1,4 @@
-// Includes point down: server/, client/ -> protocol/ -> common/, and inside common/ as docs/architecture.md
+// Includes point down: server/, client/ -> process/, protocol/ -> common/, and inside common/ as docs/architecture.md
 // draws it. The libraries are pure: no sockets, files, clocks, threads, logs or graphics in common/ and
 // protocol/, and none of the first kinds where authority and replica decide.
 #include <algorithm>
@@ -64,8 +64,9 @@ const std::map<std::string, std::vector<std::string>, std::less<>>& arrows() {
       {"common/rlog", {"common/core", "common/edits", "common/generate/generator.hpp"}},
       {"common/formats", {"common/core", "common/runs", "common/materials", "common/edits"}},
       {"protocol", {"common"}},
-      {"server", {"protocol", "common"}},
-      {"client", {"protocol", "common"}},
+      {"process", {"common/core"}},
+      {"server", {"protocol", "process", "common"}},
+      {"client", {"protocol", "process", "common"}},
   };
   return kArrows;
 }
@@ -85,7 +86,7 @@ const std::vector<Ban>& bans() {
         "iostream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "filesystem"}},
       {{"server/world", "server/interest", "client/replica"},
        {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread", "fstream",
-        "random", "unistd.h", "sys/time.h", "sys/socket.h"}},
+        "random", "unistd.h", "sys/time.h", "sys/socket.h", "process/"}},
       {{"protocol", "server", "client", "common/mesh/rdm"},
        {"common/mesh/reference/"},
        "the reference meshers are dense: benchmarks and tests only"},
@@ -99,7 +100,7 @@ bool names(const std::string& header, const std::string& banned) {
 
 /// One line for each wrong include: "file includes header: rule".
 std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
-  static constexpr std::string_view kRoots[] = {"common", "protocol", "server", "client", "tests"};
+  static constexpr std::string_view kRoots[] = {"common", "protocol", "process", "server", "client", "tests"};
   std::vector<std::string> out;
   for (const SourceFile& file : files) {
     const auto home = std::find_if(arrows().begin(), arrows().end(),
@@ -140,7 +141,7 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
 
 std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
   std::vector<SourceFile> out;
-  for (const char* folder : {"common", "protocol", "server", "client", "tests"}) {
+  for (const char* folder : {"common", "protocol", "process", "server", "client", "tests"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const auto extension = entry.path().extension();
       if (!entry.is_regular_file() || (extension != ".hpp" && extension != ".cpp" && extension != ".h"))
@@ -164,7 +165,8 @@ bool is_wrong(const std::string& path, const std::string& line) {
 TEST_CASE("every include of the tree follows the arrows of the house", "[house]") {
   const std::vector<SourceFile> files = source_tree(RUNSTONE_SOURCE_DIR);
   REQUIRE(files.size() > 100);
-  for (const char* folder : {"common/core", "common/runs", "common/edits", "protocol", "server", "client"}) {
+  for (const char* folder :
+       {"common/core", "common/runs", "common/edits", "protocol", "process", "server", "client"}) {
     CAPTURE(folder);
     CHECK(std::any_of(files.begin(), files.end(), [&](const auto& f) { return below(f.path, folder); }));
   }
@@ -187,6 +189,10 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"server/net/session.hpp\""));
   CHECK(is_wrong("server/net/session.cpp", "#include \"client/net/link.hpp\""));
   CHECK(is_wrong("client/net/link.cpp", "#include \"server/net/session.hpp\""));
+  CHECK(is_wrong("common/core/ids.cpp", "#include \"process/steady_clock.hpp\""));
+  CHECK(is_wrong("protocol/codec/frame.cpp", "#include \"process/steady_clock.hpp\""));
+  CHECK(is_wrong("process/open_files.cpp", "#include \"protocol/limits.hpp\""));
+  CHECK(is_wrong("process/open_files.cpp", "#include \"server/app/server.hpp\""));
   CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
   // Out of the pure libraries.
   for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h", "GL/gl.h",
@@ -197,6 +203,8 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   }
   CHECK(is_wrong("server/world/authority.cpp", "#include <chrono>"));
   CHECK(is_wrong("client/replica/replica.cpp", "#include <asio.hpp>"));
+  CHECK(is_wrong("client/replica/replica.cpp", "#include \"process/steady_clock.hpp\""));
+  CHECK(is_wrong("server/world/authority.cpp", "#include \"process/steady_clock.hpp\""));
   // Out of the product.
   CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"common/mesh/reference/binary_greedy.hpp\""));
   CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/mesh/reference/dense_grid.hpp\""));
@@ -215,6 +223,9 @@ TEST_CASE("right includes pass", "[house]") {
   CHECK_FALSE(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/edits/edit_geometry.hpp\""));
   CHECK_FALSE(is_wrong("common/formats/luanti_block.cpp", "#include <zstd.h>"));
   CHECK_FALSE(is_wrong("protocol/codec/frame.cpp", "#include \"common/edits/edit_record.hpp\""));
+  CHECK_FALSE(is_wrong("process/steady_clock.hpp", "#include <chrono>"));
+  CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"process/steady_clock.hpp\""));
+  CHECK_FALSE(is_wrong("client/net/link.cpp", "#include \"process/steady_clock.hpp\""));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include <asio.hpp>"));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"server/world/authority.hpp\""));
   CHECK_FALSE(is_wrong("client/replica/replica.cpp", "#include \"protocol/codec/frame.hpp\""));

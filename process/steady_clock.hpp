@@ -1,4 +1,4 @@
-// The client's one clock: steady, so that differences are durations. Any thread.
+// A program's one clock for durations: steady, so that it never goes back; what it counts from means nothing. Any thread.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -13,5 +13,9 @@ inline std::int64_t steady_now_ns() {
       .count();
 }
 inline TimeUs steady_now_us() { return steady_now_ns() / 1000; }
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace runstone
