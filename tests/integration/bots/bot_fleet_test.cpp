@@ -14,6 +14,16 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
+/// A flat world, open to crowds, as long as it is in scope.
+struct FlatServer {
+  TempFolder folder;
+  std::unique_ptr<Server> server = [&] {
+    ServerConfig config = quiet_config(folder.path());
+    config.handshakes_per_address = 1'000;
+    return start_server(config, flat_creation());
+  }();
+};
+
 BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
   BotOptions options;
   options.port = server.port();
@@ -29,9 +39,8 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
 }  // namespace
 
 TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing", "[bots]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder.path()), flat_creation());
-  const FleetReport report = BotFleet(options_for(*server, BotRole::build, 5)).run(never);
+  const FlatServer flat;
+  const FleetReport report = BotFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
   INFO(report.failure);
   CHECK(report.failure.empty());
   CHECK(report.counts.due == 500);
@@ -42,7 +51,7 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
   CHECK(report.standing.held > 400);
   CHECK(report.standing.intact == report.standing.held);
   CHECK(report.drifted == 0);
-  CHECK(server->stop().digests.seq == 500);
+  CHECK(flat.server->stop().digests.seq == 500);
 }
 
 TEST_CASE("edits that are due soon after the start are made when they are due, not with the next ping",
@@ -58,15 +67,14 @@ TEST_CASE("edits that are due soon after the start are made when they are due, n
 }
 
 TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  const FlatServer flat;
   for (const BotRole role : {BotRole::brush, BotRole::grief}) {
-    const FleetReport report = BotFleet(options_for(*server, role, 2)).run(never);
+    const FleetReport report = BotFleet(options_for(*flat.server, role, 2)).run(never);
     CHECK(report.failure.empty());
     CHECK(report.counts.confirmed > 50);
     CHECK(report.counts.confirmed == report.counts.submitted);
   }
-  BotOptions options = options_for(*server, BotRole::walk, 2);
+  BotOptions options = options_for(*flat.server, BotRole::walk, 2);
   options.seconds = 0.3;
   const FleetReport report = BotFleet(options).run(never);
   CHECK(report.failure.empty());
@@ -75,10 +83,9 @@ TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
 }
 
 TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder.path()), flat_creation());
-  BotOptions options = options_for(*server, BotRole::build, 1);
-  server->stop();
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 1);
+  flat.server->stop();
   options.load_seconds = 0.5;
   const FleetReport report = BotFleet(options).run(never);
   CHECK(report.failure.find("bot does not see the world around it: cannot connect") == 0);
@@ -86,9 +93,8 @@ TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
 }
 
 TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder.path()), flat_creation());
-  BotOptions options = options_for(*server, BotRole::build, 2);
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
   static volatile std::sig_atomic_t stop = 0;
   std::thread stopper([] {
@@ -105,11 +111,8 @@ TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
 }
 
 TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]") {
-  const TempFolder folder;
-  ServerConfig config = quiet_config(folder.path());
-  config.handshakes_per_address = 1'000;
-  auto server = start_server(config, flat_creation());
-  BotOptions options = options_for(*server, BotRole::build, 50);
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 50);
   options.sites = 1;
   options.replicas = 5;
   options.join_rate = 500;
@@ -135,11 +138,8 @@ TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]")
 }
 
 TEST_CASE("a join storm comes and goes, and runners see the world go by", "[bots]") {
-  const TempFolder folder;
-  ServerConfig config = quiet_config(folder.path());
-  config.handshakes_per_address = 1'000;
-  auto server = start_server(config, flat_creation());
-  BotOptions options = options_for(*server, BotRole::join_storm, 8);
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::join_storm, 8);
   options.roles = {BotRole::join_storm, BotRole::run_away};
   options.replicas = 2;
   options.edits = 5;

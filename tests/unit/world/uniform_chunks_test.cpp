@@ -20,6 +20,20 @@ void answer(WorldBench& bench) {
   }
 }
 
+/// Session 1 comes and asks to see three chunks of air.
+void join_above(WorldBench& bench) {
+  bench.join(1, 1);
+  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
+}
+
+/// The oldest load is answered with air.
+ChunkKey load_air(WorldBench& bench) {
+  const ChunkKey key = bench.ports.loads.front();
+  bench.ports.loads.pop_front();
+  bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
+  return key;
+}
+
 std::vector<UniformChunks> uniform(const WorldBench& bench, SessionId session) {
   return bench.ports.messages<UniformChunks>(session, kEdge);
 }
@@ -55,23 +69,16 @@ TEST_CASE("chunks of one material go many to a message, at a few bytes each", "[
 
 TEST_CASE("subscribing to a uniform chunk and taking its version are one step", "[world]") {
   WorldBench bench;
-  bench.join(1, 1);
-  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());  // three chunks of air
+  join_above(bench);
   REQUIRE(bench.ports.loads.size() == 3);
-  const auto load = [&] {
-    const ChunkKey key = bench.ports.loads.front();
-    bench.ports.loads.pop_front();
-    bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
-    return key;
-  };
-  const ChunkKey first = load();
+  const ChunkKey first = load_air(bench);
   CHECK(uniform(bench, 1).empty());  // gathered: more are on their way
   const VoxelPos inside{1, first.at.y * kEdge + 1, 1};
   bench.edit(1, 1, SetVoxel{inside}, 2);
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).size() == 1);  // subscribed since it was gathered
-  load();
-  load();
+  load_air(bench);
+  load_air(bench);
   const auto messages = uniform(bench, 1);
   REQUIRE(messages.size() == 1);
   REQUIRE(messages[0].chunks.size() == 3);
@@ -83,11 +90,8 @@ TEST_CASE("subscribing to a uniform chunk and taking its version are one step", 
 
 TEST_CASE("gathered chunks wait for a tick at most", "[world]") {
   WorldBench bench;
-  bench.join(1, 1);
-  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
-  const ChunkKey key = bench.ports.loads.front();
-  bench.ports.loads.pop_front();
-  bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
+  join_above(bench);
+  load_air(bench);
   bench.tick();
   REQUIRE(uniform(bench, 1).size() == 1);
   CHECK(uniform(bench, 1)[0].chunks.size() == 1);
@@ -121,11 +125,8 @@ TEST_CASE("gathered chunks go when a full queue has room, at their newest versio
 
 TEST_CASE("what left the view while it was gathered is not sent", "[world]") {
   WorldBench bench;
-  bench.join(1, 1);
-  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
-  const ChunkKey key = bench.ports.loads.front();
-  bench.ports.loads.pop_front();
-  bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
+  join_above(bench);
+  load_air(bench);
   bench.time_us += 100'000;
   bench.server.received(1, View{{90, 3, 0}, 0, 0}, bench.now());
   answer(bench);
