@@ -31,6 +31,7 @@ struct ServerConfig {
   std::string encoding = "packed";             // packed, raw or coded, where the client reads it
   std::uint64_t idle_s = 60;                   // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;  // per session, 0: no limit
+  std::uint64_t read_kib_per_second = 1'024;   // from each session: beyond it reading waits, 0: no limit
   std::uint64_t control_queue_kib = 16'384;    // per session, KiB, 64..1048576
   std::uint64_t edit_queue_kib = 4'096;        // per session, KiB, 64..1048576
   std::uint64_t chunk_queue_kib = 4'096;       // per session, KiB, 64..1048576

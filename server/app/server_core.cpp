@@ -45,6 +45,7 @@ NetLimits net_limits(const ServerConfig& config) {
   limits.send.chunk_bytes = config.chunk_queue_kib * 1024;
   limits.bytes_per_second = config.session_kib_per_second * 1024;
   limits.server_bytes_per_second = config.server_kib_per_second * 1024;
+  limits.read_bytes_per_second = config.read_kib_per_second * 1024;
   limits.connections_max = config.sessions_max + 64;  // some more may be in the handshake
   limits.handshakes_per_address = config.handshakes_per_address;
   limits.messages_per_second = config.messages_per_second;

@@ -17,7 +17,11 @@ namespace runstone {
 namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
-constexpr std::size_t kReadBytes = 16 * 1024;
+// Messages of all sessions wait in one line for the world strand, so nobody may put many there at once: a read is short, and
+// few are under way (unhandled_messages_max).
+constexpr std::size_t kReadBytes = 4 * 1024;
+constexpr TimeUs kReadBurstUs =
+    500'000;  // of the reading budget may be used at once: what a client holds, a large paste
 
 asio::steady_timer::time_point time_point_of(TimeUs us) {
   return asio::steady_timer::time_point(std::chrono::microseconds(us));
@@ -40,7 +44,9 @@ NetSession::NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteS
       gate_(limits.bytes_per_second, budget),
       write_wake_(strand_),
       read_wake_(strand_),
+      read_turn_(strand_),
       linger_(strand_),
+      read_budget_(limits.read_bytes_per_second),
       reader_(Sender::client),
       messages_(limits.messages_per_second, limits.message_burst) {
   // A timer that never comes by itself: cancelling it wakes the loop that waits on it.
@@ -150,6 +156,18 @@ asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> s
   const auto [error] = co_await self->linger_.async_wait(kTuple);
   (void)error;  // cancelled when both loops have ended: closing twice is harmless
   self->stream_->close();
+  self->read_turn_.cancel();
+}
+
+// A message costs more to take than to send, whatever it says. So each session is read no faster than an honest client
+// has anything to say, and TCP holds the others back.
+asio::awaitable<void> NetSession::wait_for_turn(std::size_t bytes_read) {
+  const TimeUs now_us = steady_now_us();
+  const TimeUs turn_us = read_budget_.book(bytes_read, now_us) - kReadBurstUs;
+  if (turn_us <= now_us) co_return;
+  read_turn_.expires_at(time_point_of(turn_us));
+  const auto [error] = co_await read_turn_.async_wait(kTuple);
+  (void)error;  // cancelled when the stream is closed: the next read says so
 }
 
 Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
@@ -204,6 +222,7 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     const IoResult got = co_await self->stream_->read_some(into);
     if (got.error) break;
     self->counters_.bytes_in.fetch_add(got.bytes, std::memory_order_relaxed);
+    co_await self->wait_for_turn(got.bytes);
     if (refused)
       continue;  // closing: what comes still is read, so that the kernel does not reset our goodbye
     self->broken_rule_ = GoodbyeReason::malformed_frame;

@@ -26,10 +26,11 @@ struct NetLimits {
   SendLimits send;
   std::uint64_t bytes_per_second = 0;          // per session: terrain waits where more would go; 0: no limit
   std::uint64_t server_bytes_per_second = 0;   // all sessions together, likewise
+  std::uint64_t read_bytes_per_second = 0;     // from each session: beyond it reading pauses; 0: no limit
   std::size_t notsent_bytes = 16 * 1024;       // TCP_NOTSENT_LOWAT
   std::size_t connections_max = 512;           // sockets, in any state
   std::size_t handshakes_per_address = 32;     // of those sockets: not yet authenticated, from one address
-  std::size_t unhandled_messages_max = 512;    // per session; then its reading pauses
+  std::size_t unhandled_messages_max = 64;     // per session; then its reading pauses
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
   std::uint64_t message_burst = 20'000;
   std::int64_t linger_ms = 1'000;  // for the goodbye to leave and the peer to close
@@ -83,6 +84,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   Result<void> on_message(FrameClass frame_class, ByteView body);
   Result<void> on_received(const Received& received);
   void refuse(const Error& error);
+  asio::awaitable<void> wait_for_turn(std::size_t bytes_read);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
   void wake_writer();
   void post_wake();
@@ -108,7 +110,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   bool is_due_ = false;  // counted in commits_due
 
   // On the strand from here on.
-  asio::steady_timer write_wake_, read_wake_, linger_;
+  asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;
+  ByteBudget read_budget_;
   FrameReader reader_;
   TokenBucket messages_;
   GoodbyeReason broken_rule_ = GoodbyeReason::malformed_frame;  // by the error that feed() returns

@@ -23,11 +23,22 @@ std::size_t SendQueue::limit(FrameClass c) const {
   return 0;
 }
 
+std::size_t SendQueue::count_limit(FrameClass c) const {
+  switch (c) {
+    case FrameClass::control:
+      return limits_.control_count;
+    case FrameClass::edits:
+      return limits_.edit_count;
+    case FrameClass::chunks:
+      return limits_.chunk_count;
+  }
+  return 0;
+}
+
 bool SendQueue::push(const EncodedMessage& message) {
   Lane& mine = lane(message.frame_class);
   const std::size_t size = message.bytes->size();
-  // Many small answers (chunk_unavailable) take places, too, or a peer could have millions of them queued.
-  const bool has_place = message.frame_class != FrameClass::chunks || mine.items.size() < limits_.chunk_count;
+  const bool has_place = mine.items.size() < count_limit(message.frame_class);
   if (!has_place || (!mine.items.empty() && mine.bytes + size > limit(message.frame_class))) {
     refused_ = true;
     return false;
@@ -131,9 +142,8 @@ bool SendQueue::empty() const {
 bool SendQueue::take_drained() {
   if (!refused_) return false;
   for (const FrameClass c : {FrameClass::control, FrameClass::edits, FrameClass::chunks}) {
-    if (lane(c).bytes > limit(c) / 2) return false;
+    if (lane(c).bytes > limit(c) / 2 || lane(c).items.size() > count_limit(c) / 2) return false;
   }
-  if (lane(FrameClass::chunks).items.size() > limits_.chunk_count / 2) return false;
   refused_ = false;
   return true;
 }

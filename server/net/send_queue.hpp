@@ -22,8 +22,11 @@ struct SendLimits {
   std::size_t control_bytes = 16 * 1024 * 1024;  // one welcome with a full material table, and more
   std::size_t edit_bytes = 4 * 1024 * 1024;
   std::size_t chunk_bytes = 4 * 1024 * 1024;  // a chunk is taken while less is queued
-  std::size_t chunk_count = 256;              // places taken, filled or not
-  std::size_t write_bytes = 32 * 1024;        // handed to the socket at a time
+  // Messages that wait: a small one costs several times its bytes of memory, and a peer may have many made that it never reads.
+  std::size_t control_count = 1024;
+  std::size_t edit_count = 16 * 1024;
+  std::size_t chunk_count = 256;        // places taken, filled or not
+  std::size_t write_bytes = 32 * 1024;  // handed to the socket at a time
 };
 
 /// Names a place taken for a chunk.
@@ -87,6 +90,7 @@ class SendQueue {
   Lane& lane(FrameClass c) { return lanes_[static_cast<std::size_t>(c)]; }
   const Lane& lane(FrameClass c) const { return lanes_[static_cast<std::size_t>(c)]; }
   std::size_t limit(FrameClass c) const;
+  std::size_t count_limit(FrameClass c) const;
   bool can_cut(FrameClass frame_class) const {
     const Lane& mine = lane(frame_class);
     return !mine.items.empty() && mine.items.front().bytes != nullptr;

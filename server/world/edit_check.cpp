@@ -24,10 +24,14 @@ std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const Edi
   return check_edit(edit, own);
 }
 
-std::uint64_t edit_tokens(const EditDescriptor& edit) {
+std::uint64_t edit_tokens(const EditDescriptor& edit, std::uint16_t chunk_edge) {
   constexpr std::size_t kTokenBytes = 1024;
   const auto* paste = std::get_if<Paste>(&edit.shape);
-  return paste == nullptr ? 1 : 1 + (paste->clipboard->byte_size() + kTokenBytes - 1) / kTokenBytes;
+  const std::uint64_t chunks =
+      std::min<std::uint64_t>(touched_chunks_bound(edit, chunk_edge), kTouchedChunksMax);
+  const std::uint64_t kib =
+      paste == nullptr ? 0 : (paste->clipboard->byte_size() + kTokenBytes - 1) / kTokenBytes;
+  return chunks + kib;
 }
 
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach) {

@@ -26,8 +26,9 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
 /// them, for both may have been wider once. What a commit can carry still does.
 std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const EditLimits& limits);
 
-/// What an edit costs of its session's rate: one token, and for a clipboard one more per KiB that it has begun.
-std::uint64_t edit_tokens(const EditDescriptor& edit);
+/// What an edit costs of its session's rate: a token for each chunk that it may touch, kTouchedChunksMax at most, and for a
+/// clipboard one more per KiB that it has begun.
+std::uint64_t edit_tokens(const EditDescriptor& edit, std::uint16_t chunk_edge);
 
 /// Whether the geometry's bounding box comes within `reach` voxels of `from`.
 bool within_reach(const EditDescriptor& edit, const WorldPos& from, double reach);

@@ -28,10 +28,12 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   WorldSession& mine = *world.find(session);
   const OperationId op{mine.author, mine.instance, request.client_seq};
   const double reach = world.config.reach_max;
+  const std::uint64_t tokens =
+      std::min(edit_tokens(request.edit, world.config.chunk_edge), world.config.edit_burst);
   std::optional<RejectReason> refusal;
   if (world.authority.decided().knows(op)) {
     refusal = world.authority.decided().answer_to(op);
-  } else if (!mine.edits.take(edit_tokens(request.edit), now.steady_us)) {
+  } else if (!mine.edits.take(tokens, now.steady_us)) {
     refusal = RejectReason::rate_limited;
     world.authority.refuse(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {

@@ -154,7 +154,8 @@ WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offer
       out.reason = "the log is full (log_queue_records)";
       break;
     }
-    const std::uint64_t tokens = std::min(edit_tokens(offer.edit), world.config.edit_burst);
+    const std::uint64_t tokens =
+        std::min(edit_tokens(offer.edit, world.config.chunk_edge), world.config.edit_burst);
     const auto can_pay = [&](WorldSession* s) { return s->edits.take(tokens, now.steady_us); };
     if (!purses.empty() && std::none_of(purses.begin(), purses.end(), can_pay)) {
       out.reason = "the author's edits per second are used up (edits_per_second)";

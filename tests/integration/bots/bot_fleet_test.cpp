@@ -59,6 +59,8 @@ TEST_CASE("edits that are due soon after the start are made when they are due, n
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
   BotOptions options = options_for(*server, BotRole::build, 4);
+  options.replicas = 0;   // those with one are stepped more often
+  options.join_rate = 8;  // so that the first ones have nothing to do any more but to ping
   options.rate = 4;
   options.seconds = 0.4;  // the first ones are due within the first quarter of a second
   const FleetReport report = BotFleet(options).run(never);

@@ -254,6 +254,27 @@ TEST_CASE("a peer that floods is closed", "[integration]") {
   CHECK(goodbye->reason == GoodbyeReason::flooding);
 }
 
+TEST_CASE("who sends faster than a session is read is held back, not sent away", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  config.read_kib_per_second = 1;
+  const auto server = start_server(config, flat_creation());
+  RawClient greedy(server->port());
+  REQUIRE(greedy.join(1).has_value());
+  RawClient calm(server->port());
+  REQUIRE(calm.join(2).has_value());
+  constexpr int kPings = 4'000;  // a minute and more of what is read
+  for (int i = 0; i < kPings; ++i) greedy.send(Ping{i});
+  for (int i = 0; i < 3; ++i) {
+    calm.send(Ping{i});
+    CHECK(calm.next_of<Pong>().has_value());
+  }
+  std::size_t answered = 0;
+  while (const auto message = greedy.next(100)) answered += std::holds_alternative<Pong>(*message) ? 1 : 0;
+  CHECK(answered < kPings / 2);
+  CHECK(greedy.is_open());
+}
+
 TEST_CASE("who claims to have read more than was sent is told so, and so is who may not say it",
           "[integration]") {
   const TempFolder folder;

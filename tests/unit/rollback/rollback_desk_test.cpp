@@ -341,11 +341,11 @@ TEST_CASE("undo and redo cost of the player's edits a second, and say when they 
           "[rollback][undo]") {
   WorldConfig slow = config();
   slow.edits_per_second = 10;
-  slow.edit_burst = 12;
+  slow.edit_burst = 21;
   DeskBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.join(kGriefer);
-  bench.fill(kBuilder, kGrief, 1);  // in 16 chunks: as many pastes, two tokens each
+  bench.fill(kBuilder, kGrief, 1);  // in 16 chunks: a token for each, then as many pastes, two tokens each
   bench.write_log();
   bench.desk.undo(ana, bench.bench.now(), bench.reply());
   bench.tick();
@@ -380,7 +380,7 @@ TEST_CASE("undo and redo cost of the player's edits a second, and say when they 
 TEST_CASE("a rollback costs nobody's edits a second", "[rollback]") {
   WorldConfig slow = config();
   slow.edits_per_second = 1;
-  slow.edit_burst = 2;
+  slow.edit_burst = 17;  // a fill of 16 chunks, and one edit
   DeskBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.fill(kBuilder, kGrief, 1);

@@ -57,13 +57,31 @@ TEST_CASE("each class is bounded by itself, and says no instead of growing", "[n
   CHECK_FALSE(queue.reserve_chunk().has_value());  // places count even before they are filled
 }
 
+TEST_CASE("each class holds so many messages, however small they are", "[net]") {
+  SendLimits few = limits();
+  few.control_count = 3;
+  few.edit_count = 5;
+  SendQueue queue(few);
+  for (const auto& [c, count] : {std::pair{FrameClass::control, 3}, std::pair{FrameClass::edits, 5}}) {
+    for (int i = 0; i < count; ++i) CHECK(queue.push(message(c, 8)));
+    CHECK_FALSE(queue.push(message(c, 8)));
+  }
+  CHECK_FALSE(queue.take_drained());
+  Wire wire;
+  wire.take_all(queue);
+  CHECK(wire.messages().size() == 8);
+  CHECK(queue.take_drained());
+  CHECK(queue.push(message(FrameClass::control, 8)));
+}
+
 TEST_CASE("small messages of the chunk class take places as chunks do", "[net]") {
   SendQueue queue(limits());
   CHECK(queue.reserve_chunk().has_value());
   for (int i = 0; i < 3; ++i) CHECK(queue.push(message(FrameClass::chunks, 8)));
   CHECK_FALSE(queue.push(message(FrameClass::chunks, 8)));
   CHECK_FALSE(queue.reserve_chunk().has_value());
-  for (int i = 0; i < 10; ++i) CHECK(queue.push(message(FrameClass::edits, 8)));  // bounded by bytes alone
+  for (int i = 0; i < 10; ++i)
+    CHECK(queue.push(message(FrameClass::edits, 8)));  // they have places of their own
 }
 
 TEST_CASE("a message larger than its bound still fits an empty class", "[net]") {

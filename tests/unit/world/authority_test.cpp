@@ -192,8 +192,10 @@ TEST_CASE("a paste is checked by its touched cells and each of its materials", "
   CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 127), l).has_value());
   CHECK(check_edit(paste({1, 7, 0}, 7, 127), l) == RejectReason::too_large);
 
-  CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}) == 1);
-  CHECK(edit_tokens(paste({0, 7, 0}, 7, 900)) == 2);
+  CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}, 16) == 1);
+  CHECK(edit_tokens({FillSphere{{0, 0, 0}, 3}, {}, 1}, 16) == 8);
+  CHECK(edit_tokens({FillSphere{{8, 8, 8}, 60}, {}, 1}, 16) == 9 * 9 * 9);  // by its box
+  CHECK(edit_tokens({FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}, {}, 1}, 16) == kTouchedChunksMax);
 }
 
 TEST_CASE("a commit ends before its message is too long, whatever the edits weigh", "[world]") {
@@ -208,7 +210,7 @@ TEST_CASE("a commit ends before its message is too long, whatever the edits weig
   for (const Run& run : runs) cells.runs.push_back(run);
   const auto clipboard = *Clipboard::of({1, 2}, cells);
   CHECK(clipboard->byte_size() > 48'000);
-  CHECK(edit_tokens({Paste{{0, 0, 0}, clipboard, {}}, {}, kEmpty}) == 48);
+  CHECK(edit_tokens({Paste{{0, 0, 0}, clipboard, {}}, {}, kEmpty}, 128) == 48);
   for (ClientSequence seq = 1; seq <= 40; ++seq) {
     CHECK_FALSE(authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty), true).has_value());
   }
