@@ -134,8 +134,9 @@ struct BotFleet::Parts {
     for (const auto& member : members) {
       const NetStats& net_stats = member->stats();
       now.frame_bytes += net_stats.bytes_received.load();
+      const Traffic received = net_stats.received.read();
       for (std::size_t i = 0; i < now.class_bytes.size(); ++i) {
-        now.class_bytes[i] += net_stats.message_bytes_received[i].load();
+        now.class_bytes[i] += of_class(received, static_cast<FrameClass>(i)).bytes;
       }
     }
     return now;

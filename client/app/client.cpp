@@ -407,10 +407,11 @@ ClientReport Client::report() const {
   const NetStats& net = net_->stats();
   out.net.bytes_received = net.bytes_received;
   out.net.bytes_sent = net.bytes_sent;
-  out.net.control_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::control)];
-  out.net.edit_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::edits)];
-  out.net.chunk_bytes = net.message_bytes_received[static_cast<std::size_t>(FrameClass::chunks)];
-  out.net.messages_received = net.messages_received;
+  const Traffic received = net.received.read();
+  out.net.control_bytes = of_class(received, FrameClass::control).bytes;
+  out.net.edit_bytes = of_class(received, FrameClass::edits).bytes;
+  out.net.chunk_bytes = of_class(received, FrameClass::chunks).bytes;
+  for (const KindTraffic& kind : received) out.net.messages_received += kind.messages;
   out.net.connections = net.connections;
   if (cache_) out.cache = cache_->counters();
   return out;

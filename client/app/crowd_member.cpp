@@ -46,6 +46,7 @@ class Member final : public CrowdMember {
     report.counts.merge(bot.counts());
     report.bytes_received += stats().bytes_received.load();
     report.bytes_sent += stats().bytes_sent.load();
+    report.traffic.add({stats().received.read(), stats().sent.read()});
     for (const auto& [reason, count] : member_.link().losses()) report.losses[reason] += count;
     add_session(report, bot);
   }

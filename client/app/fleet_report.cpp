@@ -79,6 +79,7 @@ std::string to_json(const FleetReport& report) {
                      {"losses", report.losses},
                      {"bytes_received", report.bytes_received},
                      {"bytes_sent", report.bytes_sent},
+                     {"traffic", traffic_json(report.traffic)},
                      {"bytes_each_second",
                       {{"control", by_class(FrameClass::control)},
                        {"edits", by_class(FrameClass::edits)},
@@ -128,6 +129,7 @@ std::string to_table(const FleetReport& report) {
       fmt::format("bytes a second and bot: control {:.0f}, edits {:.0f}, chunks {:.0f}; with frames {:.0f}\n",
                   by_class(FrameClass::control), by_class(FrameClass::edits), by_class(FrameClass::chunks),
                   each_second(report, report.frame_bytes));
+  table += traffic_table(report.traffic);
   table += fmt::format("this process: {:.2f} s user, {:.2f} s system, {:.2f} cores\n", report.process.user_s,
                        report.process.system_s, cores(report));
   table += histogram_line("its steps late by", report.lag_us);

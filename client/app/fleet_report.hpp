@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/app/process_time.hpp"
+#include "client/app/traffic_report.hpp"
 #include "client/bots/bot.hpp"
 #include "client/bots/version_book.hpp"
 #include "protocol/codec/frame.hpp"
@@ -29,6 +30,7 @@ struct FleetReport {
   Violations violations;
   std::map<std::string, std::uint64_t> losses;       // connections lost or not made, by reason
   std::uint64_t bytes_received = 0, bytes_sent = 0;  // all of the fleet's time
+  FleetTraffic traffic;                              // likewise
   double seconds = 0;                                // from the first due edit to the last
   // Within these seconds.
   std::array<std::uint64_t, kFrameClassCount> class_bytes{};  // messages received, by class

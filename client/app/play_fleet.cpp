@@ -114,7 +114,11 @@ PlayReport PlayFleet::run(const volatile std::sig_atomic_t& stop) {
     report.failure = fleet.play_until([](Member& member) { return member.bot().settled(); }, stop);
     report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
   }
-  for (const auto& member : fleet.members) add_up(report.counts, member->bot().counts());
+  for (const auto& member : fleet.members) {
+    add_up(report.counts, member->bot().counts());
+    const NetStats& stats = member->link().stats();
+    report.traffic.add({stats.received.read(), stats.sent.read()});
+  }
   fleet.leave();
   return report;
 }
@@ -134,7 +138,8 @@ std::string to_json(const PlayReport& report) {
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us", histogram_json(c.own_us)}};
+                                       {"own_us", histogram_json(c.own_us)},
+                                       {"traffic", traffic_json(report.traffic)}};
   return json.dump(1) + "\n";
 }
 
@@ -147,7 +152,7 @@ std::string to_table(const PlayReport& report) {
       total(c.rejected), total(c.refused), c.unseen, histogram_line("due to confirmed", c.own_us));
   for (const auto& [reason, count] : c.rejected) table += fmt::format("rejected: {} {}\n", count, reason);
   for (const auto& [reason, count] : c.refused) table += fmt::format("refused: {} {}\n", count, reason);
-  return table;
+  return table + traffic_table(report.traffic);
 }
 
 }  // namespace runstone

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/app/bot_options.hpp"
+#include "client/app/traffic_report.hpp"
 #include "client/bots/play_bot.hpp"
 
 namespace runstone {
@@ -16,6 +17,7 @@ struct PlayReport {
   std::size_t bots = 0;
   std::uint64_t edits = 0;  // in the log
   PlayCounts counts;
+  FleetTraffic traffic;
   double seconds = 0;    // from the first due edit until the last was answered and on disk
   bool started = false;  // all bots joined a world that knows the materials
   std::string failure;   // why it did not start, or ended early; empty: neither

@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <array>
 #include <asio.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <chrono>
@@ -51,6 +52,8 @@ struct Link::State {
   std::uint16_t chunk_edge = 0;   // of this connection's world; 0 before welcome
   std::uint64_t features = 0;     // in force; none before welcome
   std::uint64_t chunk_bytes = 0;  // of frames of chunks read on this connection
+  std::array<std::uint64_t, kFrameClassCount>
+      frames_before{};  // read on it, up to the last message of the class
   ReadReport report;
   asio::steady_timer report_due{io};
   bool is_report_due_set = false;
@@ -60,16 +63,20 @@ struct Link::State {
 
 Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
   return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
-    stats.messages_received.fetch_add(1, std::memory_order_relaxed);
-    stats.message_bytes_received[static_cast<std::size_t>(frame_class)].fetch_add(body.size(),
-                                                                                  std::memory_order_relaxed);
+    const std::uint64_t frames =
+        reader.frames(frame_class) -
+        std::exchange(frames_before[static_cast<std::size_t>(frame_class)], reader.frames(frame_class));
     const auto taken = events.on_bytes(frame_class, body, chunk_edge, received_us);
     if (!taken) return Unexpected<Error>{taken.error()};
-    if (*taken) return {};
+    if (*taken) {
+      stats.received.add(kind_of(body), body.size(), frames);
+      return {};
+    }
     const std::int64_t start_ns = steady_now_ns();
     auto message = decode_message(Sender::server, frame_class, body, chunk_edge);
     if (!message) return Unexpected<Error>{message.error()};
     const std::int64_t end_ns = steady_now_ns();
+    stats.received.add(kind_of(body), body.size(), frames);
     if (const auto* welcome = std::get_if<Welcome>(&*message)) {
       chunk_edge = welcome->chunk_edge;
       features = welcome->features;
@@ -164,7 +171,10 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
     out.clear();
     while (out.size() < kWriteBytes && (!state.edits.empty() || !state.others.empty())) {
       auto& queue = state.edits.empty() ? state.others : state.edits;
+      const Bytes& message = *queue.front().bytes;
       writer.append(queue.front(), out);
+      state.stats.sent.add(kind_of(message), message.size(),
+                           (message.size() + kFragmentBytesMax - 1) / kFragmentBytesMax);
       state.queued_bytes -= queue.front().bytes->size();
       queue.pop_front();
     }
@@ -220,6 +230,7 @@ asio::awaitable<void> keep_connected(State& state) {
       state.chunk_edge = 0;
       state.features = 0;
       state.chunk_bytes = 0;
+      state.frames_before = {};
       state.report = {};
       state.edits.clear();
       state.others.clear();

@@ -4,13 +4,13 @@
 // dropped. It borrows its io_context, so one thread may carry one link (NetClient) or a thousand (bots).
 // Threads: all calls and callbacks on the thread that runs the io_context; one thread runs it.
 #pragma once
-#include <array>
 #include <asio/io_context.hpp>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include "client/net/traffic_meter.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -43,8 +43,7 @@ struct NetConfig {
 /// Counts since the start, over all connections.
 struct NetStats {
   std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // frames included
-  std::array<std::atomic<std::uint64_t>, kFrameClassCount> message_bytes_received{};
-  std::atomic<std::uint64_t> messages_received{0};
+  TrafficMeter received, sent;                                  // messages; received: that were verified
   std::atomic<std::uint64_t> connections{0};
 };
 

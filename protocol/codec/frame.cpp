@@ -118,6 +118,7 @@ Result<void> FrameReader::open_frame() {
   }
   ++counter_;
   frame_bytes_[frame_class] += kFrameHeaderBytes;
+  ++frames_[frame_class];
   body_left_ = length;
   return {};
 }

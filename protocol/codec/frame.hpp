@@ -61,6 +61,10 @@ class FrameReader {
   std::uint64_t frame_bytes(FrameClass frame_class) const {
     return frame_bytes_[static_cast<std::size_t>(frame_class)];
   }
+  /// Frames of this class whose header was read.
+  std::uint64_t frames(FrameClass frame_class) const {
+    return frames_[static_cast<std::size_t>(frame_class)];
+  }
 
  private:
   Result<void> advance(ByteView bytes, const OnMessage& on_message);
@@ -74,7 +78,7 @@ class FrameReader {
   std::size_t header_have_ = 0;
   std::size_t body_left_ = 0;
   std::array<Bytes, kFrameClassCount> partial_;
-  std::array<std::uint64_t, kFrameClassCount> frame_bytes_{};
+  std::array<std::uint64_t, kFrameClassCount> frame_bytes_{}, frames_{};
 };
 
 }  // namespace runstone

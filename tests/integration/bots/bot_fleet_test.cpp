@@ -48,6 +48,15 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
   CHECK(report.counts.rejected == 0);
+  CHECK(report.traffic.sent[kind_of(*encode_message(Ping{1}).bytes)].messages >= 5);
+  CHECK(of_class(report.traffic.sent, FrameClass::edits).messages == 500);
+  for (const auto& [way, bytes] : {std::pair(report.traffic.received, report.bytes_received),
+                                   std::pair(report.traffic.sent, report.bytes_sent)}) {
+    std::uint64_t sum = 0;
+    for (const KindTraffic& kind : way) sum += kind.bytes + kind.frames * kFrameHeaderBytes;
+    CHECK(sum <= bytes + 64 * 1024);  // read or written, but not counted yet
+    CHECK(bytes <= sum + 64 * 1024);  // a message under way
+  }
   CHECK(report.standing.held > 400);
   CHECK(report.standing.intact == report.standing.held);
   CHECK(report.drifted == 0);

@@ -129,7 +129,10 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   asio::write(peer.socket, asio::buffer(out.data() + 5, out.size() - 5));
   const auto second = next_as<NetReceived>();
   CHECK(std::get<ChunkSnapshot>(second.message).key == ChunkKey{0, {1, 2, 3}});
-  CHECK(client->stats().messages_received == 2);
+  const Traffic received = client->stats().received.read();
+  CHECK(received[first.message.index()] == KindTraffic{1, first.bytes, 1});
+  CHECK(received[second.message.index()] == KindTraffic{1, second.bytes, 1});
+  CHECK(of_class(received, FrameClass::chunks) == KindTraffic{1, second.bytes, 1});
 }
 
 TEST_CASE_METHOD(Fixture, "a connection that breaks is made again, and the old one's messages are dropped",

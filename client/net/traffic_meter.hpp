@@ -1,0 +1,36 @@
+// TrafficMeter: counts messages of one way by kind. One thread counts, any thread reads.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "protocol/codec/message_kind.hpp"
+
+namespace runstone {
+
+class TrafficMeter {
+ public:
+  /// One message of `bytes`, without the headers of the `frames` that carried it.
+  void add(MessageKind kind, std::size_t bytes, std::uint64_t frames) {
+    Cell& cell = cells_[kind];
+    cell.messages.fetch_add(1, std::memory_order_relaxed);
+    cell.bytes.fetch_add(bytes, std::memory_order_relaxed);
+    cell.frames.fetch_add(frames, std::memory_order_relaxed);
+  }
+  Traffic read() const {
+    Traffic out;
+    for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
+      out[kind] = {cells_[kind].messages, cells_[kind].bytes, cells_[kind].frames};
+    }
+    return out;
+  }
+
+ private:
+  struct Cell {
+    std::atomic<std::uint64_t> messages{0}, bytes{0}, frames{0};
+  };
+  std::array<Cell, kMessageKindCount> cells_{};
+};
+
+}  // namespace runstone
