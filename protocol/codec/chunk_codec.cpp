@@ -7,6 +7,7 @@
 
 #include "protocol/codec/coded_body.hpp"
 #include "protocol/codec/packed_body.hpp"
+#include "protocol/codec/packed_body_v1.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -19,6 +20,7 @@ static_assert(std::is_trivially_copyable_v<PackedRun> && offsetof(PackedRun, mat
 constexpr std::uint8_t version_of(ChunkEncoding encoding) {
   return encoding == ChunkEncoding::packed ? 2 : 1;
 }
+constexpr std::uint8_t kPackedV1 = 1;  // read only: old worlds hold it
 constexpr std::uint8_t kZstdFlag = 8;  // in the axis order byte of packed chunks
 
 void append_bytes(Bytes& out, const void* from, std::size_t count) {
@@ -80,6 +82,7 @@ void encode_coded(const RunChunk& chunk, Bytes& out) {
 
 // What all encodings say about a chunk before its runs.
 struct Head {
+  std::uint8_t version = 0;
   Extent extent;
   AxisOrder order{};
   bool zstd = false;
@@ -87,7 +90,10 @@ struct Head {
 
 Head read_head(ByteReader& r, ChunkEncoding encoding, const Extent* expected) {
   Head head;
-  if (r.u8() != version_of(encoding)) r.reject(ErrorCode::bad_version, "unknown version of chunk bytes");
+  head.version = r.u8();
+  const bool is_old = encoding == ChunkEncoding::packed && head.version == kPackedV1;
+  if (head.version != version_of(encoding) && !is_old)
+    r.reject(ErrorCode::bad_version, "unknown version of chunk bytes");
   std::uint8_t order = r.u8();
   if (encoding == ChunkEncoding::packed) {
     head.zstd = (order & kZstdFlag) != 0;
@@ -149,8 +155,33 @@ std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   return palette;
 }
 
+/// The rest of a packed chunk from `body_at` on, unpacked. Errors of runs name the run; those of the body as a whole,
+/// its first byte.
+Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_t body_at) {
+  if (!runs) {
+    const Error& e = runs.error();
+    return fail(e.code, e.what, e.code == ErrorCode::broken_invariant ? e.offset : body_at + e.offset);
+  }
+  return validated({head.extent, head.order, *std::move(runs)});
+}
+
+Result<RunChunk> decode_packed_v1(ByteReader& r, const Head& head) {
+  const std::uint32_t volume = head.extent.volume();
+  PackedShapeV1 shape;
+  shape.runs = static_cast<std::size_t>(r.varint_max(volume, "more runs than voxels"));
+  const std::vector<Material> palette = read_palette(r, shape.runs);
+  shape.body_bytes =
+      static_cast<std::size_t>(r.varint_max(6ULL * kVolumeMax, "body larger than any chunk's"));
+  if (r.ok() && !shape.plausible(palette.size()))
+    r.reject(ErrorCode::bad_value, "body size does not fit the run count");
+  if (!r.ok()) return Unexpected<Error>{r.error()};
+  const std::size_t body_at = r.offset();
+  return packed_chunk(head, unpack_v1(r.bytes(r.left()), head.zstd, shape, palette, volume), body_at);
+}
+
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
+  if (r.ok() && head.version == kPackedV1) return decode_packed_v1(r, head);
   PackedShape shape;
   shape.side = ordered(head.extent, head.order).f;
   shape.volume = head.extent.volume();
@@ -159,13 +190,7 @@ Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   if (!r.ok()) return Unexpected<Error>{r.error()};
   shape.materials = palette.size();
   const std::size_t body_at = r.offset();
-  auto runs = unpack(r.bytes(r.left()), head.zstd, shape, palette);
-  if (!runs) {
-    const Error& e = runs.error();
-    // Errors of runs name the run; those of the body as a whole, its first byte.
-    return fail(e.code, e.what, e.code == ErrorCode::broken_invariant ? e.offset : body_at + e.offset);
-  }
-  return validated({head.extent, head.order, *std::move(runs)});
+  return packed_chunk(head, unpack(r.bytes(r.left()), head.zstd, shape, palette), body_at);
 }
 
 Result<RunChunk> decode_coded(ByteReader& r, const Extent* expected) {

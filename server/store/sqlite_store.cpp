@@ -270,7 +270,10 @@ StoreResult<void> SqliteStore::upgrade() {
       if (!added) return added;
       if (auto flushed = segments_.flush(); !flushed) return flushed;
     }
-    return create_keyframes(*database_);
+    if (*version < kKeyframeFormat) {
+      if (auto made = create_keyframes(*database_); !made) return made;
+    }
+    return mark_newest(*database_);
   });
   if (!upgraded) return upgraded;
   // The mark must stand in the main file, where check_marks() of older programs looks.

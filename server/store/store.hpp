@@ -30,7 +30,7 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kStoreFormatVersion = 3;
+inline constexpr std::uint32_t kStoreFormatVersion = 4;
 
 struct StoreError {
   enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked, cancelled };

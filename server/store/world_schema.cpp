@@ -89,7 +89,9 @@ CREATE TABLE keyframe_chunk(
 CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
 PRAGMA user_version=3;
 )sql";
-static_assert(kIndexedFormat == 2 && kKeyframeFormat == 3 && kStoreFormatVersion == 3);
+
+constexpr const char* kNewest = "PRAGMA user_version=4;";
+static_assert(kIndexedFormat == 2 && kKeyframeFormat == 3 && kStoreFormatVersion == 4);
 
 }  // namespace
 
@@ -98,12 +100,15 @@ StoreResult<void> create_schema(sql::Database& database) {
   if (auto set = database.run(mark.c_str()); !set) return set;
   if (auto made = database.run(kTables); !made) return made;
   if (auto made = create_indexes(database); !made) return made;
-  return create_keyframes(database);
+  if (auto made = create_keyframes(database); !made) return made;
+  return mark_newest(database);
 }
 
 StoreResult<void> create_indexes(sql::Database& database) { return database.run(kIndexes); }
 
 StoreResult<void> create_keyframes(sql::Database& database) { return database.run(kKeyframes); }
+
+StoreResult<void> mark_newest(sql::Database& database) { return database.run(kNewest); }
 
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {

@@ -25,6 +25,10 @@ inline constexpr std::int64_t kKeyframeFormat = 3;
 /// What format 3 has more than format 2, the mark included; the tables are empty. In the caller's transaction.
 StoreResult<void> create_keyframes(sql::Database& database);
 
+/// Marks the newest format. Format 4 has the tables of format 3; chunks that are written are packed of version 2, which
+/// programs before it cannot read. In the caller's transaction.
+StoreResult<void> mark_newest(sql::Database& database);
+
 /// Reads the marks from the main file alone, so that a file which is refused stays untouched. `vfs` as in
 /// sql::Database::open. Fails with not_a_world, newer_version or corrupt.
 StoreResult<void> check_marks(const std::string& file, const std::string& vfs);

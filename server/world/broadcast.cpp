@@ -35,7 +35,7 @@ std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch
   std::vector<SessionId> receivers, own, scratch;
   for (const ChunkKey& key : batch.touched) add_sessions(world.interest.subscribers(key), receivers, scratch);
   for (auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open && authors.contains({session.author, session.instance})) {
+    if (session.state == SessionStage::open && authors.contains({session.author, session.instance})) {
       own.push_back(id);
       session.awaits_durable = world.authority.head();
     }

@@ -139,7 +139,7 @@ void start_loads(WorldState& world) {
 
 void deliver(WorldState& world, SessionId session, const Now& now) {
   WorldSession* mine = world.find(session);
-  if (mine == nullptr || mine->state != SessionState::open || is_stalled(world, *mine, now)) return;
+  if (mine == nullptr || mine->state != SessionStage::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
   if (!send_moment(world, session, now)) return;
   if (mine->visit) {

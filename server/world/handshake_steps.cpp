@@ -38,7 +38,7 @@ Welcome welcome_of(const WorldState& world) {
 bool close_if_full(WorldState& world, SessionId session) {
   const auto open =
       static_cast<std::size_t>(std::count_if(world.sessions.begin(), world.sessions.end(), [](const auto& s) {
-        return s.second.state == SessionState::open;
+        return s.second.state == SessionStage::open;
       }));
   if (open < world.config.sessions_max) return false;
   close_session(world, session, GoodbyeReason::server_full,
@@ -67,7 +67,7 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.name = hello.name;
   mine.proof_transcript = client_transcript(hello, welcome);
   mine.durable_told = welcome.durable;
-  mine.state = SessionState::awaits_proof;
+  mine.state = SessionStage::awaits_proof;
   world.ports.set_encoding(session, welcome.encoding);
   world.ports.set_features(session, welcome.features);
   send_or_close(world, session, welcome);
@@ -80,14 +80,14 @@ void on_proof(WorldState& world, SessionId session, const Proof& proof, const No
     return;
   }
   for (const auto& [other, theirs] : world.sessions) {
-    if (other == session || theirs.state != SessionState::open) continue;
+    if (other == session || theirs.state != SessionStage::open) continue;
     if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
     close_session(world, other, GoodbyeReason::already_connected, "the same client connected again");
     break;  // there was one at most; the loop's iterators end here
   }
   if (close_if_full(world, session)) return;
   mine.proof_transcript = {};
-  mine.state = SessionState::open;
+  mine.state = SessionStage::open;
   mine.author = world.players.enter(mine.key, mine.name);
   if (world.players.is_renamed(mine.author) && world.ports.log_has_room(world.authority.queued() + 1)) {
     world.ports.log_append({*world.players.take_unsaved(mine.author)}, {});

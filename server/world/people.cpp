@@ -11,7 +11,7 @@ namespace {
 std::map<AuthorId, std::string> names_of(const WorldState& world) {
   std::map<AuthorId, std::string> names;
   for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open) names[session.author] = session.name;
+    if (session.state == SessionStage::open) names[session.author] = session.name;
   }
   return names;
 }
@@ -82,7 +82,7 @@ void broadcast_poses(WorldState& world, const Now& now) {
 void send_all_poses_to(WorldState& world, SessionId session) {
   PlayerPoses poses;
   for (const auto& [id, other] : world.sessions) {
-    if (other.state == SessionState::open) poses.players.push_back({other.author, other.pose});
+    if (other.state == SessionStage::open) poses.players.push_back({other.author, other.pose});
   }
   send_or_skip(world, session, encode_message(poses));
 }

@@ -50,7 +50,7 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
 void close_silent_sessions(WorldState& world, const Now& now) {
   std::vector<std::pair<SessionId, bool>> silent;
   for (const auto& [id, session] : world.sessions) {
-    const bool is_open = session.state == SessionState::open;
+    const bool is_open = session.state == SessionStage::open;
     const TimeUs since = is_open ? session.heard_us : session.connected_us;
     const TimeUs limit = is_open ? world.config.idle_us_max : world.config.handshake_us_max;
     if (now.steady_us - since >= limit) silent.emplace_back(id, is_open);
@@ -102,13 +102,13 @@ void WorldServer::received(SessionId session, Message&& message, const Now& now)
     close_session(world, session, GoodbyeReason::closing, "as you wish");
     return;
   }
-  if (mine->state == SessionState::awaits_hello && std::holds_alternative<Hello>(message)) {
+  if (mine->state == SessionStage::awaits_hello && std::holds_alternative<Hello>(message)) {
     on_hello(world, session, *std::get_if<Hello>(&message));
-  } else if (mine->state == SessionState::awaits_proof && std::holds_alternative<Proof>(message)) {
+  } else if (mine->state == SessionStage::awaits_proof && std::holds_alternative<Proof>(message)) {
     on_proof(world, session, *std::get_if<Proof>(&message), now);
-  } else if (mine->state == SessionState::open && needs_open(message)) {
+  } else if (mine->state == SessionStage::open && needs_open(message)) {
     on_open_message(world, session, message, now);
-  } else if (mine->state != SessionState::open && needs_open(message)) {
+  } else if (mine->state != SessionStage::open && needs_open(message)) {
     close_session(world, session, GoodbyeReason::not_authenticated, "the handshake comes first");
   } else {
     close_session(world, session, GoodbyeReason::unexpected_message, "not now, or not from a client");
@@ -144,7 +144,7 @@ WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offer
     return {State::taken};
   std::vector<WorldSession*> purses;
   for (auto& [id, session] : world.sessions) {
-    const bool pays = payer != 0 && session.state == SessionState::open && session.author == payer;
+    const bool pays = payer != 0 && session.state == SessionStage::open && session.author == payer;
     if (pays) purses.push_back(&session);
   }
   OwnEdits out;
@@ -178,7 +178,7 @@ void WorldServer::answer_command(SessionId session, const std::vector<std::strin
 std::vector<WorldServer::Present> WorldServer::present() const {
   std::vector<Present> out;
   for (const auto& [id, session] : state_->sessions) {
-    if (session.state != SessionState::open) continue;
+    if (session.state != SessionStage::open) continue;
     out.push_back({id, session.author, session.name, session.key, session.pose.at});
   }
   return out;

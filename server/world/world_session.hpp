@@ -14,7 +14,7 @@
 
 namespace runstone {
 
-enum class SessionState { awaits_hello, awaits_proof, open };
+enum class SessionStage { awaits_hello, awaits_proof, open };
 
 inline constexpr std::size_t kPassedViewsMax = 8;
 inline constexpr std::size_t kUniformGathered = 256;     // then they go
@@ -34,7 +34,7 @@ struct Visit {
 };
 
 struct WorldSession {
-  SessionState state = SessionState::awaits_hello;
+  SessionStage state = SessionStage::awaits_hello;
   TimeUs connected_us = 0;  // steady clock, as the others
   TimeUs heard_us = 0;      // last message
   PublicKey key{};

@@ -40,7 +40,7 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts&
 void forget_session(WorldState& world, SessionId session) {
   const auto found = world.sessions.find(session);
   if (found == world.sessions.end()) return;
-  if (found->second.state == SessionState::open) {
+  if (found->second.state == SessionStage::open) {
     world.roster_changed = true;
     world.gone_authors.push_back(found->second.author);
   }
@@ -54,7 +54,7 @@ void forget_gone_authors(WorldState& world) {
   RUNSTONE_ASSERT(world.authority.queued() == 0);  // or their rows would be missing when they are ordered
   std::set<AuthorId> present;
   for (const auto& [id, session] : world.sessions) {
-    if (session.state == SessionState::open) present.insert(session.author);
+    if (session.state == SessionStage::open) present.insert(session.author);
   }
   for (const AuthorId author : std::exchange(world.gone_authors, {})) {
     if (present.contains(author) || !world.players.forget_unsaved(author)) continue;

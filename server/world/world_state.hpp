@@ -49,7 +49,7 @@ struct WorldState {
   std::vector<SessionId> open_sessions() const {
     std::vector<SessionId> open;
     for (const auto& [id, session] : sessions) {
-      if (session.state == SessionState::open) open.push_back(id);
+      if (session.state == SessionStage::open) open.push_back(id);
     }
     return open;
   }

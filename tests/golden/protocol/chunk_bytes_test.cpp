@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <utility>
+#include <vector>
 
 #include "common/runs/run_builder.hpp"
 #include "protocol/codec/chunk_codec.hpp"
@@ -90,6 +92,34 @@ TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
                             "20ff7d0000200100fe28030004920c27dd5deab0"));
   REQUIRE(decoded.has_value());
   CHECK(*decoded == builder.finish());
+}
+
+TEST_CASE("packed chunks of version 1 are read, whole only", "[protocol][golden]") {
+  RunBuilder builder({16, 16, 16}, AxisOrder::zyx);
+  for (int i = 0; i < 64; ++i) {
+    builder.append(40, 1);
+    builder.append(24, 0);
+  }
+  const std::vector<std::pair<std::string, RunChunk>> golden = {
+      {"02 01 02  08 08 08  03  03 00 00 aa02  06  01 00 02  03 c501", three_runs()},
+      {"02 01 00  40 40 40  02  02 00 01  05  01 00  f0a204", two_wide_runs()},
+      {"02 01 00  20 20 20  01  01 01  01  00", uniform_chunk(Extent::cube(32), 1)},
+      {"02 01 0d  10 10 10  8001  02 00 00  ff01 28b52ffd20ff6d0000200100281802001aa478973a2c",
+       builder.finish()}};
+  for (const auto& [hex, chunk] : golden) {
+    CAPTURE(hex);
+    const Bytes bytes = from_hex(hex);
+    const auto decoded = decode_chunk(bytes);
+    REQUIRE(decoded.has_value());
+    CHECK(*decoded == chunk);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      const auto cut = decode_chunk(ByteView(bytes).first(size));
+      CHECK_FALSE(cut.has_value());
+    }
+    Bytes longer = bytes;
+    longer.push_back(0);
+    CHECK_FALSE(decode_chunk(longer).has_value());
+  }
 }
 
 }  // namespace runstone::test

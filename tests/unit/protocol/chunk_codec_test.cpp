@@ -77,7 +77,7 @@ TEST_CASE("packed bytes that lie are refused", "[protocol]") {
     std::function<void(PackedSpelling&)> bend;
     ErrorCode code;
   } cases[] = {
-      {"version", [](auto& s) { s.version = 1; }, ErrorCode::bad_version},
+      {"version", [](auto& s) { s.version = 3; }, ErrorCode::bad_version},
       {"order", [](auto& s) { s.order = 6; }, ErrorCode::bad_value},
       {"unknown flag", [](auto& s) { s.order = 2 + 16; }, ErrorCode::bad_value},
       {"side", [](auto& s) { s.sides = {8, 8, 129}; }, ErrorCode::bad_value},

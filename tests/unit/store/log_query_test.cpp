@@ -144,7 +144,7 @@ TEST_CASE("a world of format 1 gets its indexes when it is opened for writing", 
     CHECK(asked.error().kind == StoreError::Kind::bad_request);
   }
   auto store = *open_world(folder.path(), StoreAccess::read_write);
-  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
   CHECK(compare(*store, records, rng, 100) > 30);
   CHECK(store->check().has_value());
 }

@@ -356,14 +356,14 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
   const TempFolder folder;
   created(folder.path());
   const std::string file = folder / "world.sqlite";
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 4").empty());
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 5").empty());
   const auto before = bytes_of(file);
   for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
     const auto store = open_world(folder.path(), access);
     REQUIRE_FALSE(store.has_value());
     CHECK(store.error().kind == StoreError::Kind::newer_version);
     CHECK(store.error().message() ==
-          file + ": is of world format 4; this program knows up to 3. Nothing was changed.");
+          file + ": is of world format 5; this program knows up to 4. Nothing was changed.");
   }
   CHECK(bytes_of(file) == before);
   CHECK_FALSE(std::filesystem::exists(file + "-wal"));
