@@ -262,7 +262,8 @@ void ServerCore::log_counters() {
         "seq={} "
         "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} keyframes={} "
         "chunks_resident={} "
-        "resident_bytes={} chunks_failed={} snapshots_sent={} same_sent={} updates_sent={} claims_drifted={} "
+        "resident_bytes={} chunks_failed={} snapshots_sent={} snapshots_encoded={} same_sent={} "
+        "updates_sent={} claims_drifted={} "
         "chunks_requested={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
         "audit_mismatches={} commits_sent={} commit_enqueue_us={} commit_sends={} commit_send_ms={} "
@@ -271,10 +272,10 @@ void ServerCore::log_counters() {
         world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
         w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
         l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
-        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, w.same_sent, w.updates_sent,
-        w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent,
-        w.audit_mismatches, w.commits_sent, enqueue_ns_ / 1'000, n.commit_sends.load(),
-        n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
+        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, encoded_.encoded(), w.same_sent,
+        w.updates_sent, w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale,
+        w.queue_full, w.audits_sent, w.audit_mismatches, w.commits_sent, enqueue_ns_ / 1'000,
+        n.commit_sends.load(), n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
         world_->stack_depths().text(), dense_expansions());
   });
 }
@@ -417,8 +418,8 @@ bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const Chu
   if (found == sessions_.end()) return true;
   const auto place = found->second->reserve_chunk(key);
   if (!place) return false;
-  asio::post(workers_, [net = found->second, key, chunk, place = *place] {
-    net->fill_chunk(place, encode_snapshot(key, *chunk, net->encoding()));
+  asio::post(workers_, [this, net = found->second, key, chunk, place = *place] {
+    net->fill_chunk(place, encoded_.snapshot(key, chunk, net->encoding()));
   });
   return true;
 }
@@ -440,7 +441,7 @@ bool ServerCore::send_update(SessionId session, const ChunkKey& key, const Chunk
       }
     });
     if (!read) logger("store").error("{}", read.error().message());
-    net->fill_chunk(place, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
+    net->fill_chunk(place, edits ? encode_message(*edits) : encoded_.snapshot(key, chunk, encoding));
   });
   return true;
 }

@@ -20,6 +20,7 @@
 #include "server/admin/server_config.hpp"
 #include "server/app/chunk_source.hpp"
 #include "server/app/command_desk.hpp"
+#include "server/app/encoded_chunks.hpp"
 #include "server/app/keyframe_thread.hpp"
 #include "server/app/world_folder.hpp"
 #include "server/history/moments.hpp"
@@ -123,6 +124,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
   asio::steady_timer tick_, gather_;
   std::shared_ptr<Listener> listener_;
   std::unique_ptr<ChunkSource> chunks_;
+  EncodedChunks encoded_;
   std::unique_ptr<Moments> moments_;
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<LogWriter> writer_;

@@ -340,7 +340,7 @@ TEST_CASE("a world of format 2 has no keyframes until it is opened for writing",
   CHECK(chunks_at(logged, kEdits) == at_end);
   check(*logged.store);
   logged.store = *open_world(logged.folder.path(), StoreAccess::read_write);
-  CHECK(raw_sql(file, "PRAGMA user_version") == "3");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
   logged.make_keyframes();
   check(*logged.store);
   CHECK(chunks_at(logged, kEdits) == at_end);
