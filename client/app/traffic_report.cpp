@@ -42,8 +42,9 @@ void add_rows(const char* way, const Traffic& traffic, std::string& out) {
   for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
     if (traffic[kind].messages != 0) kinds.push_back(kind);
   }
-  std::stable_sort(kinds.begin(), kinds.end(),
-                   [&](MessageKind a, MessageKind b) { return traffic[a].bytes > traffic[b].bytes; });
+  std::sort(kinds.begin(), kinds.end(), [&](MessageKind a, MessageKind b) {
+    return traffic[a].bytes != traffic[b].bytes ? traffic[a].bytes > traffic[b].bytes : a < b;
+  });
   for (const MessageKind kind : kinds) out += row(way, name_of_kind(kind), traffic[kind]);
   for (const auto& [frame_class, name] : kClasses) {
     const KindTraffic sum = of_class(traffic, frame_class);

@@ -23,8 +23,8 @@ constexpr std::size_t kFragmentBytesMin = 2 * 1024;
 constexpr TimeUs kAheadUs = 1'000;
 constexpr TimeUs kLateUsMax = 2'000;
 // Shares of the rate, in percent. A little less than all of it empties the queue that a probe has made.
-constexpr std::uint64_t kStartGain = 200, kSteadyGain = 98, kDrainGain = 80, kProbeGainMin = 110,
-                        kProbeGainMax = 125, kWonGain = 150;
+constexpr std::uint64_t kStartGain = 200, kLateStartGain = 125, kSteadyGain = 98, kDrainGain = 80,
+                        kProbeGainMin = 110, kProbeGainMax = 125, kWonGain = 150;
 constexpr unsigned kRoundsPerProbe = 6;
 
 std::uint64_t bytes_in(std::uint64_t rate, TimeUs us) {
@@ -55,12 +55,13 @@ std::uint64_t ChunkPace::window() const {
   // A link of uneven delay holds more than its shortest round trip says.
   const std::uint64_t uneven = bytes_in(rate(), std::min(2 * swing_us_, round_trip_us_ / 3));
   const std::uint64_t steady = link + untold() + uneven + kFragmentBytesMax;
-  const std::uint64_t window = phase_ == Phase::start ? std::max(2 * link + untold(), steady) : steady;
+  const std::uint64_t start = (is_late() ? link + link / 4 : 2 * link) + untold();
+  const std::uint64_t window = phase_ == Phase::start ? std::max(start, steady) : steady;
   return std::min(window, kWindowMax);
 }
 
 std::uint64_t ChunkPace::gain_percent() const {
-  if (phase_ == Phase::start) return kStartGain;
+  if (phase_ == Phase::start) return is_late() ? kLateStartGain : kStartGain;
   if (is_draining_) return kDrainGain;
   if (!is_probing_) return kSteadyGain;
   if (probes_won_ > 0) return kWonGain;
@@ -68,6 +69,8 @@ std::uint64_t ChunkPace::gain_percent() const {
   const std::uint64_t link = std::max<std::uint64_t>(1, bytes_in(rate(), round_trip_us_));
   return std::clamp<std::uint64_t>(100 + 100 * kFragmentBytesMax / link, kProbeGainMin, kProbeGainMax);
 }
+
+bool ChunkPace::is_late() const { return late_in_a_row_ >= kLateInARow; }
 
 // A little room is none: it would cut terrain into crumbs.
 bool ChunkPace::is_full() const { return in_flight() + fragment_bytes() > window(); }
@@ -163,7 +166,6 @@ void ChunkPace::take_round_trip(const Fragment& newest, TimeUs now_us) {
   }
   const TimeUs queue_us = std::clamp<TimeUs>(round_trip_us_ / 8, kQueueUsMin, kQueueUsMax) + 2 * swing_us_;
   late_in_a_row_ = round_trip_us > round_trip_us_ + queue_us ? late_in_a_row_ + 1 : 0;
-  if (phase_ == Phase::start && late_in_a_row_ >= kLateInARow) leave_start();
 }
 
 void ChunkPace::step_remeasure(const Fragment& newest, TimeUs round_trip_us, TimeUs now_us) {
@@ -185,9 +187,14 @@ void ChunkPace::end_round() {
   if (phase_ == Phase::steady) {
     if (is_probing_) {
       is_probing_ = false;
+      is_judging_ = is_draining_ = true;  // what the probe sent is read a round trip later
+      return;
+    }
+    if (is_judging_) {
+      is_judging_ = false;
       const bool won = rate() * 100 >= rate_at_growth_ * 105;
       probes_won_ = won ? probes_won_ + 1 : 0;
-      is_draining_ = !won;
+      if (won) is_draining_ = false;
     }
     if (is_draining_) return;
     if (++rounds_ >= kRoundsPerProbe || probes_won_ > 0) {
@@ -202,7 +209,7 @@ void ChunkPace::end_round() {
   if (rate() * 4 >= rate_at_growth_ * 5) {
     rate_at_growth_ = rate();
     rounds_without_growth_ = 0;
-  } else if (++rounds_without_growth_ >= kRoundsWithoutGrowthMax) {
+  } else if (++rounds_without_growth_ >= kRoundsWithoutGrowthMax || is_late()) {
     leave_start();
   }
 }

@@ -5,9 +5,10 @@
 //               the time this took, counted from the sender's or the receiver's side, whichever is longer
 //   round trip  the shortest of the last seconds, from handing over a fragment to the client's word that it was read;
 //               measured anew with half as much under way when the shortest one is old
-// At the start the bytes under way double each round trip, until the rate grows no more or the round trip does.
+// At the start the bytes under way double each round trip, until the rate grows no more. While round trips are longer they
+// grow less fast: a queue may have begun, or TCP below has its own start before it, in which bytes wait for it.
 // After BBR: Cardwell et al., "BBR: Congestion-Based Congestion Control", ACM Queue 14(5), 2016; rate samples as in
-// draft-cheng-iccrg-delivery-rate-estimation; the end of the start by the round trip as in RFC 9406 (HyStart++).
+// draft-cheng-iccrg-delivery-rate-estimation; the start with longer round trips after RFC 9406 (HyStart++).
 // TCP goes on to guard the network; this guards the next edit. Pure: times are arguments (microseconds of one steady
 // clock, never going back). One thread. A client that says nothing gets kStartBytes, then one fragment a second; one
 // that claims too much harms its own latency only, since TCP still bounds what it is sent.
@@ -63,6 +64,7 @@ class ChunkPace {
   std::uint64_t untold() const;
   std::uint64_t gain_percent() const;
   bool is_full() const;
+  bool is_late() const;
   void leave_start();
   void take_rate(const Fragment& newest, TimeUs now_us);
   void take_round_trip(const Fragment& newest, TimeUs now_us);
@@ -93,7 +95,7 @@ class ChunkPace {
   std::uint64_t round_end_ = 0;
   unsigned rounds_ = 0;      // since the last probe
   unsigned probes_won_ = 0;  // in a row: a faster link is followed fast
-  bool is_probing_ = false, is_draining_ = false;
+  bool is_probing_ = false, is_judging_ = false, is_draining_ = false;
   std::uint64_t rate_at_growth_ = 0;
   unsigned rounds_without_growth_ = 0;
 };
