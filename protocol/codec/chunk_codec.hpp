@@ -9,7 +9,7 @@
 //   coded:  u8 3 | u8 version 1 | u8 axis order | u8 x, y, z sides | palette as above | body to the end: range-coded
 //           bits (coded_body.hpp); none if the palette has one material
 // `packed` and `coded` become the run array in one linear pass over runs, never per voxel.
-// A chunk has one spelling in each but for zstd's choices: every other one is refused.
+// A chunk has one spelling in each but for zstd's choices: every other one is refused. Packed of version 1 is read, never written.
 // Threads: any; scratch and zstd contexts are kept per thread and reused.
 #pragma once
 #include <cstddef>

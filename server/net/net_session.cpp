@@ -64,17 +64,18 @@ void NetSession::start() {
 }
 
 bool NetSession::send(const EncodedMessage& message) {
+  bool wakes = false;
   {
     const std::lock_guard lock(mutex_);
     if (closing_) return true;
     if (!queue_.push(message)) return false;
-    if (!std::exchange(writer_idle_, false)) return true;
-    if (message.frame_class == FrameClass::edits) {
-      is_due_ = true;
+    wakes = take_wake();
+    // Whoever woke the writer: until it runs, nobody has paid for this.
+    if (message.frame_class == FrameClass::edits && is_woken_ && !std::exchange(is_due_, true)) {
       counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
     }
   }
-  post_wake();
+  if (wakes) post_wake();
   return true;
 }
 
@@ -140,9 +141,14 @@ void NetSession::abort() {
 void NetSession::wake_writer() {
   {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(writer_idle_, false)) return;
+    if (!take_wake()) return;
   }
   post_wake();
+}
+
+bool NetSession::take_wake() {
+  if (!std::exchange(writer_idle_, false)) return false;
+  return is_woken_ = true;
 }
 
 void NetSession::post_wake() {
@@ -254,7 +260,7 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     auto wake = asio::steady_timer::time_point::max();
     {
       const std::lock_guard lock(self->mutex_);
-      self->writer_idle_ = false;
+      self->writer_idle_ = self->is_woken_ = false;
       if (std::exchange(self->is_due_, false)) {
         self->counters_.commits_due.fetch_sub(1, std::memory_order_relaxed);
       }

@@ -87,6 +87,8 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   asio::awaitable<void> wait_for_turn(std::size_t bytes_read);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
   void wake_writer();
+  /// Whether the writer has to be told that there is something to send. Under the mutex.
+  bool take_wake();
   void post_wake();
   void loop_ended();
 
@@ -102,12 +104,13 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::atomic<std::size_t> unhandled_{0};
   std::atomic<bool> reader_paused_{false};
 
-  std::mutex mutex_;  // a leaf: guards the next five
+  std::mutex mutex_;  // a leaf: guards the next six
   SendQueue queue_;
   ChunkGate gate_;
   bool closing_ = false;
   bool writer_idle_ = false;
-  bool is_due_ = false;  // counted in commits_due
+  bool is_woken_ = false;  // told, and has not run yet
+  bool is_due_ = false;    // counted in commits_due
 
   // On the strand from here on.
   asio::steady_timer write_wake_, read_wake_, read_turn_, linger_;

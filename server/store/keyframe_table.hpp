@@ -16,7 +16,7 @@ namespace runstone {
 
 class KeyframeTable {
  public:
-  /// Requires a world of format 3.
+  /// Requires a world of format 3 or newer.
   static StoreResult<KeyframeTable> open(sql::Database& database);
 
   /// Ascending, each row verified.

@@ -254,10 +254,10 @@ StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
   });
 }
 
-StoreResult<void> SqliteStore::upgrade() {
+StoreResult<void> SqliteStore::upgrade(std::uint32_t in_file) {
   const auto version = database_->integer("PRAGMA user_version");
   if (!version) return Unexpected<StoreError>{version.error()};
-  if (*version >= kStoreFormatVersion) return {};
+  if (*version >= kStoreFormatVersion && in_file >= kStoreFormatVersion) return {};
   const auto upgraded = write([&]() -> StoreResult<void> {
     if (*version < kIndexedFormat) {
       if (auto made = create_indexes(*database_); !made) return made;
@@ -273,7 +273,7 @@ StoreResult<void> SqliteStore::upgrade() {
     if (*version < kKeyframeFormat) {
       if (auto made = create_keyframes(*database_); !made) return made;
     }
-    return mark_newest(*database_);
+    return *version < kStoreFormatVersion ? mark_newest(*database_) : StoreResult<void>{};
   });
   if (!upgraded) return upgraded;
   // The mark must stand in the main file, where check_marks() of older programs looks.

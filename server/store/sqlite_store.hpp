@@ -29,9 +29,10 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
 
 class SqliteStore final : public Store {
  public:
-  /// Everything is checked before the object exists: marks, meta rows, log ids.
+  /// Everything is checked before the object exists: marks, meta rows, log ids. `in_file`: as of check_marks().
   static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder, StoreAccess access,
-                                                        const SqliteOptions& options, WriterLock lock);
+                                                        const SqliteOptions& options, WriterLock lock,
+                                                        std::uint32_t in_file);
 
   const WorldMeta& meta() const override { return meta_; }
   const std::string& file() const override { return database_->file(); }
@@ -98,7 +99,9 @@ class SqliteStore final : public Store {
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
   /// A world of an older format gets what it lacks (format 1: indexes, 2: tables of keyframes), in one transaction.
-  StoreResult<void> upgrade();
+  /// Makes a world of an older format one of the newest. `in_file`: the format that the main file names, which a crash
+  /// or a reader may have kept from an upgrade that is in the WAL.
+  StoreResult<void> upgrade(std::uint32_t in_file);
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
   // Order matters: statements die before their database, and the database is closed before the lock is let

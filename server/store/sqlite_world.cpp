@@ -116,7 +116,8 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
 }  // namespace
 
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder, StoreAccess access,
-                                                            const SqliteOptions& options, WriterLock lock) {
+                                                            const SqliteOptions& options, WriterLock lock,
+                                                            std::uint32_t in_file) {
   const std::string file = file_in(folder);
   const auto mode = access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
   auto opened = sql::Database::open(file, mode, options.vfs);
@@ -158,7 +159,8 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   store->meta_ = *std::move(meta);
   store->epoch_ = static_cast<Epoch>(*epoch);
   if (access == StoreAccess::read_write) {
-    if (const auto upgraded = store->upgrade(); !upgraded) return Unexpected<StoreError>{upgraded.error()};
+    if (const auto upgraded = store->upgrade(in_file); !upgraded)
+      return Unexpected<StoreError>{upgraded.error()};
   }
   return store;
 }
@@ -185,7 +187,8 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
       return Unexpected<StoreError>{written.error()};
     }
   }
-  auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock));
+  auto store =
+      SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock), kStoreFormatVersion);
   if (!store) return Unexpected<StoreError>{store.error()};
   return std::unique_ptr<Store>(*std::move(store));
 }
@@ -196,15 +199,15 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
   const auto there = exists(file, options.vfs);
   if (!there) return Unexpected<StoreError>{there.error()};
   if (!*there) return failure(StoreError::Kind::not_a_world, file, "is not there");
-  if (const auto marked = check_marks(file, options.vfs); !marked)
-    return Unexpected<StoreError>{marked.error()};
+  const auto marked = check_marks(file, options.vfs);
+  if (!marked) return Unexpected<StoreError>{marked.error()};
   WriterLock lock;
   if (access == StoreAccess::read_write) {
     auto taken = WriterLock::take(folder, file);
     if (!taken) return Unexpected<StoreError>{taken.error()};
     lock = *std::move(taken);
   }
-  auto store = SqliteStore::open(folder, access, options, std::move(lock));
+  auto store = SqliteStore::open(folder, access, options, std::move(lock), *marked);
   if (!store) return Unexpected<StoreError>{store.error()};
   return std::unique_ptr<Store>(*std::move(store));
 }

@@ -110,14 +110,15 @@ StoreResult<void> create_keyframes(sql::Database& database) { return database.ru
 
 StoreResult<void> mark_newest(sql::Database& database) { return database.run(kNewest); }
 
-StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
+StoreResult<std::uint32_t> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
   };
   auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
   if (!database) return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
   // The bytes themselves, not PRAGMAs: after a crash in the middle of a checkpoint the main file alone is no
-  // sound database (its WAL mends it), but these marks were on disk before the WAL existed and never change.
+  // sound database (its WAL mends it), but these marks were on disk before the WAL
+  // existed; an upgrade brings its own there, at the next start if a crash or a reader kept it from that.
   const auto header = database->header();
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
   const auto big_endian = [&](std::size_t at) {
@@ -138,7 +139,7 @@ StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
                        std::to_string(kStoreFormatVersion) + ". Nothing was changed.");
   }
   if (version < 1) return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
-  return {};
+  return version;
 }
 
 RowChecksum& RowChecksum::integer(std::int64_t value) {

@@ -30,8 +30,8 @@ StoreResult<void> create_keyframes(sql::Database& database);
 StoreResult<void> mark_newest(sql::Database& database);
 
 /// Reads the marks from the main file alone, so that a file which is refused stays untouched. `vfs` as in
-/// sql::Database::open. Fails with not_a_world, newer_version or corrupt.
-StoreResult<void> check_marks(const std::string& file, const std::string& vfs);
+/// sql::Database::open. Returns the format that the main file names; fails with not_a_world, newer_version or corrupt.
+StoreResult<std::uint32_t> check_marks(const std::string& file, const std::string& vfs);
 
 /// Checksum of one row: XXH3-64 of the table's name and every other column in schema order. Integers go in as
 /// 8 bytes little-endian, text and blobs as their length (8 bytes) and their bytes. edit_log alone differs:

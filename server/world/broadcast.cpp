@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 
+#include "common/core/assert.hpp"
 #include "server/world/delivery.hpp"
 
 namespace runstone {
@@ -22,6 +23,7 @@ std::vector<PlayerRow> unsaved_players_of(WorldState& world, const std::vector<E
 /// comparison.
 void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessions,
                   std::vector<SessionId>& scratch) {
+  RUNSTONE_DASSERT(std::ranges::is_sorted(more));
   if (std::ranges::equal(more, sessions)) return;
   scratch.clear();
   std::ranges::set_union(sessions, more, std::back_inserter(scratch));

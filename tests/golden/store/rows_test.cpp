@@ -1,6 +1,7 @@
 // The bytes of world format 4: columns, row checksums and marks. A change here means a new
 // kStoreFormatVersion and a way to open the old one.
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <string>
 
 #include "server/store/sqlite_store.hpp"
@@ -164,6 +165,24 @@ TEST_CASE("chunks of a world of format 3 are read, and it is of format 4 once it
     CHECK(store->check().has_value());
     CHECK(raw_sql(file, "PRAGMA user_version") == (access == StoreAccess::read_only ? "3" : "4"));
   }
+}
+
+TEST_CASE("an upgrade that a crash left in the WAL gets into the main file at the next start",
+          "[store][golden]") {
+  const TempFolder folder;
+  const std::string file = make_world(folder);
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 3").empty());
+  const auto format_in_file = [&] {
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(63);
+    return in.get();
+  };
+  // While somebody reads, who closes the world moves nothing out of the WAL.
+  const auto reader = *open_world(folder.path(), StoreAccess::read_only);
+  REQUIRE(raw_sql(file, "PRAGMA user_version = 4").empty());
+  REQUIRE(format_in_file() == 3);
+  const auto store = *open_world(folder.path(), StoreAccess::read_write);
+  CHECK(format_in_file() == 4);
 }
 
 TEST_CASE("the head of a compacted log has the bytes of format 4", "[store][golden]") {
