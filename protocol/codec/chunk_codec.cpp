@@ -181,7 +181,8 @@ Result<RunChunk> decode_packed_v1(ByteReader& r, const Head& head) {
 
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
-  if (r.ok() && head.version == kPackedV1) return decode_packed_v1(r, head);
+  if (!r.ok()) return Unexpected<Error>{r.error()};  // the axis order is looked up below
+  if (head.version == kPackedV1) return decode_packed_v1(r, head);
   PackedShape shape;
   shape.side = ordered(head.extent, head.order).f;
   shape.volume = head.extent.volume();
