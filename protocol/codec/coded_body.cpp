@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "protocol/codec/codec_scratch.hpp"
 #include "protocol/codec/range_coder.hpp"
+#include "protocol/codec/read_runs.hpp"
 #include "protocol/codec/run_palette.hpp"
 
 namespace runstone {
 namespace {
 
 constexpr std::size_t kScratchRunsKept = 1 << 17;  // one huge chunk must not hold memory for ever
-constexpr std::size_t kScratchBytesKept = 1 << 20;
 
 /// A run with its material as an index into the palette.
 struct IndexRun {
@@ -249,26 +250,9 @@ class RunCoder {
   std::size_t above_run_ = 0, behind_run_ = 0;
 };
 
-RunList list_of(const std::vector<IndexRun>& runs, std::span<const Material> palette, std::uint32_t volume) {
-  if (volume <= kNarrowVolumeMax) {
-    std::vector<PackedRun> narrow(runs.size());
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      narrow[i] = {static_cast<std::uint16_t>(runs[i].end), palette[runs[i].index]};
-    }
-    return RunList::of_narrow(std::move(narrow));
-  }
-  std::vector<std::uint32_t> ends(runs.size());
-  std::vector<Material> materials(runs.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    ends[i] = runs[i].end;
-    materials[i] = palette[runs[i].index];
-  }
-  return RunList::of_wide(std::move(ends), std::move(materials));
-}
-
 void keep_small(Scratch& s) {
   if (s.runs.capacity() > kScratchRunsKept) std::vector<IndexRun>().swap(s.runs);
-  if (s.bytes.capacity() > kScratchBytesKept) Bytes().swap(s.bytes);
+  runstone::keep_small(s.bytes);
 }
 
 }  // namespace
@@ -301,7 +285,10 @@ Result<RunList> decode_runs(ByteView body, std::span<const Material> palette, Or
   if (std::find(s.used.begin(), s.used.end(), 0) != s.used.end()) {
     return fail(ErrorCode::not_canonical, "palette names a material that no run has");
   }
-  return list_of(s.runs, palette, extent.volume());
+  return read_runs(extent.volume(), s.runs.size(), [&](const auto& put) -> Result<void> {
+    for (std::size_t i = 0; i < s.runs.size(); ++i) put(i, s.runs[i].end, palette[s.runs[i].index]);
+    return {};
+  });
 }
 
 }  // namespace runstone

@@ -11,14 +11,16 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
+#include "protocol/codec/codec_scratch.hpp"
+#include "protocol/codec/read_runs.hpp"
 #include "protocol/codec/run_palette.hpp"
+#include "protocol/codec/zstd_frame.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr int kZstdLevel = 5;                       // docs/performance.md has what the others give
-constexpr std::size_t kZstdBodyBytesMin = 16;       // a zstd frame has 5 to 8 bytes of its own here
-constexpr std::size_t kScratchBytesKept = 1 << 20;  // one huge chunk must not hold memory for ever
+constexpr int kZstdLevel = 5;                  // docs/performance.md has what the others give
+constexpr std::size_t kZstdBodyBytesMin = 16;  // a zstd frame has 5 to 8 bytes of its own here
 
 // Every zstd frame begins with it, so it is left out.
 constexpr std::array<std::uint8_t, 4> kZstdMagic = {0x28, 0xb5, 0x2f, 0xfd};
@@ -47,7 +49,6 @@ struct Line {
 
 struct FreeContext {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
-  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
 struct Scratch {
@@ -56,16 +57,11 @@ struct Scratch {
   Bytes body, long_lengths;
   Bytes frame;  // a whole zstd frame
   std::unique_ptr<ZSTD_CCtx, FreeContext> compressor;
-  std::unique_ptr<ZSTD_DCtx, FreeContext> decompressor;
 };
 
 Scratch& scratch() {
   thread_local Scratch mine;
   return mine;
-}
-
-void keep_small(Bytes& bytes) {
-  if (bytes.capacity() > kScratchBytesKept) Bytes().swap(bytes);
 }
 
 /// From the number of tokens of each material to the place of its first one.
@@ -133,18 +129,7 @@ Result<ByteView> decompress(ByteView in, const PackedShape& shape, Scratch& s) {
   if (!shape.plausible(announced)) {  // as are the numbers that stand for an error and for no size
     return fail(ErrorCode::bad_value, "zstd frame of a size that does not fit the run count");
   }
-  if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
-    return fail(ErrorCode::trailing_bytes, "zstd frame is cut or something follows it");
-  }
-  if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
-  RUNSTONE_ASSERT(s.decompressor != nullptr);
-  keep_small(s.body);
-  const auto bytes = static_cast<std::size_t>(announced);
-  s.body.resize(bytes);
-  const std::size_t size =
-      ZSTD_decompressDCtx(s.decompressor.get(), s.body.data(), bytes, frame.data(), frame.size());
-  if (ZSTD_isError(size) != 0 || size != bytes) return fail(ErrorCode::bad_checksum, "zstd frame is damaged");
-  return ByteView(s.body);
+  return unpack_zstd_frame(frame, static_cast<std::size_t>(announced));
 }
 
 /// Places of the tokens of each material. Every material has a run.
@@ -260,28 +245,8 @@ Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
   } else if (!shape.plausible(body.size())) {
     return fail(ErrorCode::bad_value, "body size does not fit the run count");
   }
-  Result<void> read;
-  RunList runs;
-  if (shape.volume <= kNarrowVolumeMax) {
-    std::vector<PackedRun> narrow(shape.runs);
-    read = read_planes(body, shape, palette, s.next,
-                       [out = narrow.data()](std::size_t i, std::uint32_t end, Material material) {
-                         out[i] = {static_cast<std::uint16_t>(end), material};
-                       });
-    runs = RunList::of_narrow(std::move(narrow));
-  } else {
-    std::vector<std::uint32_t> ends(shape.runs);
-    std::vector<Material> materials(shape.runs);
-    read = read_planes(
-        body, shape, palette, s.next,
-        [e = ends.data(), m = materials.data()](std::size_t i, std::uint32_t end, Material material) {
-          e[i] = end;
-          m[i] = material;
-        });
-    runs = RunList::of_wide(std::move(ends), std::move(materials));
-  }
-  if (!read) return Unexpected<Error>{read.error()};
-  return runs;
+  return read_runs(shape.volume, shape.runs,
+                   [&](const auto& put) { return read_planes(body, shape, palette, s.next, put); });
 }
 
 }  // namespace runstone

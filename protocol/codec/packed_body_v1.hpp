@@ -1,6 +1,6 @@
 // The body of packed chunks of version 1, which worlds of format 3 and before hold: a plane of palette indices, a plane
-// of lengths as varints, perhaps in a zstd frame. Nothing writes it any more. docs/edit-log.md has the bytes. Scratch
-// and the zstd context live per thread. Internal to the chunk codec.
+// of lengths as varints, perhaps in a zstd frame. Nothing writes it any more. docs/edit-log.md has the bytes.
+// Internal to the chunk codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>

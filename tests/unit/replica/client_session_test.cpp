@@ -4,20 +4,16 @@
 
 #include "common/edits/clipboard_builder.hpp"
 #include "tests/support/authority_model.hpp"
+#include "tests/support/test_keys.hpp"
 
 using namespace runstone;
 using runstone::test::AuthorityModel;
+using runstone::test::keys;
 
 namespace {
 
 constexpr std::int32_t kEdge = 16;
 constexpr TimeUs kClockLead = 5'000'000;  // server clock minus client clock
-
-KeyPair keys(std::uint8_t seed) {
-  KeySeed bytes{};
-  bytes[0] = seed;
-  return key_pair_of(bytes);
-}
 
 SessionConfig config() {
   SessionConfig out;

@@ -1,19 +1,15 @@
 #include "client/replica/server_connection.hpp"
+#include "tests/support/test_keys.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
 using namespace runstone;
+using runstone::test::keys;
 
 namespace {
 
 using Heard = ServerConnection::Heard;
-
-KeyPair keys(std::uint8_t seed) {
-  KeySeed bytes{};
-  bytes[0] = seed;
-  return key_pair_of(bytes);
-}
 
 SessionConfig config() {
   SessionConfig out;

@@ -1,0 +1,42 @@
+#include "protocol/codec/zstd_frame.hpp"
+
+#include <zstd.h>
+
+#include <memory>
+
+#include "common/core/assert.hpp"
+#include "protocol/codec/codec_scratch.hpp"
+
+namespace runstone {
+namespace {
+
+struct FreeContext {
+  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+};
+
+struct Scratch {
+  Bytes body;
+  std::unique_ptr<ZSTD_DCtx, FreeContext> decompressor;
+};
+
+}  // namespace
+
+Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes) {
+  if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != bytes) {
+    return fail(ErrorCode::bad_value, "zstd frame of another size than the body");
+  }
+  if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
+    return fail(ErrorCode::trailing_bytes, "zstd frame is cut or something follows it");
+  }
+  thread_local Scratch s;
+  if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());
+  RUNSTONE_ASSERT(s.decompressor != nullptr);
+  keep_small(s.body);
+  s.body.resize(bytes);
+  const std::size_t size =
+      ZSTD_decompressDCtx(s.decompressor.get(), s.body.data(), bytes, frame.data(), frame.size());
+  if (ZSTD_isError(size) != 0 || size != bytes) return fail(ErrorCode::bad_checksum, "zstd frame is damaged");
+  return ByteView(s.body);
+}
+
+}  // namespace runstone
