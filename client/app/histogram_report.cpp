@@ -32,8 +32,8 @@ nlohmann::ordered_json histogram_json(const Histogram& us) {
   json["p99"] = value_json(us.percentile(0.99));
   json["p99_9"] = value_json(us.percentile(0.999));
   json["max"] = value_json(us.max());
-  json["up_to"] = nlohmann::ordered_json::array();
-  for (const Histogram::Row& row : us.rows()) json["up_to"].push_back({row.up_to, row.count});
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const Histogram::Row& row : us.rows()) json["rows"].push_back({row.from, row.below, row.count});
   return json;
 }
 
@@ -52,10 +52,10 @@ std::string histogram_picture(const Histogram& us) {
   std::string out;
   for (const auto& row : rows) {
     const std::size_t bar = (row.count * kBarMax + most - 1) / most;
-    out += fmt::format("  up to {:>9.3f} ms {:>10} {}\n", static_cast<double>(row.up_to) / 1000, row.count,
+    out += fmt::format("  below {:>9.3f} ms {:>10} {}\n", static_cast<double>(row.below) / 1000, row.count,
                        std::string(bar, '#'));
   }
-  if (us.infinite() != 0) out += fmt::format("  never           {:>10}\n", us.infinite());
+  if (us.infinite() != 0) out += fmt::format("  never              {:>10}\n", us.infinite());
   return out;
 }
 

@@ -75,8 +75,12 @@ std::vector<Histogram::Row> Histogram::rows() const {
   for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
     if (buckets_[bucket] == 0) continue;
     const auto value = static_cast<std::uint64_t>(value_of(bucket));
-    const auto up_to = static_cast<std::int64_t>(std::bit_ceil(std::max<std::uint64_t>(value, 1)));
-    if (out.empty() || out.back().up_to != up_to) out.push_back({up_to, 0});
+    const std::uint64_t power = std::bit_floor(value), wide = std::max<std::uint64_t>(power / 2, 1);
+    const std::uint64_t from = value < power + wide ? power : power + wide;
+    const auto first = static_cast<std::int64_t>(from);
+    if (out.empty() || out.back().from != first) {
+      out.push_back({first, static_cast<std::int64_t>(from + wide), 0});
+    }
     out.back().count += buckets_[bucket];
   }
   return out;

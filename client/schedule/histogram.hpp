@@ -30,14 +30,13 @@ class Histogram {
   std::optional<std::int64_t> max() const;  // exact
   std::optional<double> mean() const;       // of the finite ones
 
-  /// How many finite values are above half of `up_to`, a power of two, and not above it (of the first row: 0 and 1), to
-  /// the bucket.
+  /// How many finite values are in [from, below). Exact: every limit is one of a bucket, too.
   struct Row {
-    std::int64_t up_to = 1;
+    std::int64_t from = 0, below = 1;
     std::uint64_t count = 0;
     friend bool operator==(const Row&, const Row&) = default;
   };
-  /// Ascending, without empty rows.
+  /// Two rows a power of two: 0, 1, 2, 3, 4 to 5, 6 to 7, 8 to 11, 12 to 15, ... Ascending, without empty rows.
   std::vector<Row> rows() const;
 
  private:

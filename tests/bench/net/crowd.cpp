@@ -18,6 +18,8 @@ double number_at(const json& object, const char* name) {
   return found == object.end() ? 0 : number_in(*found);
 }
 
+}  // namespace
+
 CrowdSight sight_of(const json& report) {
   const json none = json::object();
   CrowdSight out;
@@ -28,6 +30,7 @@ CrowdSight sight_of(const json& report) {
   out.p99_ms = number_at(seen, "p99") / 1000;
   out.max_ms = number_at(seen, "max") / 1000;
   out.never = number_at(seen, "infinite");
+  out.rows = sample_rows(seen);
   const json& edits = report.value("edits", none);
   out.samples = out.own_only ? number_at(edits, "confirmed") : number_at(seen, "count");
   out.rejected = number_at(edits, "rejected") + number_at(edits, "refused");
@@ -39,8 +42,6 @@ CrowdSight sight_of(const json& report) {
   out.bytes_received = number_at(report, "bytes_received");
   return out;
 }
-
-}  // namespace
 
 Result<Crowd, std::string> Crowd::join(Lab& lab, LabLink& link, const std::string& address, unsigned clients,
                                        double seconds, const std::vector<std::string>& flags) {

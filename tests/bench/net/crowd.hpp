@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/bench/net/lab.hpp"
+#include "tests/bench/net/sample_row.hpp"
 
 namespace runstone::bench {
 
@@ -16,12 +17,16 @@ inline constexpr double kCrowdEditsPerSecond = 2;  // of each
 struct CrowdSight {
   double p50_ms = 0, p90_ms = 0, p99_ms = 0, max_ms = 0;  // due to received and verified, all subscribers
   double samples = 0, never = 0;
-  bool own_only = false;  // the bots' report knew only of own edits
+  std::vector<SampleRow> rows;  // of the samples but those that never came
+  bool own_only = false;        // the bots' report knew only of own edits
   double disconnects = 0, rejected = 0;
   double drifted = 0,
          violations = 0;      // chunks with other voxels than the server's; broken rules of the protocol
   double bytes_received = 0;  // by all of them, from start to end
 };
+
+/// From a report of runstone-bot; what it lacks is 0.
+CrowdSight sight_of(const nlohmann::json& report);
 
 class Crowd {
  public:

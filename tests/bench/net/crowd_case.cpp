@@ -3,6 +3,8 @@
 #include <fmt/ostream.h>
 
 #include <iterator>
+#include <string>
+#include <utility>
 
 #include "tests/bench/net/crowd.hpp"
 
@@ -60,9 +62,9 @@ Result<CrowdResult, std::string> run_crowd(Lab& lab, unsigned clients) {
 }
 
 void add_figures(const CrowdResult& result, std::vector<Figure>& figures) {
-  const auto add = [&](const char* name, double value) {
+  const auto add = [&](std::string name, double value) {
     figures.push_back(
-        {"crowd", "loopback", "loopback", fmt::format("{} clients", result.clients), name, value});
+        {"crowd", "loopback", "loopback", fmt::format("{} clients", result.clients), std::move(name), value});
   };
   add("joined_s", result.joined_s);
   add("seen_p50_ms", result.seen.p50_ms);
@@ -71,6 +73,9 @@ void add_figures(const CrowdResult& result, std::vector<Figure>& figures) {
   add("seen_max_ms", result.seen.max_ms);
   add("samples", result.seen.samples);
   add("never", result.seen.never);
+  for (const SampleRow& row : result.seen.rows) {
+    add(fmt::format("samples_{:.3f}_to_{:.3f}_ms", row.from_ms, row.below_ms), row.samples);
+  }
   add("own_edits_only", result.seen.own_only ? 1 : 0);
   add("received_kb_s_each", result.kb_s_each);
   add("server_cores", result.server_cores);
@@ -103,6 +108,7 @@ void write_row(const CrowdResult& result, std::string& out) {
 
 Done measure_crowds(Lab& lab, LabFindings& findings) {
   std::string rows;
+  CrowdResult largest;
   bool own_only = false;
   for (const unsigned clients : lab.options().clients) {
     const auto result = run_crowd(lab, clients);
@@ -123,6 +129,7 @@ Done measure_crowds(Lab& lab, LabFindings& findings) {
                                fmt::format("{:.2f} us", result->enqueue_us),
                                result->enqueue_us < kEnqueueUsMax ? Verdict::met : Verdict::missed});
     }
+    if (clients >= largest.clients) largest = *result;
     fmt::print(lab.progress(), "crowd of {}\n", clients);
     lab.progress().flush();
   }
@@ -136,6 +143,8 @@ Done measure_crowds(Lab& lab, LabFindings& findings) {
       kCrowdEditsPerSecond, lab.options().crowd_seconds,
       own_only ? "its own bot had it confirmed" : "each bot that sees it had received and verified it");
   findings.tables += rows;
+  findings.tables += fmt::format("\nThese latencies of {} clients:\n\n", largest.clients);
+  findings.tables += histogram_table(largest.seen.rows, largest.seen.never);
   return {};
 }
 

@@ -108,7 +108,8 @@ Result<nlohmann::json, std::string> read_report(const std::string& file) {
 
 double number_in(const nlohmann::json& value) {
   if (value.is_number()) return value.get<double>();
-  return value == "inf" ? std::numeric_limits<double>::infinity() : 0;
+  // The client's word, and the bots'.
+  return value == "inf" || value == "infinite" ? std::numeric_limits<double>::infinity() : 0;
 }
 
 double counter_in(const std::string& log, std::string_view name) {

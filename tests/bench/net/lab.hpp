@@ -70,7 +70,7 @@ class Lab {
 
 /// A report that one of our programs wrote.
 Result<nlohmann::json, std::string> read_report(const std::string& file);
-/// A number in it, or infinite for "inf"; 0 where there is null or nothing.
+/// A number in it, or infinite for "inf" and "infinite"; 0 where there is null or nothing.
 double number_in(const nlohmann::json& value);
 
 /// The number behind `name=` in the last line of counters of a server's log; 0 if there is none.

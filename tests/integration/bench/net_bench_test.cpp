@@ -91,6 +91,12 @@ TEST_CASE("the lab measures crowds", "[lab]") {
   CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
   CHECK(figure(lab, "crowd", "3 clients", "received_kb_s_each") > 0);
   CHECK(figure(lab, "crowd", "3 clients", "enqueue_us_per_receiver") > 0);
+  double in_rows = figure(lab, "crowd", "3 clients", "never");
+  for (const json& it : lab["figures"]) {
+    if (it["figure"].get<std::string>().rfind("samples_", 0) == 0) in_rows += it["value"].get<double>();
+  }
+  CHECK(in_rows == figure(lab, "crowd", "3 clients", "samples"));
+  CHECK(tables.find("These latencies of 3 clients:\n\n| from, below ms | samples |") != std::string::npos);
 }
 
 TEST_CASE("the lab measures what loaded chunks take of the server's memory", "[lab]") {

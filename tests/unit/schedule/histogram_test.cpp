@@ -89,11 +89,39 @@ TEST_CASE("merging is adding all values", "[schedule]") {
   CHECK(a.mean() == both.mean());
 }
 
-TEST_CASE("rows count every finite value once, by powers of two", "[schedule]") {
+TEST_CASE("rows count every finite value once, two rows a power of two", "[schedule]") {
   Histogram histogram;
   CHECK(histogram.rows().empty());
-  for (const std::int64_t value : {0, 1, 2, 3, 4, 5, 100, 70'000}) histogram.add(value);
+  for (const std::int64_t value : {0, 1, 2, 3, 4, 5, 6, 100, 70'000}) histogram.add(value);
   histogram.add_infinite();
   using Row = Histogram::Row;
-  CHECK(histogram.rows() == std::vector<Row>{{1, 2}, {2, 1}, {4, 2}, {8, 1}, {128, 1}, {131'072, 1}});
+  CHECK(histogram.rows() == std::vector<Row>{{0, 1, 1},
+                                             {1, 2, 1},
+                                             {2, 3, 1},
+                                             {3, 4, 1},
+                                             {4, 6, 2},
+                                             {6, 8, 1},
+                                             {96, 128, 1},
+                                             {65'536, 98'304, 1}});
+}
+
+TEST_CASE("a value equal to a limit is in the row that begins there", "[schedule]") {
+  for (std::int64_t power = 2; power < Histogram::kValueMax; power *= 2) {
+    for (const std::int64_t limit : {power, power + power / 2}) {
+      CAPTURE(limit);
+      Histogram histogram;
+      histogram.add(limit - 1);
+      histogram.add(limit);
+      const auto rows = histogram.rows();
+      REQUIRE(rows.size() == 2);
+      CHECK(rows[0].below == limit);
+      CHECK(rows[1].from == limit);
+      CHECK(rows[0].count == 1);
+      CHECK(rows[1].count == 1);
+    }
+  }
+  Histogram most;
+  most.add(Histogram::kValueMax);
+  REQUIRE(most.rows().size() == 1);
+  CHECK(most.rows()[0].below == Histogram::kValueMax + 1);
 }

@@ -1,0 +1,23 @@
+// SampleRow: how many samples of a latency lie between two limits, as a histogram in a report of runstone-bot has them.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace runstone::bench {
+
+struct SampleRow {
+  double from_ms = 0, below_ms = 0;  // from_ms <= sample < below_ms
+  double samples = 0;
+  friend bool operator==(const SampleRow&, const SampleRow&) = default;
+};
+
+/// The rows of such a histogram, ascending; none if it has none.
+std::vector<SampleRow> sample_rows(const nlohmann::json& histogram);
+
+/// A table in Markdown: a line each row and, if there are, one of the samples that `never` came. Shares are of all samples, these
+/// included. Every line with samples has a bar.
+std::string histogram_table(std::span<const SampleRow> rows, double never);
+
+}  // namespace runstone::bench
