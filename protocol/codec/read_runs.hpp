@@ -23,7 +23,8 @@ Result<RunList> read_runs(std::uint32_t volume, std::size_t count, Read&& read) 
   }
   std::vector<std::uint32_t> ends(count);
   std::vector<Material> materials(count);
-  const auto put = [e = ends.data(), m = materials.data()](std::size_t i, std::uint32_t end, Material material) {
+  const auto put = [e = ends.data(), m = materials.data()](std::size_t i, std::uint32_t end,
+                                                           Material material) {
     e[i] = end;
     m[i] = material;
   };
