@@ -22,6 +22,7 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
   durable_ = opening.durable;
   newest_ = opening.head;
   requests_.clear();
+  awaiting_.clear();
   current_count_ = unavailable_count_ = 0;
   for (auto& [key, chunk] : chunks_) {
     chunk.current = chunk.unavailable = chunk.claimed = false;
@@ -65,6 +66,7 @@ void Replica::reset() {
   confirmed_count_ = current_count_ = unavailable_count_ = 0;
   own_.clear();
   requests_.clear();
+  awaiting_.clear();
   left_.clear();
   opening_.reset();
 }
@@ -84,6 +86,7 @@ void Replica::set_view(const View& view) {
     if (it->second.confirmed) --confirmed_count_;
     if (it->second.current) --current_count_;
     if (it->second.unavailable) --unavailable_count_;
+    awaiting_.erase(it->first);
     it = chunks_.erase(it);
   }
 }
@@ -208,7 +211,7 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   const Sequence seq = snapshot.chunk.version.seq;
   newest_ = std::max(newest_, seq);
   chunk.confirmed = std::make_shared<const Chunk>(std::move(snapshot.chunk));
-  chunk.awaiting = false;
+  set_awaiting(snapshot.key, chunk, false);
   chunk.settle_pending(seq);
   settle(snapshot.key, chunk, true, arrival.now_us);
 }
@@ -304,7 +307,7 @@ void Replica::receive(const ChunkUnavailable& unavailable) {
     if (std::exchange(chunk.confirmed, nullptr)) --confirmed_count_;
     const ShownPtr was_shown = std::exchange(chunk.shown, nullptr);
     chunk.serial = 0;
-    chunk.awaiting = false;
+    set_awaiting(key, chunk, false);
     chunk.inbox.clear();
     news_.removed(key);  // also where nothing was shown: neighbours wait for it no longer
     for (int i = 0; was_shown && i < kDirectionCount; ++i) {
@@ -449,6 +452,7 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
   const bool from_past = past_.has_value();
   past_ = past;
   requests_.clear();
+  awaiting_.clear();
   unavailable_count_ = 0;
   if (!from_past || !past) current_count_ = 0;  // from moment to moment, what is not sent again is the same
   for (auto& [key, chunk] : chunks_) {
@@ -537,8 +541,9 @@ std::vector<std::pair<ChunkKey, ChunkPtr>> Replica::take_unkept(std::size_t coun
 }
 
 void Replica::tick(TimeUs now_us) {
-  for (auto& [key, chunk] : chunks_) {
-    if (chunk.awaiting && now_us - *chunk.requested_us >= kRequestAgainUs) request(key, chunk, now_us);
+  for (const ChunkKey& key : awaiting_) {
+    TrackedChunk& chunk = *find(key);
+    if (now_us - *chunk.requested_us >= kRequestAgainUs) request(key, chunk, now_us);
   }
 }
 
@@ -572,7 +577,7 @@ void Replica::settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapsho
     // A snapshot that still leaves a gap was taken too early; the next one is asked for after a pause, by
     // tick().
     if (from_snapshot && chunk.requested_us && now_us - *chunk.requested_us < kRequestAgainUs) {
-      chunk.awaiting = true;
+      set_awaiting(key, chunk, true);
     } else {
       request(key, chunk, now_us);
     }
@@ -580,8 +585,17 @@ void Replica::settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapsho
   show_predicted(key, chunk, cause);
 }
 
+void Replica::set_awaiting(const ChunkKey& key, TrackedChunk& chunk, bool awaiting) {
+  if (std::exchange(chunk.awaiting, awaiting) == awaiting) return;
+  if (awaiting) {
+    awaiting_.insert(key);
+  } else {
+    awaiting_.erase(key);
+  }
+}
+
 void Replica::request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us) {
-  chunk.awaiting = true;
+  set_awaiting(key, chunk, true);
   chunk.requested_us = now_us;
   const auto place = std::lower_bound(requests_.begin(), requests_.end(), key);
   if (place != requests_.end() && *place == key) return;
@@ -667,11 +681,6 @@ std::vector<ChunkKey> Replica::confirmed_keys() const {
     if (chunk.confirmed) keys.push_back(key);
   }
   return keys;
-}
-
-std::size_t Replica::awaiting_count() const {
-  return static_cast<std::size_t>(
-      std::count_if(chunks_.begin(), chunks_.end(), [](const auto& e) { return e.second.awaiting; }));
 }
 
 }  // namespace runstone

@@ -21,6 +21,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -141,7 +142,7 @@ class Replica {
   /// Chunks whose snapshot came on this connection: after a resumption the others may have missed edits.
   std::size_t current_count() const { return current_count_; }
   /// Chunks that wait for a snapshot they asked for.
-  std::size_t awaiting_count() const;
+  std::size_t awaiting_count() const { return awaiting_.size(); }
   /// Chunks that the server said on this connection it cannot send.
   std::size_t unavailable_count() const { return unavailable_count_; }
   bool unavailable(const ChunkKey& key) const {
@@ -160,6 +161,7 @@ class Replica {
   const TrackedChunk* find(const ChunkKey& key) const;
   void settle(const ChunkKey& key, TrackedChunk& chunk, bool from_snapshot, TimeUs now_us);
   void settle_own();
+  void set_awaiting(const ChunkKey& key, TrackedChunk& chunk, bool awaiting);
   void request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
   void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next, std::span<EditNews* const> cause);
   void border_changed(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
@@ -174,6 +176,7 @@ class Replica {
   std::optional<View> view_;
   std::optional<PastMoment> past_;
   std::map<ChunkKey, TrackedChunk> chunks_;
+  std::set<ChunkKey> awaiting_;  // looked at every turn, and so not searched for in the whole view
   std::size_t confirmed_count_ = 0;
   std::size_t current_count_ = 0;
   std::size_t unavailable_count_ = 0;
