@@ -63,19 +63,30 @@ void Picture::take_frame(const FrameDone& frame) {
 void Picture::mesh() {
   if (!pool_) return;
   take_results();
+  mesh_layers();
   push_jobs();
 }
 
 void Picture::take_results() {
-  for (MeshResult& result : pool_->take_results()) {
-    (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
-    if (!planner_.finish(result.key, result.number, result.mesh)) continue;
-    recorder_.meshed(result.key, result.serial, result.meshed_us);
-    join_.done(result.key, result.meshed_us);
-    if (!draw_thread_) continue;
-    draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
-    changed_ = uploads_waiting_ = true;
-    edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
+  for (MeshResult& result : pool_->take_results()) take_result(std::move(result));
+}
+
+void Picture::take_result(MeshResult result) {
+  (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
+  if (!planner_.finish(result.key, result.number, result.mesh)) return;
+  recorder_.meshed(result.key, result.serial, result.meshed_us);
+  join_.done(result.key, result.meshed_us);
+  if (!draw_thread_) return;
+  draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
+  changed_ = uploads_waiting_ = true;
+  edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
+}
+
+void Picture::mesh_layers() {
+  for (const TimeUs until_us = steady_now_us() + kMeshHereUs; steady_now_us() < until_us;) {
+    const auto job = planner_.next(JobSize::layers);
+    if (!job) return;
+    take_result(pool_->mesh_here(*job));
   }
 }
 

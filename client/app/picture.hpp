@@ -73,6 +73,7 @@ class Picture {
   void report(ChunkStats& chunks, FrameStats& frames) const;
 
   static constexpr TimeUs kFrameUs = 16'000;  // in a window, from order to order; the swap paces more finely
+  static constexpr TimeUs kMeshHereUs = 1'000;  // of a turn; what is more goes to the workers
   static constexpr TimeUs kFrameOffScreenUs =
       100'000;  // off screen, after a frame until one without new edits
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
@@ -80,6 +81,9 @@ class Picture {
  private:
   bool is_idle() const { return planner_.ready_count() == 0 && (!pool_ || pool_->in_flight() == 0); }
   void take_results();
+  void take_result(MeshResult result);
+  /// What edits changed is made here and now: to hand it to a worker and to take it back takes longer.
+  void mesh_layers();
   void push_jobs();
   void take_frame(const FrameDone& frame);
 

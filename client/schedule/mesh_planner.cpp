@@ -65,8 +65,9 @@ void MeshPlanner::set_eye(ChunkCoord eye) {
   view_changed();
 }
 
-bool MeshPlanner::ready(const ChunkKey& key) const {
+bool MeshPlanner::ready(const ChunkKey& key, const State& state) const {
   if (!replica_.shown(key)) return false;
+  if (state.edited) return true;
   for (int i = 0; i < kDirectionCount; ++i) {
     const ChunkKey next = beside(key, static_cast<Direction>(i));
     const bool will_come =
@@ -95,18 +96,20 @@ void MeshPlanner::place(const ChunkKey& key, State& state) {
     ready_.erase(*state.rank);
     state.rank.reset();
   }
-  if (!state.dirty || state.job != 0 || !ready(key)) return;
-  state.rank = Rank{state.edited ? 0 : 1, distance_squared(key.at, eye_), key};
+  if (!state.dirty || state.job != 0 || !ready(key, state)) return;
+  const int turn = state.mesh ? 0 : state.edited ? 1 : 2;
+  state.rank = Rank{turn, distance_squared(key.at, eye_), key};
   ready_.insert(*state.rank);
 }
 
-std::optional<MeshJob> MeshPlanner::next() {
+std::optional<MeshJob> MeshPlanner::next(JobSize size) {
   while (!ready_.empty()) {
     const ChunkKey key = std::get<ChunkKey>(*ready_.begin());
     State& state = states_.at(key);
+    if (size == JobSize::layers && !state.mesh) return std::nullopt;
     ready_.erase(ready_.begin());
     state.rank.reset();
-    if (!ready(key)) continue;  // a neighbour left since; its return places the chunk again
+    if (!ready(key, state)) continue;  // a neighbour left since; its return places the chunk again
     MeshJob job;
     job.key = key;
     job.number = ++jobs_;

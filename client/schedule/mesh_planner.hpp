@@ -3,9 +3,10 @@
 //     is for the next;
 //   - a chunk waits for neighbours that are in view and not here yet; beyond the view, or where the server
 //     has none to send, a missing neighbour means that the faces at the edge are drawn, and the chunk is
-//     meshed again should the neighbour come;
+//     meshed again should the neighbour come; an edited chunk does not wait at all, so that no edit is seen
+//     late because terrain is;
 //   - a change at the border meshes the neighbour again too;
-//   - edited chunks first, then the nearest to the eye.
+//   - first chunks of which layers changed, then other edited ones, then the nearest to the eye.
 // The newest mesh of each chunk is kept, and with it the layers that changed since its job was made; the next
 // job takes both along, so that only those layers are meshed again. The news of the replica are the one
 // source of these layers: whatever replaces shown runs (a prediction, one taken back, a commit, a snapshot)
@@ -48,6 +49,11 @@ struct MeshJob {
   PictureLayers changed;
 };
 
+enum class JobSize : std::uint8_t {
+  any,
+  layers,  // a mesh is kept, of which layers are to be made anew: some 10 us
+};
+
 class MeshPlanner {
  public:
   explicit MeshPlanner(const Replica& replica) : replica_(replica) {}
@@ -57,9 +63,9 @@ class MeshPlanner {
   void view_changed();
   void set_eye(ChunkCoord eye);
 
-  /// The next job; none while everything left waits for a neighbour or for a result. Every job must be
+  /// The next job of this size; none while everything left waits for a neighbour or for a result. Every job must be
   /// finished, or made void.
-  std::optional<MeshJob> next();
+  std::optional<MeshJob> next(JobSize size = JobSize::any);
   /// Takes the mesh of a job that is done, and keeps it. Returns whether it should be drawn: not if its chunk
   /// left the view since, even if it came back, or if the job was made void.
   bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh);
@@ -90,7 +96,7 @@ class MeshPlanner {
     MeshPtr mesh;
     std::optional<Rank> rank;  // place in ready_
   };
-  bool ready(const ChunkKey& key) const;
+  bool ready(const ChunkKey& key, const State& state) const;
   void mark(const ChunkKey& key, State& state);
   void mark_whole(const ChunkKey& key, State& state);
   void place(const ChunkKey& key, State& state);

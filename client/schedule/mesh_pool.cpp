@@ -23,7 +23,7 @@ MeshPool::~MeshPool() {
 
 bool MeshPool::push(MeshJob job) {
   if (threads_.empty()) {
-    MeshResult result = mesh(job, own_scratch_);
+    MeshResult result = mesh_here(job);
     const std::lock_guard lock(mutex_);
     ++in_flight_;
     results_.push_back(std::move(result));

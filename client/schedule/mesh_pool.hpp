@@ -41,6 +41,8 @@ class MeshPool {
   MeshPool& operator=(const MeshPool&) = delete;
 
   bool push(MeshJob job);
+  /// Meshes on the calling thread, the one that pushes.
+  MeshResult mesh_here(const MeshJob& job) { return mesh(job, own_scratch_); }
   /// Results so far, in the order they were done.
   std::vector<MeshResult> take_results();
   /// Jobs that wait or run, and results not taken.
@@ -65,7 +67,7 @@ class MeshPool {
   std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next two
   std::vector<MeshResult> results_;
   std::size_t in_flight_ = 0;
-  Scratch own_scratch_;  // without workers
+  Scratch own_scratch_;  // of the thread that pushes
   std::vector<std::jthread> threads_;
 };
 

@@ -27,6 +27,50 @@ TEST_CASE_METHOD(PlannerBench, "a chunk waits for its neighbours in view and not
   CHECK(planner.dirty_count() == 0);
 }
 
+TEST_CASE_METHOD(PlannerBench,
+                 "an edited chunk does not wait for terrain, and closes its sides as that comes",
+                 "[schedule]") {
+  load({0, 0, 0});
+  CHECK(drain().empty());
+  commit({5, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
+  load({1, 0, 0});
+  CHECK(drain() == std::vector<ChunkCoord>{{1, 0, 0}});  // nothing new to see: it waits for the others
+  commit({6, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] != nullptr);
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  load({0, 0, -1});
+  CHECK(drain().size() == 4);
+  CHECK(made.at({0, 0, 0}).before == nullptr);
+  CHECK(made.at({0, 0, 0}).neighbours[static_cast<std::size_t>(Direction::neg_z)] != nullptr);
+  CHECK(planner.dirty_count() == 0);
+}
+
+TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come before whole chunks",
+                 "[schedule]") {
+  planner.set_eye({1, 0, 0});
+  load({0, 0, 0});
+  load({1, 0, 0});
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain().size() == 3);
+  load({0, 0, -1});       // two whole chunks: it, and the middle
+  commit({5, 5, -5}, 2);  // edited, but nothing is kept of it
+  CHECK_FALSE(planner.next(JobSize::layers));
+  planner.set_eye({0, 0, -1});
+  commit({20, 5, 5}, 2);
+  const auto layers = planner.next(JobSize::layers);
+  REQUIRE(layers);
+  CHECK(layers->key.at == ChunkCoord{1, 0, 0});
+  CHECK(layers->before != nullptr);
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, -1}, {0, 0, 0}});
+}
+
 TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
   load({0, 0, 0});
   load({-1, 0, 0});

@@ -107,6 +107,15 @@ TEST_CASE("a job with the mesh before it makes the changed layers anew and leave
   CHECK(bench.result_of(4).mesh->quad_count() == 12);
 }
 
+TEST_CASE("a job can be made by who would push it, whatever the workers do", "[schedule]") {
+  Bench bench(1);
+  const MeshResult result = bench.pool->mesh_here(job_of(1, chunk_with({{5, 5, 5}})));
+  CHECK(result.number == 1);
+  CHECK(result.mesh->quad_count() == 6);
+  CHECK(bench.pool->in_flight() == 0);
+  CHECK(bench.pool->take_results().empty());
+}
+
 TEST_CASE("a kept mesh is no larger than its quads, whatever was meshed before it", "[schedule]") {
   Bench bench(0);
   std::initializer_list<LocalPos> many = {{1, 1, 1}, {3, 1, 1}, {5, 1, 1}, {7, 1, 1}, {9, 1, 1}, {11, 1, 1}};
