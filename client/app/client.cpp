@@ -30,9 +30,9 @@ constexpr TimeUs kInputUs = 2'000;  // longest pause with a window: how late a k
 constexpr TimeUs kTitleUs = 500'000;
 constexpr TimeUs kSettleUsMax = 10'000'000;  // for all that is here to be drawn without anything new to draw
 constexpr Sequence kScrubSteps = 100;        // from the first edit to the newest
-constexpr TimeUs kEventsUs = 8'000;          // messages taken per turn before meshes and frames get theirs
-constexpr TimeUs kKeepUs = 2'000'000;        // between two batches for the chunk cache
-constexpr std::int64_t kGoodbyeMs = 1'000;   // to say goodbye
+constexpr TimeUs kEventsUs = 1'000;    // of a turn for messages: then own edits, meshes and frames get theirs
+constexpr TimeUs kKeepUs = 2'000'000;  // between two batches for the chunk cache
+constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
 
 /// Null where nothing is to be seen.
 std::unique_ptr<Window> make_window(const ClientOptions& options) {
@@ -131,12 +131,11 @@ int Client::play(const volatile std::sig_atomic_t& stop) {
     picture_.take_drawn();
     see_completeness(now_us);
     if (runner_) runner_->step(now_us);
+    settle();  // own edits first: to follow the player may take long
     follow_player(now_us);
     session_.tick(now_us);
     step_cache(now_us, false);
-    flush();
-    take_news();
-    picture_.mesh();
+    settle();
     draw(now_us);
     if (stop != 0) wish_to_end_ = kExitOk;
     code = exit_code(steady_now_us());
@@ -148,16 +147,15 @@ int Client::play(const volatile std::sig_atomic_t& stop) {
 // ---- network
 
 void Client::take_events() {
-  const TimeUs start_us = steady_now_us();
-  // Taken in one piece, handled in one piece: what arrives meanwhile is for the next turn.
-  for (NetEvent& event : net_->take_events()) {
+  if (events_.empty()) {
+    for (NetEvent& event : net_->take_events()) events_.push_back(std::move(event));
+  }
+  for (const TimeUs until_us = steady_now_us() + kEventsUs; !events_.empty() && steady_now_us() < until_us;) {
+    NetEvent event = std::move(events_.front());
+    events_.pop_front();
     if (const auto* connected = std::get_if<NetConnected>(&event)) on_connected(*connected);
     if (const auto* gone = std::get_if<NetDisconnected>(&event)) on_disconnected(*gone);
     if (auto* received = std::get_if<NetReceived>(&event)) on_received(*received);
-    if (steady_now_us() - start_us > kEventsUs) {
-      take_news();
-      picture_.mesh();
-    }
   }
 }
 
@@ -207,6 +205,12 @@ void Client::world_opened() {
     save_pinned_servers(options_.key_file, session_.pinned());
     pins_known_ = session_.pinned().size();
   }
+}
+
+void Client::settle() {
+  flush();
+  take_news();
+  picture_.mesh();
 }
 
 void Client::flush() {
@@ -391,6 +395,7 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
 }
 
 void Client::rest(TimeUs now_us) {
+  if (!events_.empty()) return;
   TimeUs pause = window_ ? kInputUs : kRestUs;
   if (runner_ && runner_->due_us()) pause = std::min(pause, *runner_->due_us() - now_us);
   if (pause > 0) wake_.wait(std::chrono::microseconds(pause));

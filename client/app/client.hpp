@@ -5,6 +5,7 @@
 #pragma once
 #include <csignal>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,8 @@ class Client final : private ScriptHost {
   void take_input(TimeUs now_us);
   void see_completeness(TimeUs now_us);
   void follow_player(TimeUs now_us);
+  /// Sends what is to be sent, and meshes what is to be meshed.
+  void settle();
   void flush();
   /// Asks the cache what the session wants of it, and hands over what is to be kept: now and then, or `all` at once.
   void step_cache(TimeUs now_us, bool all);
@@ -113,6 +116,7 @@ class Client final : private ScriptHost {
   ViewPace view_pace_;
   ChunkStats chunk_stats_;
 
+  std::deque<NetEvent> events_;      // taken from the network, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none
   std::uint64_t openings_seen_ = 0;
   TimeUs started_us_ = 0;
