@@ -13,8 +13,8 @@
 
 #include "client/app/drawn_world.hpp"
 #include "client/app/exit_code.hpp"
-#include "client/app/low_priority.hpp"
 #include "client/render/image.hpp"
+#include "process/low_priority.hpp"
 #include "process/steady_clock.hpp"
 #include "protocol/codec/draw_answer.hpp"
 #include "protocol/codec/draw_order.hpp"

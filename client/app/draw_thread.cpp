@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "client/app/low_priority.hpp"
 #include "common/core/assert.hpp"
+#include "process/low_priority.hpp"
 #include "process/steady_clock.hpp"
 
 namespace runstone {

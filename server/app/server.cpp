@@ -5,16 +5,32 @@
 #include <asio/executor_work_guard.hpp>
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "process/low_priority.hpp"
 #include "server/app/control_socket.hpp"
 #include "server/app/logging.hpp"
 #include "server/app/server_core.hpp"
 
 namespace runstone {
+namespace {
+
+// Terrain gives way to edits on a machine that has not cores for both.
+std::unique_ptr<asio::thread_pool> patient_workers(std::size_t count) {
+  std::unique_ptr<asio::thread_pool> workers;
+  const auto start = [&] {
+    lower_priority();  // its threads begin with that of the one that starts them
+    workers = std::make_unique<asio::thread_pool>(count);
+  };
+  std::thread(start).join();
+  return workers;
+}
+
+}  // namespace
 
 // Members are destroyed in reverse: the core goes before what it borrows.
 struct Server::Parts {
@@ -47,7 +63,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->world = *std::move(world);
-  parts->workers = std::make_unique<asio::thread_pool>(config.worker_threads);
+  parts->workers = patient_workers(config.worker_threads);
   parts->core =
       std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
                                    *parts->world.generator, std::move(on_failure), std::move(on_stop));

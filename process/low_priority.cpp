@@ -1,4 +1,4 @@
-#include "client/app/low_priority.hpp"
+#include "process/low_priority.hpp"
 
 #ifdef __linux__
 #include <sys/resource.h>
