@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/ids.hpp"
+
 namespace runstone {
 
 /// Trivially destructible, as values in a co_await expression have to be (g++ 12 frees others twice).
@@ -20,6 +22,12 @@ struct IoResult {
   std::int64_t call_ns = 0;  // of a write: processor time of the calls themselves
 };
 
+/// What may be written and leaves at once, instead of waiting in the kernel.
+struct StreamRoom {
+  std::size_t bytes = SIZE_MAX;
+  TimeUs again_us = 0;  // where there is none: how long to wait before the next question
+};
+
 class ByteStream {
  public:
   virtual ~ByteStream() = default;
@@ -27,6 +35,8 @@ class ByteStream {
   virtual asio::awaitable<IoResult> read_some(asio::mutable_buffer into) = 0;
   /// All bytes of all buffers. The vector must live until the call ends.
   virtual asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) = 0;
+  /// For terrain: what waits in the kernel is overtaken by no edit. Some 1 us.
+  virtual StreamRoom room() = 0;
   /// No more writes: the peer sees the end of the stream after what was written.
   virtual void shutdown_send() = 0;
   /// Ends both directions; calls under way return an error.

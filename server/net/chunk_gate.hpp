@@ -23,9 +23,12 @@ class ChunkGate {
   const ChunkPace& measured() const { return pace_; }
 
   /// Something waits to be sent: the body of a fragment may have so many bytes now; 0: none, see next_us().
-  std::size_t open(TimeUs now_us) {
+  /// `room_bytes`: what may be handed to the socket without waiting there.
+  std::size_t open(TimeUs now_us, std::size_t room_bytes = SIZE_MAX) {
+    if (room_bytes <= kFrameHeaderBytes) return 0;
     if (is_paced_ && pace_.room(now_us) == 0) return 0;
-    const std::size_t bytes = is_paced_ ? pace_.fragment_bytes() : kFragmentBytesMax;
+    const std::size_t bytes =
+        std::min(is_paced_ ? pace_.fragment_bytes() : kFragmentBytesMax, room_bytes - kFrameHeaderBytes);
     if (!own_.is_limited() && !shared_.is_limited()) return bytes;
     if (credit_ >= bytes) return bytes;
     if (!turn_us_) turn_us_ = std::max(own_.book(kTurnBytes, now_us), shared_.book(kTurnBytes, now_us));

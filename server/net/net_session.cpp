@@ -138,6 +138,11 @@ void NetSession::abort() {
   asio::post(strand_, end);
 }
 
+bool NetSession::has_chunk() {
+  const std::lock_guard lock(mutex_);
+  return queue_.has_chunk();
+}
+
 void NetSession::wake_writer() {
   {
     const std::lock_guard lock(mutex_);
@@ -258,6 +263,9 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     bool is_drained = false;
     bool is_last = false;
     auto wake = asio::steady_timer::time_point::max();
+    // A call of the system, so not under the mutex, and only where terrain wants to know.
+    const bool asks = self->has_chunk();
+    const StreamRoom room = asks ? self->stream_->room() : StreamRoom{};
     {
       const std::lock_guard lock(self->mutex_);
       self->writer_idle_ = self->is_woken_ = false;
@@ -266,11 +274,15 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       }
       const TimeUs now_us = steady_now_us();
       const bool has_chunk = self->queue_.has_chunk();
-      const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us) : 0;
+      if (has_chunk && !asks) continue;  // it came in between
+      const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room.bytes) : 0;
       has_batch = self->queue_.take(batch, chunk_body_max);
       if (has_batch) self->gate_.sent(batch.chunk_bytes, batch.bytes - batch.chunk_bytes, now_us);
       if (!has_chunk) self->gate_.ran_dry();
-      if (has_chunk && chunk_body_max == 0) wake = time_point_of(self->gate_.next_us(now_us));
+      if (has_chunk && chunk_body_max == 0) {
+        const TimeUs room_us = room.bytes == 0 ? now_us + room.again_us : now_us;
+        wake = time_point_of(std::max(room_us, self->gate_.next_us(now_us)));
+      }
       is_drained = self->queue_.take_drained();
       is_last = !has_batch && self->closing_;
       if (!has_batch && !is_last) self->writer_idle_ = true;

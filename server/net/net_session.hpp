@@ -86,6 +86,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   void refuse(const Error& error);
   asio::awaitable<void> wait_for_turn(std::size_t bytes_read);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
+  bool has_chunk();
   void wake_writer();
   /// Whether the writer has to be told that there is something to send. Under the mutex.
   bool take_wake();

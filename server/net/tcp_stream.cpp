@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "server/net/byte_stream.hpp"
+#include "server/net/tcp_room.hpp"
 #include "server/net/thread_cpu_ns.hpp"
 
 namespace runstone {
 namespace {
 
+constexpr TimeUs kAgainUsMin = 1'000, kAgainUsMax = 20'000;
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
 class TcpStream : public ByteStream {
@@ -60,6 +62,10 @@ class TcpStream : public ByteStream {
       if (result.error) break;
     }
     co_return result;
+  }
+  StreamRoom room() override {
+    const TcpRoom room = tcp_room(socket_.native_handle());
+    return {room.bytes, std::clamp<TimeUs>(room.round_trip_us / 8, kAgainUsMin, kAgainUsMax)};
   }
   void shutdown_send() override {
     asio::error_code ignored;

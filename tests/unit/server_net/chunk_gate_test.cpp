@@ -29,6 +29,18 @@ TEST_CASE("without budgets and without words of the client, TCP alone holds terr
   CHECK(send_for(gate, 0, 1'000) > 1'000'000'000);
 }
 
+TEST_CASE("terrain takes what room there is in the socket, and costs no turn where there is none", "[net]") {
+  ByteBudget none(0);
+  ChunkGate gate(1'000'000, none);
+  for (TimeUs now_us = 0; now_us < 10'000'000; now_us += 1'000) {
+    CHECK(gate.open(now_us, 0) == 0);
+    CHECK(gate.open(now_us, kFrameHeaderBytes) == 0);
+  }
+  CHECK(gate.next_us(10'000'000) == 10'000'000);
+  CHECK(gate.open(10'000'000, 1448) == 1448 - kFrameHeaderBytes);
+  CHECK(gate.open(10'000'000, 1 << 20) == kFragmentBytesMax);
+}
+
 TEST_CASE("a session sends no more terrain than its budget, and nearly all of it", "[net]") {
   ByteBudget none(0);
   ChunkGate gate(1'000'000, none);

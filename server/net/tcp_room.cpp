@@ -1,0 +1,50 @@
+#include "server/net/tcp_room.hpp"
+
+#include <linux/inet_diag.h>
+#include <linux/sockios.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace runstone {
+namespace {
+
+constexpr std::uint32_t kProbePackets = 4;  // BBR's window while it measures, and its smallest at any time
+constexpr std::uint32_t kProbeWindowGain = 256;  // then alone its window is the link's product: 1, times 2^8
+
+bool measures_round_trip(int socket) {
+  tcp_cc_info info{};
+  socklen_t size = sizeof info;
+  // Other congestion controls tell other things, of other sizes, or nothing.
+  return ::getsockopt(socket, IPPROTO_TCP, TCP_CC_INFO, &info, &size) == 0 && size == sizeof info.bbr &&
+         info.bbr.bbr_cwnd_gain == kProbeWindowGain;
+}
+
+}  // namespace
+
+TcpRoom tcp_room(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  int unsent = 0;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || info.tcpi_snd_mss == 0 ||
+      ::ioctl(socket, SIOCOUTQNSD, &unsent) != 0) {
+    return {SIZE_MAX, 0};
+  }
+  const auto round_trip_us = static_cast<TimeUs>(info.tcpi_rtt);
+  if (info.tcpi_snd_cwnd <= kProbePackets && measures_round_trip(socket)) return {0, round_trip_us};
+  // As the kernel counts what is on its way (tcp_packets_in_flight()), and what waits to be.
+  const std::uint64_t away =
+      std::uint64_t{info.tcpi_unacked} + info.tcpi_retrans -
+      std::min<std::uint64_t>(info.tcpi_unacked, std::uint64_t{info.tcpi_sacked} + info.tcpi_lost);
+  const std::uint64_t waiting =
+      (static_cast<std::uint64_t>(unsent) + info.tcpi_snd_mss - 1) / info.tcpi_snd_mss;
+  const std::uint64_t window = info.tcpi_snd_cwnd;
+  return {static_cast<std::size_t>((window - std::min(window, away + waiting)) * info.tcpi_snd_mss),
+          round_trip_us};
+}
+
+}  // namespace runstone

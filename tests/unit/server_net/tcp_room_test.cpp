@@ -1,0 +1,58 @@
+#include "server/net/tcp_room.hpp"
+
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+using namespace runstone;
+using asio::ip::tcp;
+
+namespace {
+
+struct Connection {
+  Connection() {
+    tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
+    client.connect(acceptor.local_endpoint());
+    server = acceptor.accept();
+    server.non_blocking(true);
+    client.non_blocking(true);
+  }
+  /// Until the kernel takes no more.
+  void fill() {
+    const std::vector<std::uint8_t> bytes(1 << 16);
+    asio::error_code error;
+    while (!error) server.write_some(asio::buffer(bytes), error);
+    REQUIRE(error == asio::error::would_block);
+  }
+  /// All that is on its way to the client, in both kernels' buffers.
+  void drain() {
+    std::vector<std::uint8_t> bytes(1 << 16);
+    asio::error_code error;
+    for (int idle = 0; idle < 100 && tcp_room(server.native_handle()).bytes == 0;) {
+      client.read_some(asio::buffer(bytes), error);
+      idle = error ? idle + 1 : 0;
+      if (error) client.wait(tcp::socket::wait_read);
+    }
+  }
+  asio::io_context io;
+  tcp::socket client{io}, server{io};
+};
+
+}  // namespace
+
+TEST_CASE("there is room in a connection's first window, and none when more waits than fits", "[net]") {
+  Connection connection;
+  const int socket = connection.server.native_handle();
+  const std::size_t first = tcp_room(socket).bytes;
+  CHECK(first >= 4 * 536);  // packets of the smallest size there is
+  CHECK(first < SIZE_MAX);
+  connection.fill();
+  CHECK(tcp_room(socket).bytes == 0);
+  connection.drain();
+  CHECK(tcp_room(socket).bytes > 0);
+  CHECK(tcp_room(socket).round_trip_us > 0);
+}
+
+TEST_CASE("what is no TCP socket has room for everything", "[net]") { CHECK(tcp_room(-1).bytes == SIZE_MAX); }
