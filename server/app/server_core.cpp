@@ -359,10 +359,10 @@ void ServerCore::on_connected(SessionId session) {
   });
 }
 
-void ServerCore::on_message(SessionId session, Message&& message) {
-  asio::post(strand_, [this, session, message = std::move(message)]() mutable {
+void ServerCore::on_message(SessionId session, Message&& message, std::size_t bytes) {
+  asio::post(strand_, [this, session, message = std::move(message), bytes]() mutable {
     world_->received(session, std::move(message), now());
-    if (NetSession* net = find(session)) net->handled(1);
+    if (NetSession* net = find(session)) net->handled(bytes);
     schedule_commit();
   });
 }

@@ -64,7 +64,7 @@ class ServerCore final : public WorldPorts, public NetEvents, public RollbackDes
 
   // ---- NetEvents, on session strands
   void on_connected(SessionId session) override;
-  void on_message(SessionId session, Message&& message) override;
+  void on_message(SessionId session, Message&& message, std::size_t bytes) override;
   void on_drained(SessionId session) override;
   void on_disconnected(SessionId session) override;
 

@@ -18,8 +18,9 @@ namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 // Messages of all sessions wait in one line for the world strand, so nobody may put many there at once: a read is short, and
-// few are under way (unhandled_messages_max).
+// few are under way (unhandled_bytes_max). By their bytes, which tell what they cost: a claim to hold 256 chunks is no edit.
 constexpr std::size_t kReadBytes = 4 * 1024;
+constexpr std::size_t kMessageBytes = 64;  // what the smallest one counts besides
 constexpr TimeUs kReadBurstUs =
     500'000;  // of the reading budget may be used at once: what a client holds, a large paste
 
@@ -125,8 +126,8 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
   wake_writer();
 }
 
-void NetSession::handled(std::size_t messages) {
-  unhandled_.fetch_sub(messages);
+void NetSession::handled(std::size_t message_bytes) {
+  unhandled_.fetch_sub(message_bytes + kMessageBytes);
   if (!reader_paused_.load() || must_pause()) return;
   const auto wake = [self = shared_from_this()] { self->read_wake_.cancel(); };
   asio::post(strand_, wake);
@@ -193,8 +194,8 @@ Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
     return Unexpected<Error>{message.error()};
   }
   if (const auto* received = std::get_if<Received>(&*message)) return on_received(*received);
-  unhandled_.fetch_add(1);
-  events_.on_message(id_, *std::move(message));
+  unhandled_.fetch_add(body.size() + kMessageBytes);
+  events_.on_message(id_, *std::move(message), body.size());
   return {};
 }
 

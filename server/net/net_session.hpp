@@ -24,13 +24,14 @@ namespace runstone {
 
 struct NetLimits {
   SendLimits send;
-  std::uint64_t bytes_per_second = 0;          // per session: terrain waits where more would go; 0: no limit
-  std::uint64_t server_bytes_per_second = 0;   // all sessions together, likewise
-  std::uint64_t read_bytes_per_second = 0;     // from each session: beyond it reading pauses; 0: no limit
-  std::size_t notsent_bytes = 16 * 1024;       // TCP_NOTSENT_LOWAT
-  std::size_t connections_max = 512;           // sockets, in any state
-  std::size_t handshakes_per_address = 32;     // of those sockets: not yet authenticated, from one address
-  std::size_t unhandled_messages_max = 64;     // per session; then its reading pauses
+  std::uint64_t bytes_per_second = 0;         // per session: terrain waits where more would go; 0: no limit
+  std::uint64_t server_bytes_per_second = 0;  // all sessions together, likewise
+  std::uint64_t read_bytes_per_second = 0;    // from each session: beyond it reading pauses; 0: no limit
+  std::size_t notsent_bytes = 16 * 1024;      // TCP_NOTSENT_LOWAT
+  std::size_t connections_max = 512;          // sockets, in any state
+  std::size_t handshakes_per_address = 32;    // of those sockets: not yet authenticated, from one address
+  std::size_t unhandled_bytes_max =
+      8 * 1024;  // per session, and 64 for each message; then its reading pauses
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
   std::uint64_t message_burst = 20'000;
   std::int64_t linger_ms = 1'000;  // for the goodbye to leave and the peer to close
@@ -72,7 +73,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Sends goodbye after the edits and control messages queued, drops chunks, closes; at the latest after the
   /// linger time. Only the first call counts.
   void close(GoodbyeReason reason, const std::string& text);
-  void handled(std::size_t messages);
+  void handled(std::size_t message_bytes);
   /// Closes without a goodbye and without waiting for the peer.
   void abort();
 
@@ -85,7 +86,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   Result<void> on_received(const Received& received);
   void refuse(const Error& error);
   asio::awaitable<void> wait_for_turn(std::size_t bytes_read);
-  bool must_pause() const { return unhandled_.load() >= limits_.unhandled_messages_max; }
+  bool must_pause() const { return unhandled_.load() >= limits_.unhandled_bytes_max; }
   bool has_chunk();
   void wake_writer();
   /// Whether the writer has to be told that there is something to send. Under the mutex.
@@ -102,7 +103,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   std::unique_ptr<ByteStream> stream_;
   std::string peer_;
   std::atomic<ChunkEncoding> encoding_{ChunkEncoding::raw};
-  std::atomic<std::size_t> unhandled_{0};
+  std::atomic<std::size_t> unhandled_{0};  // bytes, see NetLimits
   std::atomic<bool> reader_paused_{false};
 
   std::mutex mutex_;  // a leaf: guards the next six

@@ -1,0 +1,123 @@
+#include "server/net/net_session.hpp"
+
+#include <algorithm>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/use_awaitable.hpp>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <variant>
+#include <vector>
+
+using namespace runstone;
+
+namespace {
+
+constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
+
+/// A peer that has sent all its bytes, and reads what it is sent.
+class FedStream final : public ByteStream {
+ public:
+  FedStream(asio::io_context& io, Bytes bytes) : bytes_(std::move(bytes)), closed_(io) {
+    closed_.expires_at(asio::steady_timer::time_point::max());
+  }
+  asio::awaitable<IoResult> read_some(asio::mutable_buffer into) override {
+    const std::size_t count = std::min(into.size(), bytes_.size() - at_);
+    if (count == 0) {
+      const auto [error] = co_await closed_.async_wait(kTuple);
+      (void)error;  // cancelled: that is the end
+      co_return IoResult{asio::error::operation_aborted, 0, 0};
+    }
+    std::memcpy(into.data(), bytes_.data() + at_, count);
+    at_ += count;
+    co_return IoResult{{}, count, 0};
+  }
+  asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) override {
+    co_return IoResult{{}, asio::buffer_size(buffers), 0};
+  }
+  StreamRoom room() override { return {}; }
+  void shutdown_send() override {}
+  void close() override { closed_.cancel(); }
+  std::string peer() const override { return "test"; }
+  std::size_t read() const { return at_; }
+
+ private:
+  Bytes bytes_;
+  std::size_t at_ = 0;
+  asio::steady_timer closed_;
+};
+
+/// Takes messages, and is done with none until it is told.
+struct SlowWorld final : NetEvents {
+  void on_connected(SessionId /*session*/) override {}
+  void on_message(SessionId /*session*/, Message&& /*message*/, std::size_t bytes) override {
+    waiting.push_back(bytes);
+    most = std::max(most, waiting.size());
+    ++told;
+  }
+  void on_drained(SessionId /*session*/) override {}
+  void on_disconnected(SessionId /*session*/) override { gone = true; }
+  std::vector<std::size_t> waiting;
+  std::size_t told = 0, most = 0;
+  bool gone = false;
+};
+
+Bytes frames_of(const Message& message, std::size_t count) {
+  const EncodedMessage encoded = encode_message(message);
+  FrameWriter frames;
+  Bytes out;
+  for (std::size_t i = 0; i < count; ++i) frames.append(encoded, out);
+  return out;
+}
+
+struct Bench {
+  explicit Bench(const Message& message, std::size_t count) {
+    auto fed = std::make_unique<FedStream>(io, frames_of(message, count));
+    stream = fed.get();
+    session = std::make_shared<NetSession>(SessionId{1}, io, std::move(fed), limits, std::uint16_t{32},
+                                           budget, world, counters);
+    session->start();
+    io.poll();
+  }
+  ~Bench() {
+    session->abort();
+    io.run();
+  }
+  asio::io_context io;
+  NetLimits limits;
+  ByteBudget budget{0};
+  NetCounters counters;
+  SlowWorld world;
+  FedStream* stream = nullptr;
+  std::shared_ptr<NetSession> session;
+};
+
+}  // namespace
+
+TEST_CASE("a session waits with few messages for the world: of large ones fewer than of small ones",
+          "[net]") {
+  ChunkRequest wish;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(kChunkRequestKeysMax); ++i) {
+    wish.keys.push_back({0, {i, 0, 0}});
+  }
+  const bool is_large = GENERATE(true, false);
+  CAPTURE(is_large);
+  constexpr std::size_t kCount = 1'000;
+  Bench bench(is_large ? Message(wish) : Message(Ping{1}), kCount);
+  const std::size_t size = bench.world.waiting.at(0);
+  constexpr std::size_t kBoundBytes = 8 * 1024, kReadBytes = 4 * 1024, kMessageBytes = 64;
+  const std::size_t in_bound = kBoundBytes / (size + kMessageBytes) + 1;
+  const std::size_t in_read = kReadBytes / (size + kFrameHeaderBytes) + 1;
+  CHECK(bench.world.told >= in_bound);
+  CHECK(bench.world.told <= in_bound + in_read);
+  CHECK(bench.stream->read() <= kBoundBytes + 2 * kReadBytes);
+  while (bench.world.told < kCount) {
+    const auto waiting = std::exchange(bench.world.waiting, {});
+    REQUIRE_FALSE(waiting.empty());
+    for (const std::size_t bytes : waiting) bench.session->handled(bytes);
+    bench.io.poll();
+    REQUIRE_FALSE(bench.world.gone);
+  }
+  CHECK(bench.world.most <= in_bound + in_read);
+}
