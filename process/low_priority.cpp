@@ -1,5 +1,7 @@
 #include "process/low_priority.hpp"
 
+#include <algorithm>
+
 #ifdef __linux__
 #include <sys/resource.h>
 #include <unistd.h>
@@ -10,7 +12,8 @@ namespace runstone {
 void lower_priority() {
 #ifdef __linux__
   constexpr int kNice = 10;
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice));
+  const auto self = static_cast<id_t>(::gettid());
+  static_cast<void>(::setpriority(PRIO_PROCESS, self, std::max(kNice, ::getpriority(PRIO_PROCESS, self))));
 #endif
 }
 

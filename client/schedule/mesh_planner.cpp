@@ -86,7 +86,7 @@ void MeshPlanner::mark(const ChunkKey& key, State& state) {
 /// What was meshed of the chunk does not help to mesh what is there now.
 void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
   state.mesh.reset();
-  state.job = 0;
+  if (std::exchange(state.job, 0) != 0) state.edited = state.edited || state.edited_in_job;
   mark(key, state);
 }
 
@@ -112,7 +112,6 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     if (!ready(key, state)) continue;  // a neighbour left since; its return places the chunk again
     MeshJob job;
     job.key = key;
-    job.number = ++jobs_;
     job.serial = replica_.shown_serial(key);
     job.chunk = replica_.shown(key);
     std::uint8_t open_sides = 0;
@@ -121,19 +120,25 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
       if (!job.neighbours[i]) open_sides = static_cast<std::uint8_t>(open_sides | 1U << i);
     }
     // The kept mesh and what changed lead to this picture, if all of its changes were told.
-    if (state.mesh && state.serial == job.serial && state.order == job.chunk->order &&
-        state.open_sides == open_sides) {
+    const bool leads = state.mesh && state.serial == job.serial && state.order == job.chunk->order &&
+                       state.open_sides == open_sides;
+    if (leads) {
       job.before = std::move(state.mesh);
       job.changed = state.changed;
     }
     state.mesh.reset();
+    if (size == JobSize::layers && !leads) {
+      place(key, state);  // among the whole ones
+      continue;
+    }
+    job.number = ++jobs_;
     state.changed = {};
     state.order = job.chunk->order;
     state.open_sides = open_sides;
     state.job = job.number;
     if (!std::exchange(state.counted, true)) ++chunks_;
     state.dirty = false;
-    state.edited = false;
+    state.edited_in_job = std::exchange(state.edited, false);
     --dirty_;
     return job;
   }

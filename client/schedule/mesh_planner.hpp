@@ -86,10 +86,11 @@ class MeshPlanner {
   struct State {
     bool dirty = false;
     bool edited = false;
-    bool counted = false;      // in chunks_
-    std::uint64_t job = 0;     // under way; 0: none
-    std::uint64_t serial = 0;  // of the newest news
-    PictureLayers changed;     // since the newest job was made
+    bool edited_in_job = false;  // and not meshed yet if that job is made void
+    bool counted = false;        // in chunks_
+    std::uint64_t job = 0;       // under way; 0: none
+    std::uint64_t serial = 0;    // of the newest news
+    PictureLayers changed;       // since the newest job was made
     // What that job was made from, and its mesh: null while it is under way, and where nothing is known of it.
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour

@@ -20,7 +20,9 @@ constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 // Messages of all sessions wait in one line for the world strand, so nobody may put many there at once: a read is short, and
 // few are under way (unhandled_bytes_max). By their bytes, which tell what they cost: a claim to hold 256 chunks is no edit.
 constexpr std::size_t kReadBytes = 4 * 1024;
-constexpr std::size_t kMessageBytes = 64;  // what the smallest one counts besides
+constexpr std::size_t kMessageBytes = 64;         // what the smallest one counts besides
+constexpr std::size_t kTurnRoomBytes = 2 * 1024;  // for terrain whose turn it is where there is no room
+constexpr TimeUs kRoomPauseUsMax = 50'000;
 constexpr TimeUs kReadBurstUs =
     500'000;  // of the reading budget may be used at once: what a client holds, a large paste
 
@@ -259,6 +261,7 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
 asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
   SendQueue::Batch batch;
   std::vector<asio::const_buffer> buffers;
+  TimeUs room_pause_us = 0;
   for (;;) {
     bool has_batch = false;
     bool is_drained = false;
@@ -267,6 +270,9 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     // A call of the system, so not under the mutex, and only where terrain wants to know.
     const bool asks = self->has_chunk();
     const StreamRoom room = asks ? self->stream_->room() : StreamRoom{};
+    const bool has_room = room.bytes > kFrameHeaderBytes;
+    // A peer that does not read is asked after ever more seldom; one that does wakes the writer by what it says.
+    room_pause_us = has_room ? 0 : std::clamp(2 * room_pause_us, room.again_us, kRoomPauseUsMax);
     {
       const std::lock_guard lock(self->mutex_);
       self->writer_idle_ = self->is_woken_ = false;
@@ -276,13 +282,14 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       const TimeUs now_us = steady_now_us();
       const bool has_chunk = self->queue_.has_chunk();
       if (has_chunk && !asks) continue;  // it came in between
-      const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room.bytes) : 0;
+      // Edits alone may fill the window for ever: terrain has its turn all the same.
+      const std::size_t room_bytes = !has_room && self->queue_.is_chunks_turn() ? kTurnRoomBytes : room.bytes;
+      const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room_bytes) : 0;
       has_batch = self->queue_.take(batch, chunk_body_max);
       if (has_batch) self->gate_.sent(batch.chunk_bytes, batch.bytes - batch.chunk_bytes, now_us);
       if (!has_chunk) self->gate_.ran_dry();
       if (has_chunk && chunk_body_max == 0) {
-        const TimeUs room_us = room.bytes == 0 ? now_us + room.again_us : now_us;
-        wake = time_point_of(std::max(room_us, self->gate_.next_us(now_us)));
+        wake = time_point_of(std::max(now_us + room_pause_us, self->gate_.next_us(now_us)));
       }
       is_drained = self->queue_.take_drained();
       is_last = !has_batch && self->closing_;

@@ -5,12 +5,6 @@
 #include "common/core/assert.hpp"
 
 namespace runstone {
-namespace {
-
-constexpr std::size_t kPassedFragments = 4;
-
-}  // namespace
-
 std::size_t SendQueue::limit(FrameClass c) const {
   switch (c) {
     case FrameClass::control:

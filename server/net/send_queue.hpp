@@ -59,6 +59,10 @@ class SendQueue {
   /// `chunk_body_max` bytes at most (0: no chunk now); false if there are none. The batch's bytes leave the
   /// bounds at once.
   bool take(Batch& batch, std::size_t chunk_body_max = kFragmentBytesMax);
+  /// Whether so much of other classes has passed the chunks that their turn is next.
+  bool is_chunks_turn() const {
+    return lane(FrameClass::chunks).passed >= kPassedFragments * kFragmentBytesMax;
+  }
   /// Whether the next chunk is there and could be taken.
   bool has_chunk() const { return can_cut(FrameClass::chunks); }
 
@@ -96,6 +100,8 @@ class SendQueue {
     return !mine.items.empty() && mine.items.front().bytes != nullptr;
   }
   bool cut(FrameClass frame_class, std::size_t body_max, Batch& batch);
+
+  static constexpr std::size_t kPassedFragments = 4;
 
   std::size_t chunk_bytes_max() const { return std::min(limits_.chunk_bytes, chunk_backlog_); }
 

@@ -35,14 +35,14 @@ TcpRoom tcp_room(int socket) {
     return {SIZE_MAX, 0};
   }
   const auto round_trip_us = static_cast<TimeUs>(info.tcpi_rtt);
-  if (info.tcpi_snd_cwnd <= kProbePackets && measures_round_trip(socket)) return {0, round_trip_us};
   // As the kernel counts what is on its way (tcp_packets_in_flight()), and what waits to be.
   const std::uint64_t away =
       std::uint64_t{info.tcpi_unacked} + info.tcpi_retrans -
       std::min<std::uint64_t>(info.tcpi_unacked, std::uint64_t{info.tcpi_sacked} + info.tcpi_lost);
   const std::uint64_t waiting =
       (static_cast<std::uint64_t>(unsent) + info.tcpi_snd_mss - 1) / info.tcpi_snd_mss;
-  const std::uint64_t window = info.tcpi_snd_cwnd;
+  const bool measures = info.tcpi_snd_cwnd <= kProbePackets && measures_round_trip(socket);
+  const std::uint64_t window = measures ? 1 : info.tcpi_snd_cwnd;
   return {static_cast<std::size_t>((window - std::min(window, away + waiting)) * info.tcpi_snd_mss),
           round_trip_us};
 }

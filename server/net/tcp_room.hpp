@@ -14,7 +14,8 @@ struct TcpRoom {
 
 /// Of a connected socket. Asks the kernel, some 1 us; where it does not answer there is room for everything.
 /// While BBR measures the shortest round trip, 0.2 s of 10, its window is four packets (Cardwell et al., "BBR:
-/// Congestion-Based Congestion Control", ACM Queue 14(5), 2016): edits alone need them, so there is no room.
+/// Congestion-Based Congestion Control", ACM Queue 14(5), 2016): edits alone need them, so there is room for one packet at
+/// a time, if nothing else is on its way: its acknowledgement is what ends the measurement.
 TcpRoom tcp_room(int socket);
 
 }  // namespace runstone

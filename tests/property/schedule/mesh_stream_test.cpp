@@ -404,7 +404,8 @@ TEST_CASE("every mesh on its way through replica, planner and pool is a whole me
 TEST_CASE("a planner that is not told of a layer is caught by the comparison", "[schedule][property]") {
   const Sabotage sabotage = GENERATE(Sabotage{.own_layers = true}, Sabotage{.beyond_layers = true});
   std::uint64_t wrong = 0, pictures = 0;
-  for (std::uint64_t round = 0; round < 24; ++round) {
+  // Few pictures are still wrong at the end: a later edit meshes the chunk as a whole.
+  for (std::uint64_t round = 0; round < 200 && (wrong == 0 || pictures == 0); ++round) {
     MeshStream stream(mix64(Catch::rngSeed() + round), 0, sabotage);
     stream.run(3000);
     wrong += stream.counts().wrong;

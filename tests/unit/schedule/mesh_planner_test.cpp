@@ -49,6 +49,29 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(planner.dirty_count() == 0);
 }
 
+TEST_CASE_METHOD(PlannerBench, "a kept mesh that does not lead to the picture of now makes a whole chunk",
+                 "[schedule]") {
+  load_all();
+  drain();
+  replica.set_view({{1, 0, 0}, 1, 0});  // three neighbours of the middle leave
+  tell();
+  planner.view_changed();
+  commit({5, 5, 5}, 2);
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.before == nullptr);
+}
+
+TEST_CASE_METHOD(PlannerBench, "an edit whose mesh terrain made void still does not wait", "[schedule]") {
+  load({0, 0, 0});
+  commit({5, 5, 5}, 2);
+  const auto job = planner.next();
+  REQUIRE(job);
+  load({1, 0, 0});  // the side it had open has a neighbour now
+  CHECK_FALSE(finish(*job));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
 TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come before whole chunks",
                  "[schedule]") {
   planner.set_eye({1, 0, 0});

@@ -4,6 +4,7 @@
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/use_awaitable.hpp>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
-/// A peer that has sent all its bytes, and reads what it is sent.
+/// A peer that has sent all its bytes, and takes what it is sent, however little room there is.
 class FedStream final : public ByteStream {
  public:
   FedStream(asio::io_context& io, Bytes bytes) : bytes_(std::move(bytes)), closed_(io) {
@@ -34,13 +35,23 @@ class FedStream final : public ByteStream {
     co_return IoResult{{}, count, 0};
   }
   asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) override {
+    for (const asio::const_buffer& buffer : buffers) {
+      const auto* bytes = static_cast<const std::uint8_t*>(buffer.data());
+      written.insert(written.end(), bytes, bytes + buffer.size());
+    }
     co_return IoResult{{}, asio::buffer_size(buffers), 0};
   }
-  StreamRoom room() override { return {}; }
+  StreamRoom room() override {
+    ++asked;
+    return room_now;
+  }
   void shutdown_send() override {}
   void close() override { closed_.cancel(); }
   std::string peer() const override { return "test"; }
   std::size_t read() const { return at_; }
+  StreamRoom room_now;
+  std::size_t asked = 0;
+  Bytes written;
 
  private:
   Bytes bytes_;
@@ -72,8 +83,9 @@ Bytes frames_of(const Message& message, std::size_t count) {
 }
 
 struct Bench {
-  explicit Bench(const Message& message, std::size_t count) {
-    auto fed = std::make_unique<FedStream>(io, frames_of(message, count));
+  explicit Bench(Bytes received = {}, StreamRoom room = {}) {
+    auto fed = std::make_unique<FedStream>(io, std::move(received));
+    fed->room_now = room;
     stream = fed.get();
     session = std::make_shared<NetSession>(SessionId{1}, io, std::move(fed), limits, std::uint16_t{32},
                                            budget, world, counters);
@@ -83,6 +95,28 @@ struct Bench {
   ~Bench() {
     session->abort();
     io.run();
+  }
+  /// Bytes of bodies that the peer got, of chunks and of edits.
+  std::pair<std::size_t, std::size_t> sent() const {
+    std::size_t chunks = 0, edits = 0;
+    for (std::size_t at = 0; at < stream->written.size();) {
+      const std::uint8_t* header = stream->written.data() + at;  // length, little-endian; class
+      const std::size_t body_bytes = header[0] + 256U * header[1];
+      (FrameClass{header[4]} == FrameClass::chunks ? chunks : edits) += body_bytes;
+      at += kFrameHeaderBytes + body_bytes;
+    }
+    return {chunks, edits};
+  }
+  /// Terrain of so many bytes waits to be sent.
+  void fill_chunk(std::size_t bytes) {
+    const auto place = session->reserve_chunk({0, {0, 0, 0}});
+    REQUIRE(place);
+    session->fill_chunk(*place, {FrameClass::chunks, std::make_shared<const Bytes>(bytes)});
+    io.poll();
+  }
+  void edit(std::size_t bytes) {
+    REQUIRE(session->send({FrameClass::edits, std::make_shared<const Bytes>(bytes)}));
+    io.poll();
   }
   asio::io_context io;
   NetLimits limits;
@@ -104,7 +138,7 @@ TEST_CASE("a session waits with few messages for the world: of large ones fewer 
   const bool is_large = GENERATE(true, false);
   CAPTURE(is_large);
   constexpr std::size_t kCount = 1'000;
-  Bench bench(is_large ? Message(wish) : Message(Ping{1}), kCount);
+  Bench bench(frames_of(is_large ? Message(wish) : Message(Ping{1}), kCount));
   const std::size_t size = bench.world.waiting.at(0);
   constexpr std::size_t kBoundBytes = 8 * 1024, kReadBytes = 4 * 1024, kMessageBytes = 64;
   const std::size_t in_bound = kBoundBytes / (size + kMessageBytes) + 1;
@@ -120,4 +154,28 @@ TEST_CASE("a session waits with few messages for the world: of large ones fewer 
     REQUIRE_FALSE(bench.world.gone);
   }
   CHECK(bench.world.most <= in_bound + in_read);
+}
+
+TEST_CASE("where the socket has no room edits go, and terrain waits and asks ever more seldom", "[net]") {
+  Bench bench({}, {0, 1'000});
+  bench.fill_chunk(5'000);
+  bench.edit(100);
+  CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
+  const std::size_t asked = bench.stream->asked;
+  bench.io.run_for(std::chrono::milliseconds(200));
+  CHECK(bench.stream->asked > asked);
+  CHECK(bench.stream->asked < asked + 12);  // 1, 2, 4 .. 50 ms, 50 ms
+  bench.stream->room_now = {2'000, 0};
+  bench.io.run_for(std::chrono::milliseconds(200));
+  CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{5'000, 100});
+}
+
+TEST_CASE("edits that never leave room do not starve terrain", "[net]") {
+  Bench bench({}, {0, 1'000});
+  bench.fill_chunk(50'000);
+  for (int i = 0; i < 100; ++i) bench.edit(10'000);
+  const auto [chunks, edits] = bench.sent();
+  CHECK(edits == 1'000'000);
+  CHECK(chunks >= 20'000);  // 2 KiB for each 64 KiB
+  CHECK(chunks <= 40'000);
 }

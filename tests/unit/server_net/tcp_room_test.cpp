@@ -3,7 +3,9 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdint>
+#include <thread>
 #include <vector>
 
 using namespace runstone;
@@ -30,10 +32,10 @@ struct Connection {
   void drain() {
     std::vector<std::uint8_t> bytes(1 << 16);
     asio::error_code error;
-    for (int idle = 0; idle < 100 && tcp_room(server.native_handle()).bytes == 0;) {
+    for (int idle = 0; idle < 1'000 && tcp_room(server.native_handle()).bytes == 0;) {
       client.read_some(asio::buffer(bytes), error);
       idle = error ? idle + 1 : 0;
-      if (error) client.wait(tcp::socket::wait_read);
+      if (error) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
   asio::io_context io;
