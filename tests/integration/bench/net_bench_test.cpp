@@ -113,11 +113,12 @@ TEST_CASE(
     "attacks are answered by name, and honest clients neither lose their connection nor see a broken rule",
     "[lab]") {
   std::string tables;
-  const json lab =
-      run_lab({"--experiments", "attack", "--attacks", "absurd-views,claims,half-open,unread-pings",
-               "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
-              tables);
-  for (const char* attack : {"absurd-views", "claims", "half-open", "unread-pings"}) {
+  const json lab = run_lab({"--experiments", "attack", "--attacks",
+                            "absurd-views,byte-a-second,claims,half-open,unread-pings,views",
+                            "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
+                           tables);
+  for (const char* attack :
+       {"absurd-views", "byte-a-second", "claims", "half-open", "unread-pings", "views"}) {
     for (const std::string phase : {"before", "during", "after"}) {
       CAPTURE(attack, phase);
       CHECK(figure(lab, "attack", attack, phase + "_samples") > 0);
