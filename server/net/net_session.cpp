@@ -283,7 +283,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       const bool has_chunk = self->queue_.has_chunk();
       if (has_chunk && !asks) continue;  // it came in between
       // Edits alone may fill the window for ever: terrain has its turn all the same.
-      const std::size_t room_bytes = !has_room && self->queue_.is_chunks_turn() ? kTurnRoomBytes : room.bytes;
+      const std::size_t room_bytes =
+          !has_room && self->queue_.are_chunks_starved() ? kTurnRoomBytes : room.bytes;
       const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room_bytes) : 0;
       has_batch = self->queue_.take(batch, chunk_body_max);
       if (has_batch) self->gate_.sent(batch.chunk_bytes, batch.bytes - batch.chunk_bytes, now_us);

@@ -5,6 +5,7 @@
 #include "common/core/assert.hpp"
 
 namespace runstone {
+
 std::size_t SendQueue::limit(FrameClass c) const {
   switch (c) {
     case FrameClass::control:

@@ -59,8 +59,8 @@ class SendQueue {
   /// `chunk_body_max` bytes at most (0: no chunk now); false if there are none. The batch's bytes leave the
   /// bounds at once.
   bool take(Batch& batch, std::size_t chunk_body_max = kFragmentBytesMax);
-  /// Whether so much of other classes has passed the chunks that their turn is next.
-  bool is_chunks_turn() const {
+  /// Whether so much of other classes has passed the chunks that they have their turn however little room there is.
+  bool are_chunks_starved() const {
     return lane(FrameClass::chunks).passed >= kPassedFragments * kFragmentBytesMax;
   }
   /// Whether the next chunk is there and could be taken.
