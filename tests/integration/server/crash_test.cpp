@@ -1,4 +1,5 @@
 // kill -9: what was said to be durable is there, what was not is offered again, and nothing happens twice.
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr ClientSequence kEdits = 4'000;
 constexpr ClientInstance kInstance = 33;
+constexpr int kStartMs = 60'000;
 
 /// Each edit has a voxel of its own in the chunk at the origin, well above and below ground alike.
 VoxelPos place_of(ClientSequence seq) {
@@ -23,23 +25,35 @@ VoxelPos place_of(ClientSequence seq) {
 Material material_of(ClientSequence seq) { return static_cast<Material>(1 + seq % 5); }
 EditRequest edit(ClientSequence seq) { return {seq, 0, {SetVoxel{place_of(seq)}, {}, material_of(seq)}}; }
 
-/// A server in a process of its own, which can be killed.
+ServerConfig crash_config(const std::string& world) {
+  ServerConfig config = quiet_config(world);
+  config.edits_per_second = 0;
+  return config;
+}
+
+/// A server in a process of its own, which can be killed. Requires that this one has no second thread yet: a
+/// lock that one holds at the fork stays locked in the child. So the child alone starts to log.
 class ServerProcess {
  public:
-  explicit ServerProcess(const ServerConfig& config) {
+  explicit ServerProcess(const std::string& world) {
     int ends[2];
     REQUIRE(::pipe(ends) == 0);
     child_ = ::fork();
     REQUIRE(child_ >= 0);
     if (child_ == 0) {
-      auto server = Server::start(config, flat_creation());
+      ::close(ends[0]);
+      auto server = Server::start(crash_config(world), flat_creation());
       const std::uint16_t port = server ? (*server)->port() : 0;
       if (::write(ends[1], &port, sizeof port) != sizeof port) ::_exit(1);
       for (;;) ::pause();
     }
-    REQUIRE(::read(ends[0], &port_, sizeof port_) == sizeof port_);
+    ::close(ends[1]);  // so that the end of the child ends the wait for its port
+    pollfd port_is_known{ends[0], POLLIN, 0};
+    const bool is_told = ::poll(&port_is_known, 1, kStartMs) > 0 &&
+                         ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
     ::close(ends[0]);
-    ::close(ends[1]);
+    if (!is_told || port_ == 0) kill();
+    REQUIRE(is_told);
     REQUIRE(port_ != 0);
   }
   ~ServerProcess() { kill(); }
@@ -62,11 +76,9 @@ class ServerProcess {
 TEST_CASE("after kill -9 the durable edits are there and the others, offered again, happen once",
           "[integration]") {
   const TempFolder folder;
-  ServerConfig config = quiet_config(folder / "world");
-  config.edits_per_second = 0;
   Sequence durable = 0;
   {
-    ServerProcess process(config);
+    ServerProcess process(folder / "world");
     RawClient client(process.port());
     REQUIRE(client.join(1, kInstance).has_value());
     for (ClientSequence seq = 1; seq <= kEdits; ++seq) client.send(edit(seq));
@@ -77,7 +89,7 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
     }
     process.kill();
   }
-  const auto server = start_server(config, flat_creation());
+  const auto server = start_server(crash_config(folder / "world"), flat_creation());
   RawClient client(server->port());
   const auto ready = client.join(1, kInstance);
   REQUIRE(ready.has_value());

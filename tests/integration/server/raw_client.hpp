@@ -1,11 +1,12 @@
 // RawClient: a blocking socket that speaks frames and messages and nothing more: it does only what a test
-// says, and can send anything, broken bytes included. Reads end with a deadline, so a test fails instead of
-// hanging.
+// says, and can send anything, broken bytes included. Reads and writes end with a deadline, so a test fails
+// instead of hanging.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -32,6 +33,8 @@ class RawClient {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
     is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    const timeval deadline{kSendSeconds, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
   }
   ~RawClient() { ::close(socket_); }
   RawClient(const RawClient&) = delete;
@@ -125,6 +128,8 @@ class RawClient {
   std::string name;            // to be called by; empty: "player" and the number
 
  private:
+  static constexpr time_t kSendSeconds = 60;
+
   bool read_some(int deadline_ms) {
     if (!is_open_) return false;
     pollfd wait{socket_, POLLIN, 0};
