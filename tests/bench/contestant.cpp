@@ -34,6 +34,28 @@ std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
   return now;
 }
 
+/// A contestant whose last mesh lies in `state`, which it keeps alive; what calls it comes later.
+template <class State>
+Contestant of_state(std::shared_ptr<State> state, std::size_t storage_bytes) {
+  const auto quads = [state] {
+    if constexpr (requires { state->mesh; })
+      return state->mesh.quad_count();
+    else
+      return state->quads.size();
+  };
+  const auto surface = [state](Surface& out) {
+    out.clear();
+    if constexpr (requires { state->mesh; }) {
+      for (const QuadLayers* pass : {&state->mesh.opaque, &state->mesh.transparent}) {
+        out.quads.insert(out.quads.end(), pass->quads.begin(), pass->quads.end());
+      }
+    } else {
+      out.quads = state->quads;
+    }
+  };
+  return {"", {}, quads, surface, storage_bytes};
+}
+
 Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
   struct State {
     RdmScratch scratch;
@@ -46,7 +68,7 @@ Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTabl
   auto state = std::make_shared<State>();
   state->scratch.use_plain_path(name == "rdm_plain");
   state->neighbours = volume.scene.pointers();
-  Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, volume.scene.chunk.runs.byte_size()};
+  Contestant out = of_state(state, volume.scene.chunk.runs.byte_size());
   ChunkBorders* own = nullptr;
   if (name == "rdm_kept") {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
@@ -79,7 +101,7 @@ Contestant binary(std::string_view name, const Volume& volume, const VisibilityT
   const RunChunk& chunk = volume.scene.chunk;
   decode(chunk, state->neighbours, state->layer, state->grid);
   occupancy_of(state->grid, visibility, state->mask);
-  Contestant out{"", {}, [state] { return state->mesh.quad_count(); }, state->grid.byte_size()};
+  Contestant out = of_state(state, state->grid.byte_size());
   if (name == "mask_binary") {
     out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
     out.mesh = [state](PhaseTimes&) {
@@ -132,12 +154,13 @@ Contestant culled(const Volume& volume, const VisibilityTable& visibility) {
   }
   state->octree.compact();
   alone.compact();
-  const auto mesh = [state, &volume, &visibility](PhaseTimes& phases) {
+  Contestant out = of_state(state, alone.byte_size());
+  out.mesh = [state, &volume, &visibility](PhaseTimes& phases) {
     const CulledPhases spent = mesh_culled(state->octree, {}, volume.scene.chunk.extent, visibility, now_ns,
                                            state->grid, state->quads);
     phases[static_cast<std::size_t>(Phase::octree)] += spent.octree;
   };
-  return {"", mesh, [state] { return state->quads.size(); }, alone.byte_size()};
+  return out;
 }
 
 /// A mesher of a ready grid: mesh(grid, quads).
@@ -151,8 +174,9 @@ Contestant of_grid(const Volume& volume, Mesh mesh) {
   auto state = std::make_shared<State>();
   std::vector<Material> layer;
   decode(volume.scene.chunk, volume.scene.pointers(), layer, state->grid);
-  return {"", [state, mesh](PhaseTimes&) { mesh(*state); }, [state] { return state->quads.size(); },
-          state->grid.byte_size()};
+  Contestant out = of_state(state, state->grid.byte_size());
+  out.mesh = [state, mesh](PhaseTimes&) { mesh(*state); };
+  return out;
 }
 
 Contestant rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
@@ -161,8 +185,9 @@ Contestant rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
     std::vector<Quad> quads;
   };
   auto state = std::make_shared<State>(State{reorder(volume.scene.chunk, AxisOrder::zyx), {}});
-  return {"", [state, &visibility](PhaseTimes&) { mesh_rle_rdm(state->chunk, visibility, state->quads); },
-          [state] { return state->quads.size(); }, state->chunk.runs.byte_size()};
+  Contestant out = of_state(state, state->chunk.runs.byte_size());
+  out.mesh = [state, &visibility](PhaseTimes&) { mesh_rle_rdm(state->chunk, visibility, state->quads); };
+  return out;
 }
 
 Contestant of_name(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {

@@ -20,6 +20,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/mesh/reference/surface.hpp"
 #include "tests/bench/voxel_world.hpp"
 
 namespace runstone::bench {
@@ -40,7 +41,9 @@ struct Contestant {
   std::string_view name;
   std::function<void(PhaseTimes&)> mesh;  // one mesh into its own buffers
   std::function<std::size_t()> quads;     // of the last mesh
-  std::size_t storage_bytes = 0;          // voxels as it keeps them between meshes
+  /// Replaces a surface by the last mesh.
+  std::function<void(reference::Surface&)> surface;
+  std::size_t storage_bytes = 0;  // voxels as it keeps them between meshes
 };
 
 /// All names, in the order above.
