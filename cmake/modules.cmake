@@ -2,6 +2,7 @@
 # makes one static library from every source below the folder. Includes start at the repository root;
 # DEPS are other modules by folder and are the only include arrows this module may draw
 # (tests/unit/house/include_arrows_test walks the includes and holds them to it).
+# A module inside of another one's folder is declared first, and keeps its sources to itself.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)
@@ -13,6 +14,14 @@ function(runstone_module folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
   list(FILTER sources EXCLUDE REGEX "_main\\.cpp$")
+  get_property(modules GLOBAL PROPERTY RUNSTONE_MODULES)
+  foreach(module ${modules})
+    if(module MATCHES "^${folder}/")
+      list(FILTER sources EXCLUDE REGEX "^${PROJECT_SOURCE_DIR}/${module}/")
+      list(FILTER headers EXCLUDE REGEX "^${PROJECT_SOURCE_DIR}/${module}/")
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY RUNSTONE_MODULES ${folder})
   # A command line is read once, and CLI11 is slow to optimise.
   set(command_lines ${sources})
   list(FILTER command_lines INCLUDE REGEX "[/_]options\\.cpp$")

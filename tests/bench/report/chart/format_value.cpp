@@ -1,0 +1,51 @@
+#include "tests/bench/report/chart/format_value.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace runstone::bench::chart {
+namespace {
+
+/// "-1234567.5" becomes "-1,234,567.5".
+std::string grouped(std::string digits) {
+  const std::size_t first = digits.starts_with('-') ? 1 : 0;
+  const std::size_t point = digits.find('.');
+  std::size_t at = point == std::string::npos ? digits.size() : point;
+  while (at > first + 3) {
+    at -= 3;
+    digits.insert(at, 1, ',');
+  }
+  return digits;
+}
+
+std::string without_zeros(std::string digits) {
+  if (digits.find('.') == std::string::npos) return digits;
+  digits.erase(digits.find_last_not_of('0') + 1);
+  if (digits.ends_with('.')) digits.pop_back();
+  return digits;
+}
+
+}  // namespace
+
+std::string format_value(double value) {
+  if (std::isnan(value)) return "not measured";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (value == 0) return "0";
+  // Rounded first: 999.6 is 1,000, and 0.00009996 is 0.0001.
+  const std::string rounded = fmt::format("{:.2e}", value);
+  const std::size_t split = rounded.find('e');
+  const bool is_small = rounded[split + 1] == '-';
+  int exponent = 0;
+  std::from_chars(rounded.data() + split + 2, rounded.data() + rounded.size(), exponent);
+  if (is_small) exponent = -exponent;
+  if (exponent < -4 || exponent >= 9) {
+    return fmt::format("{}e{}", without_zeros(rounded.substr(0, split)), exponent);
+  }
+  if (exponent < 2) return grouped(without_zeros(fmt::format("{:.{}f}", value, 2 - exponent)));
+  const double unit = std::pow(10.0, exponent - 2);
+  return grouped(fmt::format("{:.0f}", std::round(value / unit) * unit));
+}
+
+}  // namespace runstone::bench::chart

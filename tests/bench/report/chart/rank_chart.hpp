@@ -1,0 +1,23 @@
+// RankChart: one horizontal bar a name, its value written at its end. Drawn in the order given.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tests/bench/report/chart/axis.hpp"
+#include "tests/bench/report/chart/role.hpp"
+
+namespace runstone::bench::chart {
+
+struct RankChart {
+  std::vector<std::string> names = {};
+  std::vector<Role> roles = {};     // one a name; none: other
+  std::vector<double> values = {};  // one a name; NaN: not measured
+  Axis x = {};
+  std::vector<std::string> notes = {};  // one a name, quietly behind the value ("2.1 x ours"); may be empty
+  std::string title = {};
+};
+
+/// See svg_of(BarChart).
+std::string svg_of(const RankChart& chart, Width width = Width::wide);
+
+}  // namespace runstone::bench::chart

@@ -1,0 +1,24 @@
+#include "tests/bench/report/chart/role.hpp"
+
+namespace runstone::bench::chart {
+
+std::string class_of(Role role) {
+  switch (role) {
+    case Role::ours:
+      return "c-ours";
+    case Role::baseline:
+      return "c-baseline";
+    case Role::thesis:
+      return "c-thesis";
+    case Role::other:
+      break;
+  }
+  return "c-rest";
+}
+
+std::string class_of(Role role, std::size_t other_index) {
+  constexpr std::size_t kPalette = 8;  // chart_css() has as many
+  return role == Role::other ? "c-other" + std::to_string(other_index % kPalette) : class_of(role);
+}
+
+}  // namespace runstone::bench::chart

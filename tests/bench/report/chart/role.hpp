@@ -1,0 +1,21 @@
+// Role: what a series is to the reader. It decides colour, hatching and shape, never the numbers.
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace runstone::bench::chart {
+
+enum class Role {
+  ours,      // the product: the strongest colour
+  baseline,  // what it is held against
+  other,  // everyone else: a palette by index where lines and columns must be told apart, else one quiet colour
+  thesis  // figures taken from print: muted; hatched, dashed or hollow, so that no colour is needed
+};
+
+/// The CSS class of a role: "c-ours", "c-baseline", "c-thesis", "c-rest".
+std::string class_of(Role role);
+
+/// The same, with the others told apart: "c-other0" .. "c-other7" and round again. `other_index` counts them.
+std::string class_of(Role role, std::size_t other_index);
+
+}  // namespace runstone::bench::chart

@@ -1,0 +1,21 @@
+// StackChart: one horizontal bar a name, made of parts: what a time or a size is spent on.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tests/bench/report/chart/axis.hpp"
+#include "tests/bench/report/chart/bar_chart.hpp"
+
+namespace runstone::bench::chart {
+
+struct StackChart {
+  std::vector<std::string> names = {};
+  std::vector<Series> parts = {};  // each with a value a name; negative ones are left out
+  Axis x = {};                     // never logarithmic: lengths are added
+  std::string title = {};
+};
+
+/// See svg_of(BarChart). Behind a bar stands its sum.
+std::string svg_of(const StackChart& chart, Width width = Width::wide);
+
+}  // namespace runstone::bench::chart
