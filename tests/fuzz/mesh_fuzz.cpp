@@ -150,6 +150,7 @@ class Trial {
     const auto difference =
         test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), jury_.exposed());
     demand(!difference, difference.value_or("").c_str());
+    demand(mesh_.quad_count() >= jury_.optimal_quads(), "RDM has fewer quads than the optimum");
 
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), plain_, other_);
     demand(equal(mesh_, other_), "the plain path gives other quads");

@@ -317,6 +317,20 @@ std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialT
   return faces;
 }
 
+std::vector<UnitFace> run_on_faces(const DenseChunk& chunk, const std::vector<UnitFace>& exposed) {
+  std::vector<UnitFace> faces = exposed;
+  for (UnitFace face : exposed) {  // and those between it and the next exposed one
+    for (;;) {
+      (face.direction == Direction::neg_y || face.direction == Direction::pos_y ? face.x : face.y)++;
+      if (!chunk.inside(face.x, face.y, face.z) || chunk.at(face.x, face.y, face.z) != face.material) break;
+      if (std::binary_search(exposed.begin(), exposed.end(), face)) break;
+      faces.push_back(face);
+    }
+  }
+  sort_faces(faces);
+  return faces;
+}
+
 std::vector<UnitFace> unit_faces(const ChunkMesh& mesh) {
   std::vector<UnitFace> faces;
   for (const QuadLayers* pass : {&mesh.opaque, &mesh.transparent}) {

@@ -44,6 +44,11 @@ std::vector<UnitFace> all_faces(const DenseChunk& chunk, const MaterialTable& ma
 /// from the one a slow layer before are.
 std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialTable& materials);
 
+/// The faces shown by runs that hidden faces do not end (thesis 4.2.7), sorted: `exposed` ones (sorted), and of
+/// each row of voxels of one material those behind the first of them. Rows lie along x for the faces of y sides,
+/// along y for others.
+std::vector<UnitFace> run_on_faces(const DenseChunk& chunk, const std::vector<UnitFace>& exposed);
+
 /// The unit faces the quads of a mesh cover, sorted; a face covered twice stands there twice.
 std::vector<UnitFace> unit_faces(const ChunkMesh& mesh);
 

@@ -7,7 +7,11 @@
 #include <vector>
 
 #include "common/mesh/reference/binary_greedy.hpp"
+#include "common/mesh/reference/greedy_mesher.hpp"
 #include "common/mesh/reference/grid_rdm.hpp"
+#include "common/mesh/reference/naive_greedy_mesher.hpp"
+#include "common/mesh/reference/optimal_greedy_mesher.hpp"
+#include "common/mesh/reference/run_strip_mesher.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {
@@ -18,28 +22,35 @@ class MesherJury {
   /// What is wrong with the first wrong mesh of a scene, and whose it is; nothing if all is well. Binary
   /// greedy is left out where a side is above 64.
   std::string fault(const MeshScene& scene);
-  /// The same of those meshers alone that show the exposed faces and no others: culled, grid RDM, binary
-  /// greedy. Several times quicker.
+  /// The same of those meshers alone that show the exposed faces and no others. Several times quicker.
   std::string fault_of_exposed(const MeshScene& scene);
 
   /// Of the last scene.
   const std::vector<UnitFace>& exposed() const { return exposed_; }
   std::size_t culled_quads() const { return culled_quads_; }
+  std::size_t optimal_quads() const { return optimal_quads_; }
   const ChunkMesh& binary_mesh() const { return mesh_; }
 
  private:
   std::string fault_of_quads(const char* mesher, const MeshScene& scene,
                              const std::vector<UnitFace>& owed) const;
+  /// The same of quads_ against the exposed faces, and what is wrong with how many they are.
+  std::string fault_of_merged(const char* mesher, const MeshScene& scene) const;
+  std::string fault_of_count(const char* mesher, std::size_t quads) const;
   std::string fault_of_supersets(const MeshScene& scene);
 
   reference::DenseGrid grid_;
   std::vector<Material> layer_;
   std::vector<Quad> quads_;
+  reference::GreedyScratch greedy_;
+  reference::NaiveGreedyScratch naive_;
+  reference::RunStripScratch strips_;
+  reference::OptimalGreedyScratch optimal_;
   reference::GridRdmScratch grid_rdm_;
   reference::BinaryScratch binary_;
   ChunkMesh mesh_;
   std::vector<UnitFace> exposed_;
-  std::size_t culled_quads_ = 0;
+  std::size_t culled_quads_ = 0, optimal_quads_ = 0, strip_quads_ = 0;
 };
 
 }  // namespace runstone::test

@@ -74,6 +74,26 @@ TEST_CASE("shapes with a face on every voxel, and with none: every reference mes
   }
 }
 
+TEST_CASE("random scenes: no mesher needs fewer quads than the optimum, and RDM few more",
+          "[mesh][property][reference]") {
+  // The jury holds the reference meshers to the optimum; ours is not one of them.
+  SplitMix64 rng(Catch::rngSeed() + 26);
+  MesherJury jury;
+  std::size_t ours = 0;
+  std::size_t least = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const MeshScene scene = random_scene(rng, 20);
+    CAPTURE(Catch::rngSeed(), round);
+    REQUIRE(jury.fault_of_exposed(scene) == "");
+    const std::size_t quads = mesh_of(scene).quad_count();
+    REQUIRE(quads >= jury.optimal_quads());
+    ours += quads;
+    least += jury.optimal_quads();
+  }
+  CAPTURE(ours, least);
+  CHECK(ours * 100 < least * 110);
+}
+
 TEST_CASE("binary greedy merges as well as the plain greedy count", "[mesh][property][reference]") {
   // The oracle's count goes widest first along u; words may lie along u or v, so the totals differ a little.
   SplitMix64 rng(Catch::rngSeed() + 24);

@@ -167,6 +167,24 @@ TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand"
   CHECK(count(Direction::neg_z) == 64);
 }
 
+TEST_CASE("the oracle of runs that hidden faces do not end, by hand", "[mesh]") {
+  // Of six stones along y the -x faces of the first and fourth are hidden by others.
+  DenseChunk chunk{Extent::cube(8)};
+  for (int y = 1; y <= 6; ++y) chunk.set(3, y, 3, kStone);
+  chunk.set(2, 1, 3, kDirt);
+  chunk.set(2, 4, 3, kDirt);
+  const std::vector<UnitFace> exposed = exposed_faces(chunk, {}, mesh_materials());
+  const std::vector<UnitFace> shown = run_on_faces(chunk, exposed);
+  const auto shows = [&shown](const UnitFace& face) {
+    return std::binary_search(shown.begin(), shown.end(), face);
+  };
+  CHECK_FALSE(shows({3, 1, 3, Direction::neg_x, kStone}));  // before the first exposed one
+  CHECK(shows({3, 4, 3, Direction::neg_x, kStone}));
+  CHECK_FALSE(shows({3, 7, 3, Direction::neg_x, kStone}));
+  CHECK(shown.size() == exposed.size() + 1);
+  CHECK(std::includes(shown.begin(), shown.end(), exposed.begin(), exposed.end()));
+}
+
 TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is caught", "[mesh]") {
   // The mesher gets another scene than the oracle: what a mesher with that mistake would make of it.
   SplitMix64 rng(17);

@@ -1,0 +1,51 @@
+// IndependentSet: the largest set of vertices of a bipartite graph of which no two are joined. By König's
+// theorem it is what a smallest vertex cover leaves, and that follows from a largest matching, which is found
+// by augmenting along shortest paths, many of one length at a time (J. Hopcroft and R. Karp, SIAM J. Comput. 2,
+// 1973).
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace runstone::reference {
+
+/// Vertices of two sides; edges run between them only.
+struct BipartiteGraph {
+  std::uint32_t right_count = 0;
+  std::vector<std::uint32_t> first = {0};  // edges of left vertex l: from first[l] to first[l + 1]
+  std::vector<std::uint32_t> edges;        // the right vertex of each
+
+  std::uint32_t left_count() const { return static_cast<std::uint32_t>(first.size() - 1); }
+  void clear() {
+    right_count = 0;
+    first.assign(1, 0);
+    edges.clear();
+  }
+  /// Ends the edges of a left vertex: the next to be added are the next one's.
+  void end_left() { first.push_back(static_cast<std::uint32_t>(edges.size())); }
+};
+
+/// Buffers reused between calls. Belongs to one thread.
+class IndependentSet {
+ public:
+  /// Finds the set of a graph. O(edges * sqrt(vertices)).
+  void find(const BipartiteGraph& graph);
+
+  /// Of the last graph.
+  bool has_left(std::uint32_t vertex) const { return distance_[vertex] != kFar; }
+  bool has_right(std::uint32_t vertex) const { return reached_[vertex] == 0; }
+
+ private:
+  static constexpr std::uint32_t kFar = ~std::uint32_t{0};
+
+  bool reach_free(const BipartiteGraph& graph);
+  void augment(const BipartiteGraph& graph, std::uint32_t root);
+
+  // A partner is an index of the other side, kFar where there is none.
+  std::vector<std::uint32_t> left_partner_, right_partner_;
+  std::vector<std::uint32_t> distance_;  // of left vertices: pairs of edges from an unmatched one
+  std::vector<std::uint8_t> reached_;    // right vertices the same search came by
+  std::vector<std::uint32_t> queue_, next_edge_, path_;
+  std::uint32_t shortest_ = kFar;  // distance of the left vertices before the nearest unmatched right ones
+};
+
+}  // namespace runstone::reference
