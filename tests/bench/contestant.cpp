@@ -12,48 +12,27 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/reference/binary_greedy.hpp"
 #include "common/mesh/reference/culled_mesher.hpp"
-#include "common/mesh/reference/grid_rdm.hpp"
 #include "common/mesh/reference/material_octree.hpp"
 #include "common/mesh/reference/rle_rdm.hpp"
-#include "common/mesh/reference/simple_mesher.hpp"
 #include "common/runs/reorder.hpp"
+#include "tests/bench/contestant_state.hpp"
+#include "tests/bench/grid_contestants.hpp"
 
 namespace runstone::bench {
 namespace {
 
 using namespace reference;
 
-constexpr std::array<std::string_view, 10> kNames = {
-    "rdm",         "rdm_kept", "rdm_plain", "decode_binary", "grid_binary",
-    "mask_binary", "culled",   "simple",    "grid_rdm",      "rle_rdm"};
+constexpr std::array<std::string_view, 15> kNames = {
+    "rdm",    "rdm_kept", "rdm_plain",    "decode_binary", "grid_binary",       "mask_binary",    "culled",
+    "simple", "greedy",   "naive_greedy", "run_strips",    "run_strips_hidden", "optimal_greedy", "grid_rdm",
+    "rle_rdm"};
 
 /// Adds the time since `start` to a phase; returns the time now.
 std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
   const std::uint64_t now = now_ns();
   phases[static_cast<std::size_t>(phase)] += now - start;
   return now;
-}
-
-/// A contestant whose last mesh lies in `state`, which it keeps alive; what calls it comes later.
-template <class State>
-Contestant of_state(std::shared_ptr<State> state, std::size_t storage_bytes) {
-  const auto quads = [state] {
-    if constexpr (requires { state->mesh; })
-      return state->mesh.quad_count();
-    else
-      return state->quads.size();
-  };
-  const auto surface = [state](Surface& out) {
-    out.clear();
-    if constexpr (requires { state->mesh; }) {
-      for (const QuadLayers* pass : {&state->mesh.opaque, &state->mesh.transparent}) {
-        out.quads.insert(out.quads.end(), pass->quads.begin(), pass->quads.end());
-      }
-    } else {
-      out.quads = state->quads;
-    }
-  };
-  return {"", {}, quads, surface, storage_bytes};
 }
 
 Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
@@ -68,7 +47,7 @@ Contestant rdm(std::string_view name, const Volume& volume, const VisibilityTabl
   auto state = std::make_shared<State>();
   state->scratch.use_plain_path(name == "rdm_plain");
   state->neighbours = volume.scene.pointers();
-  Contestant out = of_state(state, volume.scene.chunk.runs.byte_size());
+  Contestant out = contestant_of(state, volume.scene.chunk.runs.byte_size());
   ChunkBorders* own = nullptr;
   if (name == "rdm_kept") {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
@@ -101,7 +80,7 @@ Contestant binary(std::string_view name, const Volume& volume, const VisibilityT
   const RunChunk& chunk = volume.scene.chunk;
   decode(chunk, state->neighbours, state->layer, state->grid);
   occupancy_of(state->grid, visibility, state->mask);
-  Contestant out = of_state(state, state->grid.byte_size());
+  Contestant out = contestant_of(state, state->grid.byte_size());
   if (name == "mask_binary") {
     out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
     out.mesh = [state](PhaseTimes&) {
@@ -154,28 +133,12 @@ Contestant culled(const Volume& volume, const VisibilityTable& visibility) {
   }
   state->octree.compact();
   alone.compact();
-  Contestant out = of_state(state, alone.byte_size());
+  Contestant out = contestant_of(state, alone.byte_size());
   out.mesh = [state, &volume, &visibility](PhaseTimes& phases) {
     const CulledPhases spent = mesh_culled(state->octree, {}, volume.scene.chunk.extent, visibility, now_ns,
                                            state->grid, state->quads);
     phases[static_cast<std::size_t>(Phase::octree)] += spent.octree;
   };
-  return out;
-}
-
-/// A mesher of a ready grid: mesh(grid, quads).
-template <class Mesh>
-Contestant of_grid(const Volume& volume, Mesh mesh) {
-  struct State {
-    DenseGrid grid;
-    std::vector<Quad> quads;
-    GridRdmScratch scratch;
-  };
-  auto state = std::make_shared<State>();
-  std::vector<Material> layer;
-  decode(volume.scene.chunk, volume.scene.pointers(), layer, state->grid);
-  Contestant out = of_state(state, state->grid.byte_size());
-  out.mesh = [state, mesh](PhaseTimes&) { mesh(*state); };
   return out;
 }
 
@@ -185,7 +148,7 @@ Contestant rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
     std::vector<Quad> quads;
   };
   auto state = std::make_shared<State>(State{reorder(volume.scene.chunk, AxisOrder::zyx), {}});
-  Contestant out = of_state(state, state->chunk.runs.byte_size());
+  Contestant out = contestant_of(state, state->chunk.runs.byte_size());
   out.mesh = [state, &visibility](PhaseTimes&) { mesh_rle_rdm(state->chunk, visibility, state->quads); };
   return out;
 }
@@ -194,13 +157,8 @@ Contestant of_name(std::string_view name, const Volume& volume, const Visibility
   if (name.starts_with("rdm")) return rdm(name, volume, visibility);
   if (name.ends_with("_binary")) return binary(name, volume, visibility);
   if (name == "culled") return culled(volume, visibility);
-  if (name == "simple") {
-    return of_grid(volume, [&](auto& s) { mesh_simple(s.grid, visibility, s.quads); });
-  }
-  if (name == "grid_rdm") {
-    return of_grid(volume, [&](auto& s) { mesh_grid_rdm(s.grid, visibility, s.scratch, s.quads); });
-  }
-  return rle_rdm(volume, visibility);
+  if (name == "rle_rdm") return rle_rdm(volume, visibility);
+  return grid_contestant(name, volume, visibility);
 }
 
 }  // namespace

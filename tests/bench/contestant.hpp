@@ -9,6 +9,11 @@
 //   mask_binary       binary greedy with grid and occupancy mask ready: mesh
 //   culled            culled faces over samples of an octree: octree, mesh
 //   simple            six quads a voxel, dense grid ready: mesh
+//   greedy            greedy meshing, dense grid ready: mesh
+//   naive_greedy      naive greedy meshing, dense grid ready: mesh
+//   run_strips        Sector's Edge's runs, ended by hidden faces, dense grid ready: mesh
+//   run_strips_hidden the same as the game has them: runs go on over hidden faces and draw them
+//   optimal_greedy    as few rectangles as there can be, dense grid ready: mesh
 //   grid_rdm          the thesis' Grid RDM, dense grid ready: mesh
 //   rle_rdm           the thesis' RLE RDM, from runs in its own order: mesh
 #pragma once

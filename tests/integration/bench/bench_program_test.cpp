@@ -105,6 +105,10 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
     CHECK(of.at("decode_binary") == of.at("mask_binary"));
     CHECK(of.at("rdm") <= of.at("culled"));
     CHECK(of.at("culled") <= of.at("simple"));
+    for (const char* merged : {"rdm", "decode_binary", "greedy", "naive_greedy", "run_strips", "grid_rdm"}) {
+      CHECK(of.at("optimal_greedy") <= of.at(merged));
+    }
+    CHECK(of.at("run_strips_hidden") <= of.at("run_strips"));
     for (const auto& [mesher, count] : of) sums[mesher] += count;
   }
   CHECK(static_cast<double>(sums["rdm"]) <= 1.03 * static_cast<double>(sums["decode_binary"]));

@@ -25,7 +25,8 @@ TEST_CASE("every contestant hands out its last mesh, in place of what was there"
         contestant->surface(surface);
         CHECK(surface.quads.size() == contestant->quads());
         CHECK(surface.vertex_count() == 4 * surface.quads.size() + surface.triangles.vertices.size());
-        if (name == "simple" || name == "rle_rdm") continue;  // they show hidden faces too
+        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden")
+          continue;  // hidden faces too
         CHECK(test::quads_difference(surface.quads, volume.scene.chunk.extent, seeded_materials(), owed)
                   .value_or("") == "");
       }
