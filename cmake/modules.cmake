@@ -1,7 +1,8 @@
 # runstone_module(common/runs DEPS common/core LIBS PRIVATE zstd::libzstd_shared)
 # makes one static library from every source below the folder. Includes start at the repository root;
 # DEPS are other modules by folder and are the only include arrows this module may draw
-# (tests/unit/house/include_arrows_test walks the includes and holds them to it).
+# (tests/unit/house/include_arrows_test walks the includes and holds them to it). EXCLUDE is a regular expression of
+# paths that are left out.
 # A module inside of another one's folder is declared first, and keeps its sources to itself.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
@@ -9,7 +10,7 @@ function(runstone_target_name folder out)
 endfunction()
 
 function(runstone_module folder)
-  cmake_parse_arguments(ARG "" "" "DEPS;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXCLUDE" "DEPS;LIBS" ${ARGN})
   runstone_target_name(${folder} name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
@@ -22,6 +23,10 @@ function(runstone_module folder)
     endif()
   endforeach()
   set_property(GLOBAL APPEND PROPERTY RUNSTONE_MODULES ${folder})
+  if(ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${ARG_EXCLUDE})
+    list(FILTER headers EXCLUDE REGEX ${ARG_EXCLUDE})
+  endif()
   # A command line is read once, and CLI11 is slow to optimise.
   set(command_lines ${sources})
   list(FILTER command_lines INCLUDE REGEX "[/_]options\\.cpp$")

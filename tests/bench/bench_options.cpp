@@ -22,11 +22,10 @@ std::set<std::string> meshers() {
 ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
                                        std::ostream& err) {
   BenchOptions options;
-  options.luanti = options.net.luanti = kSmallLuanti;
+  options.luanti = options.net.luanti = options.frames.luanti = kSmallLuanti;
   bool quick = false;
-  CLI::App app(
-      "Measures meshing, edits, the log and chunk bytes, on one core, and prints tables of Markdown.",
-      "runstone-bench");
+  CLI::App app("Measures meshing, edits, the log, chunk bytes and frames, and prints tables of Markdown.",
+               "runstone-bench");
   app.require_subcommand(1);
   const auto worlds_of = [&](CLI::App* command, const std::set<std::string>& worlds) {
     command->add_option("--worlds", options.worlds, "worlds to measure; all by default")
@@ -105,6 +104,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   CLI::App* net = add_net_command(app, options.net);
+  CLI::App* frames = add_frames_command(app, options.frames);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -120,6 +120,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     options.command = BenchOptions::Command::net;
     finish_net_options(*net, options.net);
   }
+  if (frames->parsed()) options.command = BenchOptions::Command::frames;
   if (bytes->parsed()) {
     options.command = BenchOptions::Command::bytes;
     options.repetitions = bytes_repetitions;

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/frames/frames_options.hpp"
 #include "tests/bench/net/net_options.hpp"
 
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> meshers;  // contestants; empty: all
@@ -22,6 +23,7 @@ struct BenchOptions {
   unsigned repetitions = 30;
   std::size_t edits = 200'000;  // of the log that is replayed, or asked
   NetOptions net;               // of Command::net
+  FramesOptions frames;         // of Command::frames
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

@@ -9,6 +9,7 @@
 #include "tests/bench/bytes_bench.hpp"
 #include "tests/bench/chunk_edge.hpp"
 #include "tests/bench/edit_bench.hpp"
+#include "tests/bench/frames/frames_bench.hpp"
 #include "tests/bench/log_bench.hpp"
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/mesh_once.hpp"
@@ -90,6 +91,13 @@ int bytes(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_tables(result, out);
+  });
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -116,6 +124,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return edits(*parsed.options, out, err);
     case BenchOptions::Command::net:
       return net(parsed.options->net, out, err);
+    case BenchOptions::Command::frames:
+      return frames(parsed.options->frames, out, err);
   }
   return 2;
 }

@@ -1,0 +1,35 @@
+// PlainScene: one mesher's block of chunks on the GPU, a vertex and an index buffer for each chunk.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "client/render/gl_handle.hpp"
+#include "tests/bench/frames/indexed_mesh.hpp"
+
+namespace runstone::bench {
+
+class PlainScene {
+ public:
+  /// Uploads a chunk of `edge` voxels a side that begins at `origin` in the block; nothing if it is empty.
+  /// Throws std::runtime_error if the GPU has no memory left.
+  void add(const glm::vec3& origin, unsigned edge, const IndexedMesh& mesh);
+
+  std::size_t vertices() const { return vertices_; }
+  std::size_t triangles() const { return triangles_; }
+  std::size_t byte_size() const { return bytes_; }
+
+ private:
+  friend class PlainRenderer;
+  struct Chunk {
+    glm::vec3 origin, centre;
+    GlVertexArray array;
+    GlBuffer vertices, indices;
+    GLsizei index_count = 0;
+  };
+  std::vector<Chunk> chunks_;
+  std::size_t vertices_ = 0, triangles_ = 0, bytes_ = 0;
+};
+
+}  // namespace runstone::bench

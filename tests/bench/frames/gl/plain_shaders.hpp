@@ -1,0 +1,46 @@
+// GLSL of PlainRenderer. The colour of a pixel is a function of the plane that shows in it - direction, place
+// along it, material - and of nothing that a mesher may choose, so equal voxels give equal pixels.
+#pragma once
+
+namespace runstone::bench {
+
+inline constexpr const char* kPlainVertexShader =
+    "#version 330 core\n"
+    "layout(location = 0) in uvec4 place;\n"  // x, y, z, direction: tests/bench/frames/indexed_mesh.hpp
+    "layout(location = 1) in uint material;\n"
+    "uniform mat4 clip;\n"
+    "uniform vec3 origin;\n"  // of the chunk in the block; whole numbers, so sums are exact
+    "flat out vec3 colour;\n"
+    "void main() {\n"
+    "  vec3 at = origin + vec3(place.xyz);\n"
+    "  gl_Position = clip * vec4(at, 1.0);\n"
+    "  uint layer = uint(int(at[int(place.w >> 1)]));\n"
+    "  uint h = material * 2654435761u;\n"
+    "  vec3 base = 0.6 + 0.4 * vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;\n"
+    "  float light = 0.4 + 0.1 * float(place.w);\n"
+    "  float tint = float((layer * 37u) & 63u) / 255.0;\n"
+    "  colour = base * light * (1.0 - tint);\n"
+    "}\n";
+
+inline constexpr const char* kPlainFragmentShader =
+    "#version 330 core\n"
+    "flat in vec3 colour;\n"
+    "out vec4 fragment;\n"
+    "void main() { fragment = vec4(colour, 1.0); }\n";
+
+// GPUs shade blocks of 2 x 2 pixels; lanes of a block that are outside the triangle, or hidden, help with
+// derivatives and are thrown away. Each fragment that stays adds 4 / (such fragments in its block), so that a
+// block adds 4, however much of it is thrown away.
+inline constexpr const char* kLanesFragmentShader =
+    "#version 450 core\n"
+    "flat in vec3 colour;\n"
+    "out float lanes;\n"
+    "void main() {\n"
+    "  ivec2 odd = ivec2(gl_FragCoord.xy) & 1;\n"
+    "  float own = gl_HelperInvocation ? 0.0 : 1.0;\n"
+    "  float row = own + own + (odd.x == 0 ? dFdxFine(own) : -dFdxFine(own));\n"
+    "  float block = row + row + (odd.y == 0 ? dFdyFine(row) : -dFdyFine(row));\n"
+    "  lanes = 4.0 / block;\n"
+    "}\n";
+
+}  // namespace runstone::bench
