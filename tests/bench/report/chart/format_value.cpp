@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -46,6 +47,12 @@ std::string format_value(double value) {
   if (exponent < 2) return grouped(without_zeros(fmt::format("{:.{}f}", value, 2 - exponent)));
   const double unit = std::pow(10.0, exponent - 2);
   return grouped(fmt::format("{:.0f}", std::round(value / unit) * unit));
+}
+
+std::string format_tick(double value, double step) {
+  if (std::abs(value) >= 1e9 || step < 1e-4) return value == 0 ? "0" : fmt::format("{:.6g}", value);
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  return grouped(fmt::format("{:.{}f}", value + 0.0, decimals));
 }
 
 }  // namespace runstone::bench::chart

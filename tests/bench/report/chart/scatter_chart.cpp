@@ -1,0 +1,154 @@
+#include "tests/bench/report/chart/scatter_chart.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "tests/bench/report/chart/chart_text.hpp"
+#include "tests/bench/report/chart/format_value.hpp"
+#include "tests/bench/report/chart/label_placer.hpp"
+#include "tests/bench/report/chart/marks.hpp"
+#include "tests/bench/report/chart/plot.hpp"
+#include "tests/bench/report/chart/scale.hpp"
+
+namespace runstone::bench::chart {
+namespace {
+
+constexpr double kRadius = 4.5;
+constexpr double kLabelHeight = 14;
+constexpr double kInset = 16;
+
+/// Who is named first: with little room the others go without.
+int turn_of(Role role) {
+  switch (role) {
+    case Role::ours:
+      return 0;
+    case Role::baseline:
+      return 1;
+    case Role::thesis:
+      return 2;
+    case Role::other:
+      break;
+  }
+  return 3;
+}
+
+/// An arrow into the lower left corner; returns what it covers.
+Box draw_better(Svg& svg, const Box& area) {
+  const double x = area.x + 8;
+  const double y = area.y + area.height - 8;
+  svg.path("M" + number(x + 20) + " " + number(y - 20) + "L" + number(x) + " " + number(y) + "M" + number(x) +
+               " " + number(y - 9) + "L" + number(x) + " " + number(y) + "L" + number(x + 9) + " " +
+               number(y),
+           "arrow");
+  svg.text(x + 24, y - 16, Anchor::start, "better", "note");
+  return {area.x, y - 30, 32 + width_of("better", kTickSize), 38};
+}
+
+void draw_label(Svg& svg, const ScatterPoint& point, double x, double y, const Box& box) {
+  const LeadEnd lead = lead_to(box, x, y);
+  constexpr double kClose = 12;
+  if (lead.length > kClose) svg.line(x, y, lead.x, lead.y, "lead");
+  svg.text(box.x, box.y + 11, Anchor::start, point.name, point.role == Role::ours ? "strong" : "plain");
+}
+
+struct PlacedPoint {
+  const ScatterPoint* point = nullptr;
+  double x = 0;
+  double y = 0;
+  std::optional<Box> label = {};
+};
+
+/// Units of lead; a name that found no room counts as a very long one.
+double badness_of(const std::vector<PlacedPoint>& points) {
+  double out = 0;
+  for (const PlacedPoint& at : points) {
+    if (at.point->is_labelled) out += at.label ? lead_to(*at.label, at.x, at.y).length : 500;
+  }
+  return out;
+}
+
+void place_labels(std::vector<PlacedPoint>& points, LabelPlacer placer) {
+  for (PlacedPoint& at : points) {
+    if (!at.point->is_labelled) continue;
+    const double wide = width_of(at.point->name, kTextSize) * (at.point->role == Role::ours ? kStrong : 1.0);
+    at.label = placer.place(at.x, at.y, kRadius + 1, wide, kLabelHeight);
+  }
+}
+
+/// Who comes first finds room first: the best of some orders, in all of which the roles keep their turns.
+std::vector<PlacedPoint> with_labels(std::vector<PlacedPoint> points, const LabelPlacer& placer) {
+  const auto is_before = [](const PlacedPoint& a, const PlacedPoint& b) {
+    return turn_of(a.point->role) < turn_of(b.point->role);
+  };
+  std::stable_sort(points.begin(), points.end(), is_before);
+  std::vector<PlacedPoint> best = points;
+  place_labels(best, placer);
+  constexpr int kOrders = 16;
+  std::uint32_t random = 1;
+  for (int order = 0; order < kOrders && points.size() > 1; ++order) {
+    for (std::size_t i = points.size() - 1; i > 0; --i) {
+      random = random * 1664525 + 1013904223;  // Numerical Recipes; the same picture every time
+      std::swap(points[i], points[(random >> 8) % (i + 1)]);
+    }
+    std::stable_sort(points.begin(), points.end(), is_before);
+    std::vector<PlacedPoint> tried = points;
+    place_labels(tried, placer);
+    if (badness_of(tried) < badness_of(best)) best = std::move(tried);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string svg_of(const ScatterChart& chart, Width width) {
+  const std::string label =
+      chart.title.empty() ? "Points: " + chart.y.title + " over " + chart.x.title : chart.title;
+  const bool is_narrow = width == Width::narrow;
+  std::vector<std::size_t> shown;
+  std::vector<double> xs;
+  std::vector<double> ys;
+  for (std::size_t i = 0; i < chart.points.size(); ++i) {
+    const ScatterPoint& point = chart.points[i];
+    if (!Scale::can_show(point.x, chart.x.is_log) || !Scale::can_show(point.y, chart.y.is_log)) continue;
+    shown.push_back(i);
+    xs.push_back(point.x);
+    ys.push_back(point.y);
+  }
+  Scale x_scale(xs, chart.x.is_log, Scale::Start::lowest, Scale::Ends::tight, is_narrow ? 5 : 8);
+  Scale y_scale(ys, chart.y.is_log, Scale::Start::lowest, Scale::Ends::tight, 7);
+  if (shown.empty()) return note_svg(width, "Nothing was measured.", label);
+
+  const double left = tick_room(y_scale);
+  const Box area{left, kAbove, width_of(width) - 18 - left, is_narrow ? 300.0 : 380.0};
+  // The outermost points stay off the edges.
+  x_scale.lay(area.x + kInset, area.x + area.width - kInset);
+  y_scale.lay(area.y + area.height - 2 * kInset, area.y + kInset);
+
+  Svg svg;
+  draw_vertical_axis(svg, y_scale, caption_of(chart.y), area);
+  draw_horizontal_axis(svg, x_scale, caption_of(chart.x), area, width_of(width));
+  LabelPlacer placer({area.x + 2, area.y - 6, area.width + 14, area.height + 4});
+  if (chart.is_low_better) placer.block(draw_better(svg, area));
+  std::vector<PlacedPoint> points;
+  for (const std::size_t i : shown) {
+    const ScatterPoint& point = chart.points[i];
+    points.push_back({&point, x_scale.place(point.x), y_scale.place(point.y), std::nullopt});
+    placer.block_point(points.back().x, points.back().y, kRadius + 1);
+  }
+  points = with_labels(std::move(points), placer);
+  // Names first: points lie over their leads, and ours over all.
+  for (const PlacedPoint& at : points) {
+    if (at.label) draw_label(svg, *at.point, at.x, at.y, *at.label);
+  }
+  for (auto at = points.rbegin(); at != points.rend(); ++at) {
+    const ScatterPoint& point = *at->point;
+    svg.begin_mark(point.name + ": " + format_value(point.x) + ", " + format_value(point.y));
+    draw_point(svg, at->x, at->y, kRadius, point.role, class_of(point.role));
+    svg.end_mark();
+  }
+  return svg.finish(width, area.y + area.height + kBelow, label);
+}
+
+}  // namespace runstone::bench::chart
