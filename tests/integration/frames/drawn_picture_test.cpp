@@ -34,15 +34,12 @@ TEST_CASE("a pixel of another colour is a seam, and inside a plane a pinhole", "
     std::uint32_t colour;
     std::size_t pinholes;
   };
-  const Case cases[] = {{4, 4, 0, 1},       // the background shows through
-                        {3, 3, kOther, 1},  // another plane does
-                        {5, 5, 0, 1},
-                        {6, 4, kOther, 0},  // the line between two planes moved
-                        {6, 4, 0, 0},
-                        {2, 2, 0, 0},       // the outline did
-                        {1, 4, kPlane, 0},  // likewise, outwards
-                        {0, 0, kPlane, 0},
-                        {9, 8, kPlane, 0}};
+  const Case cases[] = {{4, 4, 0, 1},                          // the background shows through
+                        {3, 3, kOther, 1},                     // another plane does
+                        {5, 5, 0, 1},      {6, 4, kOther, 0},  // the line between two planes moved
+                        {6, 4, 0, 0},      {2, 2, 0, 0},       // the outline did
+                        {1, 4, kPlane, 0},                     // likewise, outwards
+                        {0, 0, kPlane, 0}, {9, 8, kPlane, 0}};
   for (const Case& c : cases) {
     CAPTURE(c.x, c.y, c.colour);
     CHECK(after(c.x, c.y, c.colour).seam_pixels == 1);

@@ -89,7 +89,8 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
     CHECK(of.at("culled plain").at("t_junctions") == 0);
     CHECK(of.at("rdm plain").at("seam_pixels") == of.at("rdm_plain plain").at("seam_pixels"));
     CHECK(of.at("rdm plain").at("vertices") == of.at("rdm product").at("vertices"));
-    CHECK(of.at("rdm product").at("upload_bytes") == of.at("rdm product").at("vertices").get<std::size_t>() * 2);
+    CHECK(of.at("rdm product").at("upload_bytes") ==
+          of.at("rdm product").at("vertices").get<std::size_t>() * 2);
     CHECK(of.at("rdm plain").at("vertices") < of.at("culled plain").at("vertices"));
     CHECK(of.at("rdm plain").at("lanes") <= of.at("culled plain").at("lanes"));
     CHECK(of.at("rle_rdm plain").at("depth_complexity") > of.at("culled plain").at("depth_complexity"));

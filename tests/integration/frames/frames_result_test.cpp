@@ -69,7 +69,8 @@ TEST_CASE("rows come out as CSV, JSON and tables", "[frames]") {
   std::size_t count = 0;
   for (; std::getline(lines, line); ++count) CHECK(commas(line) == commas(head));
   CHECK(count == result.rows.size());
-  CHECK(csv.str().find("a,rdm,plain,1000000,500000,0,6,3.0000,3.0000,3.0000,333.33,12,") != std::string::npos);
+  CHECK(csv.str().find("a,rdm,plain,1000000,500000,0,6,3.0000,3.0000,3.0000,333.33,12,") !=
+        std::string::npos);
 
   std::ostringstream text;
   write_json(result, text);

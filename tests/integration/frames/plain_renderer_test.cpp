@@ -79,8 +79,8 @@ TEST_CASE("fragments and lanes of one triangle are the pixels and blocks it cove
   PlainRenderer renderer(context->loader(), kWidth, kHeight);
   for (const std::array<std::array<std::uint8_t, 2>, 3>& corners :
        {std::array<std::array<std::uint8_t, 2>, 3>{{{0, 0}, {16, 0}, {0, 16}}},
-        {{{0, 0}, {16, 0}, {0, 1}}},      // thin
-        {{{0, 0}, {1, 15}, {0, 16}}},     // thin, askew
+        {{{0, 0}, {16, 0}, {0, 1}}},    // thin
+        {{{0, 0}, {1, 15}, {0, 16}}},   // thin, askew
         {{{5, 5}, {6, 5}, {5, 6}}}}) {  // small
     Surface surface;
     add_triangle(surface, 8, corners);
@@ -109,7 +109,8 @@ TEST_CASE("what lies below is covered, and drawn only if it comes first", "[fram
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   PlainRenderer renderer(context->loader(), kWidth, kHeight);
-  const Quad low = pack({4, 3, 4, 8, 8, Direction::pos_y, 1}), high = pack({4, 7, 4, 8, 8, Direction::pos_y, 2});
+  const Quad low = pack({4, 3, 4, 8, 8, Direction::pos_y, 1}),
+             high = pack({4, 7, 4, 8, 8, Direction::pos_y, 2});
   const auto count = [&](const std::vector<Quad>& quads) {
     PlainScene scene;
     add(scene, {quads, {}});
@@ -182,8 +183,8 @@ TEST_CASE("the whole block is in view all the way round", "[frames]") {
   for (unsigned frame = 0; frame < 60; ++frame) {
     const glm::mat4 clip = clip_of(orbit_camera(size, frame, 60), 1280, 720);
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec4 at = clip * glm::vec4{(corner & 1) * size[0], (corner >> 1 & 1) * size[1],
-                                            (corner >> 2) * size[2], 1};
+      const glm::vec4 at =
+          clip * glm::vec4{(corner & 1) * size[0], (corner >> 1 & 1) * size[1], (corner >> 2) * size[2], 1};
       CAPTURE(frame, corner);
       CHECK(at.w > 0);
       CHECK(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= at.w);
