@@ -22,10 +22,13 @@ std::set<std::string> meshers() {
 ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
                                        std::ostream& err) {
   BenchOptions options;
-  options.luanti = options.net.luanti = options.frames.luanti = kSmallLuanti;
+  options.luanti = options.net.luanti = options.frames.luanti = options.report.luanti = kSmallLuanti;
   bool quick = false;
-  CLI::App app("Measures meshing, edits, the log, chunk bytes and frames, and prints tables of Markdown.",
-               "runstone-bench");
+  CLI::App app(
+      "Measures meshing, storage, edits, the log, the network, frames, and prints tables of Markdown, or "
+      "makes a "
+      "page of them all.",
+      "runstone-bench");
   app.require_subcommand(1);
   const auto worlds_of = [&](CLI::App* command, const std::set<std::string>& worlds) {
     command->add_option("--worlds", options.worlds, "worlds to measure; all by default")
@@ -52,6 +55,9 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   mesh->add_option("--meshers", options.meshers, "meshers to measure; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(meshers()));
+  mesh->add_option("--parts", options.parts,
+                   "volumes to measure, by name: scenario 17 is \"17\"; all by default")
+      ->delimiter(',');
   mesh->add_option("--orders", options.orders, "axis orders of the chunk, by their runs")
       ->capture_default_str()
       ->delimiter(',')
@@ -105,6 +111,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->check(CLI::Range(1, 1000));
   CLI::App* net = add_net_command(app, options.net);
   CLI::App* frames = add_frames_command(app, options.frames);
+  CLI::App* report = add_report_command(app, options.report);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -121,6 +128,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     finish_net_options(*net, options.net);
   }
   if (frames->parsed()) options.command = BenchOptions::Command::frames;
+  if (report->parsed()) options.command = BenchOptions::Command::report;
   if (bytes->parsed()) {
     options.command = BenchOptions::Command::bytes;
     options.repetitions = bytes_repetitions;

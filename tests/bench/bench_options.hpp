@@ -8,13 +8,15 @@
 
 #include "tests/bench/frames/frames_options.hpp"
 #include "tests/bench/net/net_options.hpp"
+#include "tests/bench/report/report_options.hpp"
 
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames, report };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
+  std::vector<std::string> parts;    // volumes by name; empty: all
   std::vector<std::string> meshers;  // contestants; empty: all
   std::vector<unsigned> edges;
   std::vector<std::string> orders = {"best", "worst"};  // or "all"
@@ -24,6 +26,7 @@ struct BenchOptions {
   std::size_t edits = 200'000;  // of the log that is replayed, or asked
   NetOptions net;               // of Command::net
   FramesOptions frames;         // of Command::frames
+  ReportOptions report;         // of Command::report
 };
 
 /// The options, or the exit code of a program that has nothing more to do: 0 after help, 2 after a mistake.

@@ -14,6 +14,7 @@
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/mesh_once.hpp"
 #include "tests/bench/net/net_bench.hpp"
+#include "tests/bench/report/report.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -122,6 +123,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return log(*parsed.options, out, err);
     case BenchOptions::Command::edits:
       return edits(*parsed.options, out, err);
+    case BenchOptions::Command::report:
+      return run_report(parsed.options->report, out, err);
     case BenchOptions::Command::net:
       return net(parsed.options->net, out, err);
     case BenchOptions::Command::frames:

@@ -8,15 +8,10 @@
 #include "tests/bench/edit_case.hpp"
 #include "tests/bench/measured_worlds.hpp"
 #include "tests/bench/mesh_bars.hpp"
+#include "tests/bench/order_name.hpp"
 
 namespace runstone::bench {
 namespace {
-
-std::string name_of(AxisOrder order) {
-  std::string out;
-  for (const Axis axis : axes_of(order)) out += "xyz"[static_cast<std::size_t>(axis)];
-  return out;
-}
 
 struct RankedOrder {
   AxisOrder order;
@@ -110,6 +105,10 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options, std:
         result.skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
       }
       for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+        if (!options.parts.empty() &&
+            std::find(options.parts.begin(), options.parts.end(), world.parts[v]) == options.parts.end()) {
+          continue;
+        }
         for (const RankedOrder& order : orders_of(world.volumes[v].scene.chunk, options.orders)) {
           Volume volume = world.volumes[v];
           volume.scene.chunk = reorder(volume.scene.chunk, order.order);

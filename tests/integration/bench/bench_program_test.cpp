@@ -285,3 +285,26 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
     CHECK((bar.at("verdict") == "not measured") == terrain);
   }
 }
+
+TEST_CASE("report: a step is measured once, a run goes on, and the page is there") {
+  const test::TempFolder folder;
+  const std::vector<std::string> words = {"report", "--out", folder / "r", "--quick", "--steps", "facts"};
+  const Output first = run(words);
+  INFO(first.err);
+  REQUIRE(first.exit_code == 0);
+  CHECK(first.err.find("[1/1] facts") != std::string::npos);
+  const auto facts = nlohmann::json::parse(text_of(folder / "r/data/facts.json"));
+  REQUIRE(facts["result"]["rows"].size() == 37);
+  CHECK(facts["result"]["rows"][16]["opaque"] == 16384);    // the chessboard
+  CHECK(facts["result"]["rows"][16]["runs_zyx"] == 31776);  // lines meet in 992 runs
+  CHECK(text_of(folder / "r/index.html").find("memory-group-1") != std::string::npos);
+
+  const Output second = run(words);
+  CHECK(second.exit_code == 0);
+  CHECK(second.err.find("is there") != std::string::npos);
+  CHECK(nlohmann::json::parse(text_of(folder / "r/data/facts.json"))["measured_at"] == facts["measured_at"]);
+
+  const Output unknown = run({"report", "--out", folder / "r", "--steps", "everything"});
+  CHECK(unknown.exit_code == 2);
+  CHECK(unknown.err.find("everything") != std::string::npos);
+}

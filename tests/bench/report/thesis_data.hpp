@@ -1,0 +1,60 @@
+// ThesisData: what the thesis measured, from its tables: thesis_results.csv and chunk_sizes.csv, made from its
+// raw logs (tests/data/thesis).
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+namespace runstone::bench {
+
+class ThesisData {
+ public:
+  /// A table that cannot be read is empty; doubt() names it.
+  static ThesisData read(const std::string& folder);
+
+  /// `mesher`: Grid, RLE or VoxelPlugin. NaN where the thesis has no figure, or one that its own data contradict.
+  double value(unsigned scenario, std::string_view mesher, std::string_view metric) const;
+  /// Mean ms of a chunk of that side.
+  double chunk_size_ms(unsigned scenario, unsigned side, std::string_view mesher) const;
+
+  /// Empty if all was read.
+  const std::string& doubt() const { return doubt_; }
+
+ private:
+  std::map<std::tuple<unsigned, std::string, std::string>, double, std::less<>> results_;
+  std::map<std::tuple<unsigned, unsigned, std::string>, double, std::less<>> sizes_;
+  std::string doubt_;
+};
+
+/// A known defect of the thesis' data, in one sentence; none if there is none. (shared with the golden tests' reading
+/// of them: docs/reproduce.md.)
+struct ThesisDefect {
+  unsigned scenario;
+  const char* what;
+};
+inline constexpr ThesisDefect kThesisDefects[] = {
+    {12, "Its maps pointed at gap count 2 when it was measured: its figures are those of scenario 10."},
+    {18,
+     "Threads shared one random stream: only the centre chunk can be made again. Voxel Plugin's time is ten "
+     "times "
+     "the usual per vertex, likely another model's."},
+    {19, "Threads shared one random stream: only the centre chunk can be made again."},
+    {20, "Threads shared one random stream: only the centre chunk can be made again."},
+    {21,
+     "Threads shared one random stream: only the centre chunk can be made again. The RLE meshing file holds "
+     "events "
+     "of other sessions; its phases are left out."},
+    {22, "Threads shared one random stream: only the centre chunk can be made again."},
+    {28, "The file of RLE's buffer phase holds Voxel Plugin's events; it is left out."},
+    {30, "The file of Grid's buffer phase is a copy of RLE's; it is left out."},
+    {31, "Voxel Plugin's map pointed at scenario 32: its vertices and times are of that model."},
+};
+inline constexpr const char* kThesisMeans =
+    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half; here its raw "
+    "events are "
+    "averaged plainly. Voxel Plugin logs 484 events a scenario of which some 27 are chunks with voxels; its "
+    "mean "
+    "is over all events.";
+
+}  // namespace runstone::bench
