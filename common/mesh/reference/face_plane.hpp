@@ -41,12 +41,14 @@ inline bool read_faces(const DenseGrid& grid, const VisibilityTable& visibility,
   plane.height = sides[static_cast<std::size_t>(v)];
   plane.faces.resize(static_cast<std::size_t>(plane.width) * plane.height);
   const std::ptrdiff_t beside = is_positive(direction) ? grid.stride(across) : -grid.stride(across);
+  const std::ptrdiff_t along_u = grid.stride(u);
+  const std::ptrdiff_t along_v = grid.stride(v);
   const Material* line = grid.origin() + static_cast<std::ptrdiff_t>(layer) * grid.stride(across);
   Material* face = plane.faces.data();
   bool any = false;
-  for (std::uint32_t row = 0; row < plane.height; ++row, line += grid.stride(v)) {
+  for (std::uint32_t row = 0; row < plane.height; ++row, line += along_v) {
     const Material* voxel = line;
-    for (std::uint32_t at = 0; at < plane.width; ++at, voxel += grid.stride(u), ++face) {
+    for (std::uint32_t at = 0; at < plane.width; ++at, voxel += along_u, ++face) {
       const bool drawn = visibility.face_drawn(*voxel, voxel[beside]);
       *face = drawn ? *voxel : kEmpty;
       any |= drawn;
