@@ -36,7 +36,7 @@ void CategoryLabels::draw_below(Svg& svg, std::size_t column, double x, double y
 
 void CategoryLabels::draw_above(Svg& svg, std::size_t column, double x, double y, double right) const {
   if (!is_slanted_) return svg.text(x, y - 7, Anchor::middle, names_[column], "tick");
-  const double length = std::min(kLongest, (right - x - 12) / kCosine);
+  const double length = std::min(kLongest, (right - x - 9) / kCosine);
   svg.text(x + 3, y - 6, Anchor::start, shortened(names_[column], kTickSize, length), "tick", -kDegrees);
 }
 

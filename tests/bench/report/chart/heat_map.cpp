@@ -99,7 +99,7 @@ std::string svg_of(const HeatMap& chart, Width width) {
   names = std::min(names, width_of(width) * 0.34);
   const double left = names + 12;
   // Room at the right for the last slanted name.
-  const double table = width_of(width) - left - 40;
+  const double table = width_of(width) - left - (width == Width::wide ? 56 : 44);
   const double narrowest = width == Width::narrow ? 34 : 27;
   const std::vector<std::size_t> panels =
       panels_of(chart.columns.size(), static_cast<std::size_t>(table / narrowest));

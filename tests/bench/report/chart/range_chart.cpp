@@ -88,7 +88,7 @@ std::string svg_of(const RangeChart& chart, Width width) {
   Svg svg;
   Rows rows(chart.names, chart.roles, tail, width);
   rows.begin_at(Rows::kAxisHeight + kKeyHeight);
-  scale.lay(rows.left(), rows.right());
+  scale.lay(rows.left() + 5, rows.right());  // a tick at the lowest value is whole
   svg.text(rows.left(), 14, Anchor::start,
            shortened(key_of(chart.value_names), kTickSize, rows.end() - rows.left()), "note");
   rows.draw_axis(svg, scale, caption_of(chart.x));

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kMargin = 4;
 constexpr double kNameGap = 10;
+constexpr double kSlack = 1;             // rounding shall not shorten the widest name
 constexpr double kNamesShareMax = 0.36;  // of the picture
 
 }  // namespace
@@ -22,7 +23,7 @@ Rows::Rows(const std::vector<std::string>& names, const std::vector<Role>& roles
     for (std::size_t i = 0; i < names.size(); ++i) {
       widest = std::max(widest, width_of(names[i], kTextSize) * (is_strong(i) ? kStrong : 1));
     }
-    left_ += std::min(widest, kNamesShareMax * width_of(width)) + kNameGap;
+    left_ += std::min(widest, kNamesShareMax * width_of(width)) + kSlack + kNameGap;
   }
   right_ = std::max(end_ - tail, left_ + (end_ - left_) * 0.4);
 }
