@@ -27,7 +27,7 @@ std::vector<std::string> plain_names(std::size_t count) {
   return out;
 }
 
-/// Where an unturned element lies; empty for those that have no box of their own.
+/// Where an element lies; empty for those that have no box of their own.
 std::vector<Box> boxes_of(const Element& element) {
   const auto at = [&](const char* key) { return element.number(key); };
   if (element.name == "rect") return {{at("x"), at("y"), at("width"), at("height")}};
@@ -36,9 +36,15 @@ std::vector<Box> boxes_of(const Element& element) {
     return {{std::min(at("x1"), at("x2")), std::min(at("y1"), at("y2")), std::abs(at("x1") - at("x2")),
              std::abs(at("y1") - at("y2"))}};
   }
-  if (element.name != "text" || !element.at("transform").empty()) return {};
+  if (element.name != "text") return {};
   const bool is_small = element.has_class("tick") || element.has_class("note");
   const double wide = width_of(element.text, is_small ? kTickSize : kTextSize);
+  if (double degrees = 0; std::sscanf(element.at("transform").c_str(), "rotate(%lf", &degrees) == 1) {
+    const double across = wide * std::cos(degrees / 180 * 3.14159265);
+    const double down = wide * std::sin(degrees / 180 * 3.14159265);
+    if (element.has_class("end")) return {{at("x") - across, at("y"), across, -down}};
+    return {{at("x"), at("y") + down, across, -down}};
+  }
   const double left = element.has_class("end") ? wide : element.has_class("mid") ? wide / 2 : 0;
   return {{at("x") - left, at("y") - 9, wide, 11}};
 }
@@ -114,6 +120,36 @@ TEST_CASE("any name gives a well-formed picture with everything inside", "[chart
       CHECK(fault_of(svg).empty());
       CHECK(svg.find("<script") == std::string::npos);
       CHECK(svg.find("\xFF") == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("text does not overlap", "[chart][property]") {
+  std::mt19937 random(Catch::rngSeed());
+  for (const double decades : {0.1, 1.0, 3.0, 7.0}) {
+    const auto value = [&] {
+      return std::pow(10.0, decades * static_cast<double>(random() % 1000) / 1000) * 3;
+    };
+    for (const std::size_t count : {std::size_t{1}, std::size_t{5}, std::size_t{16}, std::size_t{37}}) {
+      for (const bool is_log : {false, true}) {
+        for (const Width width : kWidths) {
+          for (const auto& [name, svg] : sample_svgs({plain_names(count), value, is_log}, width)) {
+            std::vector<std::pair<std::string, Box>> texts;
+            for (const Element& element : read_svg(svg).named("text")) {
+              if (!element.at("transform").empty()) continue;  // slanted: apart by their pitch
+              for (const Box& box : boxes_of(element)) texts.emplace_back(element.text, box);
+            }
+            for (std::size_t a = 0; a < texts.size(); ++a) {
+              for (std::size_t b = 0; b < a; ++b) {
+                if (!overlap(texts[a].second, texts[b].second)) continue;
+                CAPTURE(Catch::rngSeed(), decades, count, is_log, width == Width::wide, name, texts[a].first,
+                        texts[b].first);
+                FAIL_CHECK("overlap");
+              }
+            }
+          }
+        }
+      }
     }
   }
 }

@@ -53,6 +53,7 @@ TEST_CASE("in a narrow picture names stand above their bars", "[chart]") {
   CHECK(name.number("y") < bar.number("y"));
   CHECK(name.number("x") == Approx(bar.number("x")).margin(0.2));
   CHECK(text_of(narrow, "n").number("y") == name.number("y"));
+  CHECK(text_of(narrow, "b").number("y") - 9 > bar.number("y") + bar.number("height"));
   const SvgText wide = read_svg(svg_of(chart, Width::wide));
   CHECK(text_of(wide, chart.names[0]).number("x") < wide.with_class("c-rest").at(0).number("x"));
 }

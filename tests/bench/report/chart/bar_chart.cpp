@@ -23,6 +23,21 @@ double value_of(const Series& series, std::size_t category) {
   return category < series.values.size() ? series.values[category] : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// How categories share the width right of `left`.
+struct Columns {
+  double left;
+  std::vector<std::size_t> panels;
+  double pitch = 0;
+
+  Columns(const BarChart& chart, double left_end, Width width) : left(left_end) {
+    const double room = width_of(width) - 4 - left;
+    const double least =
+        std::max(kSlantedPitch, static_cast<double>(chart.series.size()) * kThinnest + kGroupGap);
+    panels = panels_of(chart.categories.size(), static_cast<std::size_t>(room / least));
+    pitch = room / static_cast<double>(panels.front());
+  }
+};
+
 /// One row of columns: categories [first, first + count) between the ends of `area`.
 struct Panel {
   const BarChart& chart;
@@ -84,12 +99,11 @@ std::string svg_of(const BarChart& chart, Width width) {
   for (std::size_t i = 0; i < roles.size(); ++i)
     entries.push_back({chart.series[i].name, roles[i], colours[i]});
 
-  const double left = tick_room(scale);
-  const double plot = width_of(width) - 4 - left;
-  const double least = std::max(kSlantedPitch, static_cast<double>(roles.size()) * kThinnest + kGroupGap);
-  const std::vector<std::size_t> panels =
-      panels_of(chart.categories.size(), static_cast<std::size_t>(plot / least));
-  const double pitch = plot / static_cast<double>(panels.front());
+  Columns columns(chart, tick_room(scale), width);
+  const double overhang = CategoryLabels(chart.categories, columns.pitch).overhang(0) - columns.pitch / 2 + 2;
+  constexpr double kOverhangMax = 80;
+  if (overhang > columns.left) columns = Columns(chart, std::min(overhang, kOverhangMax), width);
+  const auto& [left, panels, pitch] = columns;
   const CategoryLabels labels(chart.categories, pitch);
   const double height = panels.size() == 1 ? 230 : 180;
 

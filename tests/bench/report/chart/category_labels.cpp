@@ -29,9 +29,15 @@ CategoryLabels::CategoryLabels(const std::vector<std::string>& names, double pit
   height_ = is_slanted_ ? std::min(widest, kLongest) * kSine + 18 : 20;
 }
 
+double CategoryLabels::overhang(std::size_t column) const {
+  const double wide = width_of(names_[column], kTickSize);
+  return is_slanted_ ? std::min(wide, kLongest) * kCosine : wide / 2;
+}
+
 void CategoryLabels::draw_below(Svg& svg, std::size_t column, double x, double y) const {
   if (!is_slanted_) return svg.text(x, y + 16, Anchor::middle, names_[column], "tick");
-  svg.text(x + 4, y + 13, Anchor::end, shortened(names_[column], kTickSize, kLongest), "tick", -kDegrees);
+  const double length = std::min(kLongest, (x + 2) / kCosine);
+  svg.text(x + 4, y + 13, Anchor::end, shortened(names_[column], kTickSize, length), "tick", -kDegrees);
 }
 
 void CategoryLabels::draw_above(Svg& svg, std::size_t column, double x, double y, double right) const {

@@ -21,7 +21,10 @@ class CategoryLabels {
   /// Units from the columns to the far end of the names.
   [[nodiscard]] double height() const { return height_; }
 
-  /// Below the columns, centred under `x`, the middle of the column; `y` is the columns' end.
+  /// Units that a name below its column goes to the left of the column's middle.
+  [[nodiscard]] double overhang(std::size_t column) const;
+
+  /// Below the columns, centred under `x`, the middle of the column, or ending there; `y` is the columns' end.
   void draw_below(Svg& svg, std::size_t column, double x, double y) const;
 
   /// Likewise above them, rising to the right, but not beyond `right`.

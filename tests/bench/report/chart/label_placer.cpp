@@ -11,7 +11,9 @@ std::vector<double> spread(const std::vector<double>& positions, double pitch, d
   if (count == 0 || static_cast<double>(count - 1) * pitch > high - low) return {};
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return positions[a] < positions[b]; });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) {
+    return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
+  });
   // With the pitch taken off, they must only not decrease: pool those that do at their mean (isotonic regression).
   struct Pool {
     double sum;

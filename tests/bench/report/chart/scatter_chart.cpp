@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "tests/bench/report/chart/chart_text.hpp"
@@ -58,6 +59,7 @@ struct PlacedPoint {
   double x = 0;
   double y = 0;
   std::optional<Box> label = {};
+  std::uint32_t lot = 0;  // who comes first among equals
 };
 
 /// Units of lead; a name that found no room counts as a very long one.
@@ -80,22 +82,21 @@ void place_labels(std::vector<PlacedPoint>& points, LabelPlacer placer) {
 /// Who comes first finds room first: the best of some orders, in all of which the roles keep their turns.
 std::vector<PlacedPoint> with_labels(std::vector<PlacedPoint> points, const LabelPlacer& placer) {
   const auto is_before = [](const PlacedPoint& a, const PlacedPoint& b) {
-    return turn_of(a.point->role) < turn_of(b.point->role);
+    return std::tuple(turn_of(a.point->role), a.lot, a.point) <
+           std::tuple(turn_of(b.point->role), b.lot, b.point);
   };
-  std::stable_sort(points.begin(), points.end(), is_before);
-  std::vector<PlacedPoint> best = points;
-  place_labels(best, placer);
+  std::vector<PlacedPoint> best;
   constexpr int kOrders = 16;
-  std::uint32_t random = 1;
-  for (int order = 0; order < kOrders && points.size() > 1; ++order) {
-    for (std::size_t i = points.size() - 1; i > 0; --i) {
-      random = random * 1664525 + 1013904223;  // Numerical Recipes; the same picture every time
-      std::swap(points[i], points[(random >> 8) % (i + 1)]);
-    }
-    std::stable_sort(points.begin(), points.end(), is_before);
+  std::uint32_t random = 0;
+  for (int order = 0; order < kOrders; ++order) {
+    std::sort(points.begin(), points.end(), is_before);  // the first time as they were given
     std::vector<PlacedPoint> tried = points;
     place_labels(tried, placer);
-    if (badness_of(tried) < badness_of(best)) best = std::move(tried);
+    if (best.empty() || badness_of(tried) < badness_of(best)) best = std::move(tried);
+    for (PlacedPoint& at : points) {
+      random = random * 1664525 + 1013904223;  // Numerical Recipes; the same picture every time
+      at.lot = random >> 8;
+    }
   }
   return best;
 }
@@ -134,7 +135,7 @@ std::string svg_of(const ScatterChart& chart, Width width) {
   std::vector<PlacedPoint> points;
   for (const std::size_t i : shown) {
     const ScatterPoint& point = chart.points[i];
-    points.push_back({&point, x_scale.place(point.x), y_scale.place(point.y), std::nullopt});
+    points.push_back({&point, x_scale.place(point.x), y_scale.place(point.y)});
     placer.block_point(points.back().x, points.back().y, kRadius + 1);
   }
   points = with_labels(std::move(points), placer);
