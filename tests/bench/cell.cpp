@@ -58,8 +58,9 @@ void count_phases(benchmark::State& state, PhaseTimes phases, std::uint64_t wall
   }
 }
 
-void repeat(benchmark::State& state, const Contestant& contestant, std::uint64_t calls) {
-  const std::size_t bytes = contestant.storage_bytes + contestant.quads() * sizeof(Quad);
+void repeat(benchmark::State& state, const Contestant& contestant, std::size_t mesh_bytes,
+            std::uint64_t calls) {
+  const std::size_t bytes = contestant.storage_bytes + mesh_bytes;
   std::vector<char> from(bytes, 1), to(bytes, 2);
   for (auto _ : state) {
     PhaseTimes phases{};
@@ -104,6 +105,7 @@ Timing timing_of(const Samples& samples) {
 std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestants, unsigned repetitions) {
   shuffle_repetitions();
   std::vector<std::optional<Timing>> out(contestants.size());
+  reference::Surface surface;
   for (std::size_t i = 0; i < contestants.size(); ++i) {
     const Contestant& contestant = contestants[i];
     PhaseTimes unused{};
@@ -118,11 +120,15 @@ std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestant
     const auto calls = static_cast<std::uint64_t>(std::max(1.0, kBlockNs / call_ns));
     // A repetition: the block twice, and copies that cost no more than the block.
     if (repetitions * call_ns * 3 * static_cast<double>(calls) > kCellSecondsMax * 1e9) continue;
+    contestant.surface(surface);
     timing.quads = contestant.quads();
+    timing.mesh = figures_of(surface);
     timing.storage_bytes = contestant.storage_bytes;
     out[i] = timing;
     benchmark::RegisterBenchmark(std::string(contestant.name).c_str(),
-                                 [&contestant, calls](benchmark::State& s) { repeat(s, contestant, calls); })
+                                 [&contestant, bytes = timing.mesh.bytes, calls](benchmark::State& s) {
+                                   repeat(s, contestant, bytes, calls);
+                                 })
         ->Iterations(1)
         ->Repetitions(static_cast<int>(repetitions))
         ->UseManualTime()
@@ -137,6 +143,7 @@ std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestant
     const Timing& known = *out[i];
     Timing timing = timing_of(collector.of(contestants[i].name));
     timing.quads = known.quads;
+    timing.mesh = known.mesh;
     timing.storage_bytes = known.storage_bytes;
     timing.allocations = known.allocations;
     out[i] = timing;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/bench/contestant.hpp"
+#include "tests/bench/mesh_figures.hpp"
 
 namespace runstone::bench {
 
@@ -22,6 +23,7 @@ struct Timing {
   std::array<double, kPhaseCount> phase_ns{};    // medians; `mesh` is what the others leave of a call
   double copy_ns = 0;                            // median of a plain copy of its input and output
   std::size_t quads = 0, storage_bytes = 0;
+  MeshFigures mesh;
   std::size_t allocations = 0;  // of one warm call
 };
 

@@ -23,10 +23,23 @@ namespace {
 
 using namespace reference;
 
-constexpr std::array<std::string_view, 15> kNames = {
-    "rdm",    "rdm_kept", "rdm_plain",    "decode_binary", "grid_binary",       "mask_binary",    "culled",
-    "simple", "greedy",   "naive_greedy", "run_strips",    "run_strips_hidden", "optimal_greedy", "grid_rdm",
-    "rle_rdm"};
+constexpr std::array<std::string_view, 17> kNames = {"rdm",
+                                                     "rdm_kept",
+                                                     "rdm_plain",
+                                                     "decode_binary",
+                                                     "grid_binary",
+                                                     "mask_binary",
+                                                     "culled",
+                                                     "simple",
+                                                     "greedy",
+                                                     "naive_greedy",
+                                                     "run_strips",
+                                                     "run_strips_hidden",
+                                                     "optimal_greedy",
+                                                     "monotone",
+                                                     "poly2tri",
+                                                     "grid_rdm",
+                                                     "rle_rdm"};
 
 /// Adds the time since `start` to a phase; returns the time now.
 std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {

@@ -14,6 +14,8 @@
 //   run_strips        Sector's Edge's runs, ended by hidden faces, dense grid ready: mesh
 //   run_strips_hidden the same as the game has them: runs go on over hidden faces and draw them
 //   optimal_greedy    as few rectangles as there can be, dense grid ready: mesh
+//   monotone          outlines cut into monotone polygons, then triangles, dense grid ready: mesh
+//   poly2tri          outlines and their constrained Delaunay triangulation, dense grid ready: mesh
 //   grid_rdm          the thesis' Grid RDM, dense grid ready: mesh
 //   rle_rdm           the thesis' RLE RDM, from runs in its own order: mesh
 #pragma once
@@ -45,7 +47,7 @@ std::uint64_t core_ns();
 struct Contestant {
   std::string_view name;
   std::function<void(PhaseTimes&)> mesh;  // one mesh into its own buffers
-  std::function<std::size_t()> quads;     // of the last mesh
+  std::function<std::size_t()> quads;     // of the last mesh; 0 if it is of triangles
   /// Replaces a surface by the last mesh.
   std::function<void(reference::Surface&)> surface;
   std::size_t storage_bytes = 0;  // voxels as it keeps them between meshes

@@ -8,13 +8,15 @@
 
 namespace runstone::bench {
 
-/// A contestant whose last mesh lies in `state`, as a ChunkMesh `mesh` or as a list `quads`, and which keeps it
-/// alive. Name and mesher come later.
+/// A contestant whose last mesh lies in `state`, as a ChunkMesh `mesh`, a list `quads` or a TriangleMesh
+/// `triangles`, and which keeps it alive. Name and mesher come later.
 template <class State>
 Contestant contestant_of(std::shared_ptr<State> state, std::size_t storage_bytes) {
-  const auto quads = [state] {
+  const auto quads = [state]() -> std::size_t {
     if constexpr (requires { state->mesh; })
       return state->mesh.quad_count();
+    else if constexpr (requires { state->triangles; })
+      return 0;
     else
       return state->quads.size();
   };
@@ -24,6 +26,8 @@ Contestant contestant_of(std::shared_ptr<State> state, std::size_t storage_bytes
       for (const QuadLayers* pass : {&state->mesh.opaque, &state->mesh.transparent}) {
         out.quads.insert(out.quads.end(), pass->quads.begin(), pass->quads.end());
       }
+    } else if constexpr (requires { state->triangles; }) {
+      out.triangles = state->triangles;
     } else {
       out.quads = state->quads;
     }

@@ -6,8 +6,10 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/reference/greedy_mesher.hpp"
 #include "common/mesh/reference/grid_rdm.hpp"
+#include "common/mesh/reference/monotone_mesher.hpp"
 #include "common/mesh/reference/naive_greedy_mesher.hpp"
 #include "common/mesh/reference/optimal_greedy_mesher.hpp"
+#include "common/mesh/reference/poly2tri_mesher.hpp"
 #include "common/mesh/reference/run_strip_mesher.hpp"
 #include "common/mesh/reference/simple_mesher.hpp"
 #include "tests/bench/contestant_state.hpp"
@@ -17,14 +19,26 @@ namespace {
 
 using namespace reference;
 
-template <class Scratch>
-using GridMesher = void (*)(const DenseGrid&, const VisibilityTable&, Scratch&, std::vector<Quad>&);
+template <class Scratch, class Out>
+using GridMesher = void (*)(const DenseGrid&, const VisibilityTable&, Scratch&, Out&);
 
-template <class Scratch>
-Contestant of_grid(const Volume& volume, const VisibilityTable& visibility, GridMesher<Scratch> mesh) {
-  struct State {
-    DenseGrid grid;
-    std::vector<Quad> quads;
+/// By what a mesher makes: the name of the member says it to contestant_of().
+template <class Out>
+struct GridState {
+  DenseGrid grid;
+  std::vector<Quad> quads;
+  std::vector<Quad>& out() { return quads; }
+};
+template <>
+struct GridState<TriangleMesh> {
+  DenseGrid grid;
+  TriangleMesh triangles;
+  TriangleMesh& out() { return triangles; }
+};
+
+template <class Scratch, class Out>
+Contestant of_grid(const Volume& volume, const VisibilityTable& visibility, GridMesher<Scratch, Out> mesh) {
+  struct State : GridState<Out> {
     Scratch scratch;
   };
   auto state = std::make_shared<State>();
@@ -32,7 +46,7 @@ Contestant of_grid(const Volume& volume, const VisibilityTable& visibility, Grid
   decode(volume.scene.chunk, volume.scene.pointers(), layer, state->grid);
   Contestant out = contestant_of(state, state->grid.byte_size());
   out.mesh = [state, mesh, &visibility](PhaseTimes&) {
-    mesh(state->grid, visibility, state->scratch, state->quads);
+    mesh(state->grid, visibility, state->scratch, state->out());
   };
   return out;
 }
@@ -59,6 +73,8 @@ Contestant grid_contestant(std::string_view name, const Volume& volume, const Vi
   if (name == "run_strips") return of(run_strips<HiddenFaces::end_run>);
   if (name == "run_strips_hidden") return of(run_strips<HiddenFaces::run_on>);
   if (name == "optimal_greedy") return of(mesh_optimal_greedy);
+  if (name == "monotone") return of(mesh_monotone);
+  if (name == "poly2tri") return of(mesh_poly2tri);
   RUNSTONE_ASSERT(name == "grid_rdm");
   return of(mesh_grid_rdm);
 }

@@ -7,8 +7,8 @@
 
 namespace runstone::bench {
 
-/// simple, greedy, naive_greedy, run_strips, run_strips_hidden, optimal_greedy or grid_rdm (contestant.hpp),
-/// still without its name. `visibility` must outlive it. Aborts on another name.
+/// simple, greedy, naive_greedy, run_strips, run_strips_hidden, optimal_greedy, monotone, poly2tri or grid_rdm
+/// (contestant.hpp), still without its name. `visibility` must outlive it. Aborts on another name.
 Contestant grid_contestant(std::string_view name, const Volume& volume, const VisibilityTable& visibility);
 
 }  // namespace runstone::bench

@@ -30,7 +30,14 @@ nlohmann::ordered_json json_of(const MeshRow& row) {
   }
   out["ns_per_run"] = row.ns_per_run();
   out["quads"] = row.timing.quads;
-  out["vertices"] = row.vertices();
+  const MeshFigures& mesh = row.timing.mesh;
+  out["vertices"] = mesh.vertices;
+  out["triangles"] = mesh.triangles;
+  out["t_junctions"] = mesh.t_junctions.places;
+  out["t_junction_edges"] = mesh.t_junctions.edges;
+  out["thin_16"] = mesh.thin.above_16;
+  out["thin_100"] = mesh.thin.above_100;
+  out["mesh_bytes"] = mesh.bytes;
   out["storage_bytes"] = row.timing.storage_bytes;
   out["allocations"] = row.timing.allocations;
   out["copy_ns"] = row.timing.copy_ns;
@@ -42,6 +49,7 @@ nlohmann::ordered_json json_of(const MeshRow& row) {
 /// Sums of rows of one mesher over the volumes of a world.
 struct Total {
   std::size_t volumes = 0, runs = 0, quads = 0, storage = 0, allocations = 0;
+  std::size_t vertices = 0, triangles = 0, t_junctions = 0, thin_16 = 0, thin_100 = 0;
   double median = 0, min = 0, p90 = 0, copy = 0;
   std::array<double, kPhaseCount> phase{};
   std::vector<double> against_decode, against_grid;
@@ -51,6 +59,11 @@ struct Total {
     ++volumes;
     runs += row.runs;
     quads += row.timing.quads;
+    vertices += row.timing.mesh.vertices;
+    triangles += row.timing.mesh.triangles;
+    t_junctions += row.timing.mesh.t_junctions.places;
+    thin_16 += row.timing.mesh.thin.above_16;
+    thin_100 += row.timing.mesh.thin.above_100;
     storage += row.timing.storage_bytes;
     allocations += row.timing.allocations;
     median += row.timing.median_ns;
@@ -84,8 +97,9 @@ void write_total(const std::string& mesher, const Total& total, std::ostream& ou
   };
   fmt::print(out, "| {} | {} | {} | {} |", mesher, us(total.median), us(total.min), us(total.p90));
   for (const double phase : total.phase) fmt::print(out, " {} |", phase == 0 ? "–" : us(phase));
-  fmt::print(out, " {:.1f} | {} | {} | {} | {} | {} | {} | {:.1f} |\n",
-             total.median / static_cast<double>(total.runs), mean(total.quads), mean(4 * total.quads),
+  fmt::print(out, " {:.1f} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} |\n",
+             total.median / static_cast<double>(total.runs), mean(total.quads), mean(total.vertices),
+             mean(total.triangles), mean(total.t_junctions), mean(total.thin_16), mean(total.thin_100),
              mean(total.storage), mean(total.allocations),
              ratios(total.against_decode, total.decode, total.median),
              ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
@@ -126,15 +140,18 @@ void write_csv(const MeshResult& result, std::ostream& out) {
   fmt::print(
       out,
       "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,mask_ns,mesh_ns,"
-      "ns_per_run,quads,vertices,storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
+      "ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,mesh_bytes,"
+      "storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
   for (const MeshRow& row : result.rows) {
     const Timing& t = row.timing;
     fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge, row.order,
                row.rank, row.mesher, row.runs, t.median_ns, t.min_ns, t.p90_ns);
     for (const double phase : t.phase_ns) fmt::print(out, "{:.1f},", phase);
-    fmt::print(out, "{:.2f},{},{},{},{},{:.1f},{},{}\n", row.ns_per_run(), t.quads, row.vertices(),
-               t.storage_bytes, t.allocations, t.copy_ns, ratio_text(row.against_decode),
-               ratio_text(row.against_grid));
+    fmt::print(out, "{:.2f},{},{},{},{},{},{},{},{},", row.ns_per_run(), t.quads, t.mesh.vertices,
+               t.mesh.triangles, t.mesh.t_junctions.places, t.mesh.t_junctions.edges, t.mesh.thin.above_16,
+               t.mesh.thin.above_100, t.mesh.bytes);
+    fmt::print(out, "{},{},{:.1f},{},{}\n", t.storage_bytes, t.allocations, t.copy_ns,
+               ratio_text(row.against_decode), ratio_text(row.against_grid));
   }
 }
 
@@ -170,8 +187,9 @@ void write_tables(const MeshResult& result, std::ostream& out) {
     fmt::print(
         out,
         "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads | vertices | "
-        "storage B | allocations | x decode + binary | x grid ready | copies |\n");
-    fmt::print(out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "triangles | T-junctions | thin 1:16 | 1:100 | storage B | allocations | x decode + binary | x grid "
+        "ready | copies |\n");
+    fmt::print(out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const auto& [mesher, total] : group.meshers) write_total(mesher, total, out);
   }
 }

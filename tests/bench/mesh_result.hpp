@@ -26,7 +26,6 @@ struct MeshRow {
   std::optional<double> against_decode, against_grid;
 
   double ns_per_run() const { return timing.median_ns / static_cast<double>(runs); }
-  std::size_t vertices() const { return 4 * timing.quads; }
   std::string cell() const;  // world, part, edge and order in words
 };
 

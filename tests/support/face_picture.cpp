@@ -6,25 +6,13 @@
 
 namespace runstone::test {
 
-reference::FaceLayer face_layer(const std::vector<std::string>& rows) {
-  // The faces +z of layer 0: nothing lies above them.
-  const auto side = [](std::size_t faces) {
-    return static_cast<std::uint8_t>(std::max<std::size_t>(faces, 8));
-  };
-  const Extent extent{side(rows.front().size()), side(rows.size()), 8};
-  reference::DenseGrid grid;
-  grid.reset(extent, AxisOrder::xyz);
-  for (std::ptrdiff_t z = -1; z <= extent.z; ++z) {
-    for (std::ptrdiff_t y = -1; y <= extent.y; ++y) std::fill_n(grid.line(y, z) - 1, extent.x + 2, kEmpty);
+reference::FacePlane face_plane(const std::vector<std::string>& rows) {
+  reference::FacePlane out;
+  out.width = static_cast<std::uint32_t>(rows.front().size());
+  out.height = static_cast<std::uint32_t>(rows.size());
+  for (const std::string& row : rows) {
+    for (const char face : row) out.faces.push_back(face == '#' ? kStone : face == '+' ? kDirt : kEmpty);
   }
-  for (std::size_t v = 0; v < rows.size(); ++v) {
-    for (std::size_t u = 0; u < rows[v].size(); ++u) {
-      const char face = rows[v][u];
-      grid.line(static_cast<std::ptrdiff_t>(v), 0)[u] = face == '#' ? kStone : face == '+' ? kDirt : kEmpty;
-    }
-  }
-  reference::FaceLayer out;
-  out.read(grid, mesh_visibility(), Direction::pos_z, 0);
   return out;
 }
 

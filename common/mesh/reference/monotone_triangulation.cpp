@@ -9,6 +9,10 @@ namespace runstone::reference {
 void MonotoneTriangulation::run(const Outlines& outlines, const Outlines::Region& region) {
   sweep_.read(outlines, region);
   triangles_.clear();
+  // The same regions take the same buffers again, which have then grown enough.
+  piece_count_ = slab_count_ = 0;
+  free_pieces_.clear();
+  free_slabs_.clear();
   left_of_.assign(sweep_.corners.size(), kNone);
   right_of_.assign(sweep_.corners.size(), kNone);
   for (CornerId corner = 0; corner < sweep_.corners.size(); ++corner) {
@@ -42,8 +46,8 @@ void MonotoneTriangulation::run(const Outlines& outlines, const Outlines::Region
 
 MonotoneTriangulation::PieceId MonotoneTriangulation::open_piece(CornerId lowest) {
   if (free_pieces_.empty()) {
-    free_pieces_.push_back(static_cast<PieceId>(pieces_.size()));
-    pieces_.emplace_back();
+    if (piece_count_ == pieces_.size()) pieces_.emplace_back();
+    free_pieces_.push_back(piece_count_++);
   }
   const PieceId piece = free_pieces_.back();
   free_pieces_.pop_back();
@@ -61,8 +65,8 @@ void MonotoneTriangulation::close_piece(PieceId piece, CornerId top) {
 
 MonotoneTriangulation::SlabId MonotoneTriangulation::open_slab(const Slab& slab) {
   if (free_slabs_.empty()) {
-    free_slabs_.push_back(static_cast<SlabId>(slabs_.size()));
-    slabs_.emplace_back();
+    if (slab_count_ == slabs_.size()) slabs_.emplace_back();
+    free_slabs_.push_back(slab_count_++);
   }
   const SlabId id = free_slabs_.back();
   free_slabs_.pop_back();

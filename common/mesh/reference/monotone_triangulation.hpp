@@ -68,8 +68,9 @@ class MonotoneTriangulation {
 
   SweepPoints sweep_;
   std::vector<Triangle> triangles_;
-  std::vector<Piece> pieces_;  // some of them free
+  std::vector<Piece> pieces_;  // of the last region those below piece_count_, some of them free
   std::vector<PieceId> free_pieces_;
+  std::uint32_t piece_count_ = 0, slab_count_ = 0;
   std::vector<Slab> slabs_;
   std::vector<SlabId> free_slabs_, open_slabs_;
   std::vector<SlabId> left_of_, right_of_;  // by corner: the slab whose left, right side ends there

@@ -16,26 +16,27 @@ constexpr std::array<Step, 4> kAheadRight = {{{0, -1}, {0, 0}, {-1, 0}, {-1, -1}
 
 }  // namespace
 
-void OutlineTracer::trace(const FaceLayer& layer, Outlines& out) {
+void OutlineTracer::trace(const FacePlane& plane, Outlines& out) {
   out.clear();
-  const std::size_t places = layer.index(layer.width(), layer.height()) + 1;
-  region_.assign(places, 0);
-  traced_.assign(places, 0);
+  const auto width = static_cast<int>(plane.width);
+  const auto height = static_cast<int>(plane.height);
+  stride_ = plane.width + 2;
+  region_.assign(index(width, height) + 1, 0);
+  traced_.assign(region_.size(), 0);
   regions_ = 0;
-  for (int v = 0; v < layer.height(); ++v) {
-    for (int u = 0; u < layer.width(); ++u) {
-      const Material material = layer.at(u, v);
-      if (material == kEmpty || region_[layer.index(u, v)] != 0) continue;
-      gather(layer, u, v);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const Material material = plane.row(static_cast<std::uint32_t>(v))[u];
+      if (material == kEmpty || region_[index(u, v)] != 0) continue;
+      gather(plane, u, v);
       out.regions.push_back({material, static_cast<std::uint32_t>(out.rings.size()), 0, 0});
       // The first face lies lowest, so the first ring is the outer one. Every ring has a side that runs along
       // +u and starts with a corner.
+      const auto ours = [this](int at_u, int at_v) { return region_[index(at_u, at_v)] == regions_; };
       for (const Cell& cell : cells_) {
-        const bool side = layer.at(cell.u, cell.v - 1) != material;
-        const bool corner =
-            layer.at(cell.u - 1, cell.v) != material || layer.at(cell.u - 1, cell.v - 1) == material;
-        if (side && corner && traced_[layer.index(cell.u, cell.v)] == 0)
-          trace_ring(layer, cell.u, cell.v, out);
+        const bool side = !ours(cell.u, cell.v - 1);
+        const bool corner = !ours(cell.u - 1, cell.v) || ours(cell.u - 1, cell.v - 1);
+        if (side && corner && traced_[index(cell.u, cell.v)] == 0) trace_ring(cell.u, cell.v, out);
       }
       out.regions.back().touching /= 2;  // a ring comes by once for each of the two faces
     }
@@ -43,14 +44,18 @@ void OutlineTracer::trace(const FaceLayer& layer, Outlines& out) {
 }
 
 /// The faces of the region that has this one.
-void OutlineTracer::gather(const FaceLayer& layer, int u, int v) {
+void OutlineTracer::gather(const FacePlane& plane, int u, int v) {
   ++regions_;
   cells_.clear();
-  const Material material = layer.at(u, v);
+  const Material material = plane.row(static_cast<std::uint32_t>(v))[u];
   const auto take = [&](int at_u, int at_v) {
-    const std::size_t at = layer.index(at_u, at_v);
-    if (layer.at(at_u, at_v) != material || region_[at] != 0) return;
-    region_[at] = regions_;
+    if (at_u < 0 || at_v < 0 || at_u >= static_cast<int>(plane.width) ||
+        at_v >= static_cast<int>(plane.height)) {
+      return;
+    }
+    std::uint32_t& region = region_[index(at_u, at_v)];
+    if (region != 0 || plane.row(static_cast<std::uint32_t>(at_v))[at_u] != material) return;
+    region = regions_;
     cells_.push_back({static_cast<std::int16_t>(at_u), static_cast<std::int16_t>(at_v)});
   };
   take(u, v);
@@ -61,8 +66,8 @@ void OutlineTracer::gather(const FaceLayer& layer, int u, int v) {
 }
 
 /// The ring that runs along the lower side of a face, whose start is a corner.
-void OutlineTracer::trace_ring(const FaceLayer& layer, int u, int v, Outlines& out) {
-  const std::uint32_t region = region_[layer.index(u, v)];
+void OutlineTracer::trace_ring(int u, int v, Outlines& out) {
+  const std::uint32_t region = region_[index(u, v)];
   const auto first = static_cast<std::uint32_t>(out.points.size());
   const auto corner = [&out](int at_u, int at_v) {
     out.points.push_back({static_cast<std::uint8_t>(at_u), static_cast<std::uint8_t>(at_v)});
@@ -72,12 +77,10 @@ void OutlineTracer::trace_ring(const FaceLayer& layer, int u, int v, Outlines& o
   std::size_t way = 0;
   corner(u, v);
   for (;;) {
-    if (way == 0) traced_[layer.index(u, v)] = 1;
+    if (way == 0) traced_[index(u, v)] = 1;
     u += kSteps[way].u;
     v += kSteps[way].v;
-    const auto ours = [&](const Step& ahead) {
-      return region_[layer.index(u + ahead.u, v + ahead.v)] == region;
-    };
+    const auto ours = [&](const Step& ahead) { return region_[index(u + ahead.u, v + ahead.v)] == region; };
     const bool right = ours(kAheadRight[way]);
     std::size_t next = way;
     if (!ours(kAheadLeft[way])) {

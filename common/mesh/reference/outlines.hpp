@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/mesh/reference/face_layer.hpp"
+#include "common/mesh/reference/face_plane.hpp"
 #include "common/mesh/reference/layer_point.hpp"
 
 namespace runstone::reference {
@@ -37,20 +37,24 @@ struct Outlines {
   }
 };
 
-/// Traces the regions of layers. Buffers are kept. Belongs to one thread.
+/// Traces the regions of planes. Buffers are kept. Belongs to one thread.
 class OutlineTracer {
  public:
-  /// Replaces `out` by the outlines of a layer, regions by their lowest row, then along u. O(faces).
-  void trace(const FaceLayer& layer, Outlines& out);
+  /// Replaces `out` by the outlines of a plane, regions by their lowest row, then along u. O(faces).
+  void trace(const FacePlane& plane, Outlines& out);
 
  private:
-  void gather(const FaceLayer& layer, int u, int v);
-  void trace_ring(const FaceLayer& layer, int u, int v, Outlines& out);
-
   struct Cell {
     std::int16_t u, v;
   };
-  std::vector<std::uint32_t> region_;  // of each face, from 1; by FaceLayer::index()
+  std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(u + 1) + stride_ * static_cast<std::size_t>(v + 1);
+  }
+  void gather(const FacePlane& plane, int u, int v);
+  void trace_ring(int u, int v, Outlines& out);
+
+  std::size_t stride_ = 0;
+  std::vector<std::uint32_t> region_;  // of each face, from 1; a margin of none lies around the plane
   std::vector<std::uint8_t> traced_;   // whether the side towards -v belongs to a ring
   std::vector<Cell> cells_;            // of the region at hand
   std::uint32_t regions_ = 0;

@@ -76,6 +76,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   std::map<std::string, std::set<std::string>> meshers;  // by world and part
   std::map<std::string, std::set<std::string>> parts;    // by world
   std::map<std::string, std::map<std::string, std::size_t>> quads;
+  std::map<std::string, std::set<std::string>> triangles;  // of meshers of polygons: all of them the same
+  std::size_t t_junctions = 0;
   for (const CsvRow& row : rows) {
     const std::string cell = row.at("world") + " " + row.at("part");
     CAPTURE(cell, row.at("mesher"));
@@ -85,7 +87,21 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
     CHECK(row.at("edge") == "32");
     CHECK(row.at("rank") == "best");
     CHECK(row.at("allocations") == "0");
-    CHECK(std::stoul(row.at("vertices")) == 4 * std::stoul(row.at("quads")));
+    if (row.at("mesher") == "monotone" || row.at("mesher") == "poly2tri") {
+      CHECK(row.at("quads") == "0");
+      triangles[cell].insert(row.at("triangles"));
+      CHECK(std::stoul(row.at("mesh_bytes")) ==
+            3 * std::stoul(row.at("vertices")) + 16 * std::stoul(row.at("triangles")));
+    } else {
+      CHECK(std::stoul(row.at("vertices")) == 4 * std::stoul(row.at("quads")));
+      CHECK(std::stoul(row.at("triangles")) == 2 * std::stoul(row.at("quads")));
+      CHECK(std::stoul(row.at("mesh_bytes")) == 8 * std::stoul(row.at("quads")));
+    }
+    // Edges of unit length have no room for a T-junction.
+    if (row.at("mesher") == "culled") CHECK(row.at("t_junctions") == "0");
+    CHECK(std::stoul(row.at("t_junctions")) <= std::stoul(row.at("t_junction_edges")));
+    t_junctions += std::stoul(row.at("t_junctions"));
+    CHECK(std::stoul(row.at("thin_100")) <= std::stoul(row.at("thin_16")));
     CHECK(std::stod(row.at("median_ns")) > 0);
     CHECK(std::stod(row.at("min_ns")) <= std::stod(row.at("median_ns")));
     CHECK_FALSE(row.at("against_decode").empty());
@@ -99,6 +115,7 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   for (const auto& [cell, names] : meshers) {
     CAPTURE(cell);
     CHECK(names.size() == all.size());
+    CHECK(triangles[cell].size() == 1);
     const auto& of = quads[cell];
     CHECK(of.at("rdm") == of.at("rdm_plain"));
     CHECK(of.at("decode_binary") == of.at("grid_binary"));
@@ -112,6 +129,7 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
     for (const auto& [mesher, count] : of) sums[mesher] += count;
   }
   CHECK(static_cast<double>(sums["rdm"]) <= 1.03 * static_cast<double>(sums["decode_binary"]));
+  CHECK(t_junctions > 1000);
   CHECK(quads["checkerboard 0 -16 0"]["culled"] == 32 * 32 * 32 / 2 * 6);
   CHECK(quads["uniform 0 -16 0"]["rdm"] == 0);
 

@@ -19,7 +19,7 @@ using namespace reference;
 Outlines outlines_of(const std::vector<std::string>& rows) {
   Outlines out;
   OutlineTracer tracer;
-  tracer.trace(face_layer(rows), out);
+  tracer.trace(face_plane(rows), out);
   return out;
 }
 
@@ -74,25 +74,27 @@ TEST_CASE("a ring passes a corner where its region touches itself twice", "[mesh
 }
 
 /// Regions by joining faces side by side, each as the set of its faces.
-std::vector<std::set<std::pair<int, int>>> regions_of(const FaceLayer& layer) {
-  const auto at = [&layer](int u, int v) { return static_cast<std::size_t>(v * layer.width() + u); };
-  std::vector<std::size_t> root(at(0, layer.height()));
+std::vector<std::set<std::pair<int, int>>> regions_of(const FacePlane& plane) {
+  const auto width = static_cast<int>(plane.width), height = static_cast<int>(plane.height);
+  const auto face = [&](int u, int v) {
+    return u < width && v < height ? plane.row(static_cast<std::uint32_t>(v))[u] : kEmpty;
+  };
+  const auto at = [&width](int u, int v) { return static_cast<std::size_t>(v * width + u); };
+  std::vector<std::size_t> root(at(0, height));
   std::iota(root.begin(), root.end(), std::size_t{0});
   const std::function<std::size_t(std::size_t)> find = [&](std::size_t i) {
     return root[i] == i ? i : root[i] = find(root[i]);
   };
-  for (int v = 0; v < layer.height(); ++v) {
-    for (int u = 0; u < layer.width(); ++u) {
-      if (layer.at(u, v) == layer.at(u + 1, v) && layer.at(u, v) != kEmpty)
-        root[find(at(u, v))] = find(at(u + 1, v));
-      if (layer.at(u, v) == layer.at(u, v + 1) && layer.at(u, v) != kEmpty)
-        root[find(at(u, v))] = find(at(u, v + 1));
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      if (face(u, v) == face(u + 1, v) && face(u, v) != kEmpty) root[find(at(u, v))] = find(at(u + 1, v));
+      if (face(u, v) == face(u, v + 1) && face(u, v) != kEmpty) root[find(at(u, v))] = find(at(u, v + 1));
     }
   }
   std::map<std::size_t, std::set<std::pair<int, int>>> faces;
-  for (int v = 0; v < layer.height(); ++v) {
-    for (int u = 0; u < layer.width(); ++u) {
-      if (layer.at(u, v) != kEmpty) faces[find(at(u, v))].insert({u, v});
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      if (face(u, v) != kEmpty) faces[find(at(u, v))].insert({u, v});
     }
   }
   std::vector<std::set<std::pair<int, int>>> out;
@@ -108,9 +110,9 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
   std::size_t holes_met = 0;
   for (int round = 0; round < 1500; ++round) {
     const auto rows = random_picture(rng, round % 10 == 0 ? 40 : 10);
-    const FaceLayer layer = face_layer(rows);
-    tracer.trace(layer, outlines);
-    auto regions = regions_of(layer);
+    const FacePlane plane = face_plane(rows);
+    tracer.trace(plane, outlines);
+    auto regions = regions_of(plane);
     CAPTURE(round, rows);
     REQUIRE(outlines.regions.size() == regions.size());
     for (const Outlines::Region& region : outlines.regions) {
@@ -120,7 +122,7 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
                                       [&](const auto& r) { return r.count({first.u, first.v}) != 0; });
       REQUIRE(faces != regions.end());
       const auto in = [&faces](int u, int v) { return faces->count({u, v}) != 0; };
-      REQUIRE(region.material == layer.at(first.u, first.v));
+      REQUIRE(region.material == plane.row(first.v)[first.u]);
 
       // Unit sides as the rings run them, and as the faces have them: the face on the left, none on the right.
       std::multiset<std::array<int, 4>> run;
@@ -155,8 +157,8 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
       // A corner has one or three faces of the region around it, or two on a diagonal: then it is passed twice.
       std::map<std::pair<int, int>, int> corners_owed;
       std::uint32_t touching = 0;
-      for (int v = 0; v <= layer.height(); ++v) {
-        for (int u = 0; u <= layer.width(); ++u) {
+      for (int v = 0; v <= static_cast<int>(plane.height); ++v) {
+        for (int u = 0; u <= static_cast<int>(plane.width); ++u) {
           const bool a = in(u - 1, v - 1), b = in(u, v - 1), c = in(u - 1, v), d = in(u, v);
           const int around = a + b + c + d;
           if (around == 1 || around == 3) corners_owed[{u, v}] = 1;

@@ -105,7 +105,7 @@ TEST_CASE("regions of random pictures: exact triangulations, and the Delaunay on
   std::size_t touching = 0, holes = 0, free_edges = 0, bad_monotone = 0;
   for (int round = 0; round < 1500; ++round) {
     const auto rows = random_picture(rng, round % 100 == 0 ? 128 : round % 10 == 0 ? 40 : 12);
-    tracer.trace(face_layer(rows), outlines);
+    tracer.trace(face_plane(rows), outlines);
     for (const Outlines::Region& region : outlines.regions) {
       CAPTURE(round, rows);
       monotone.run(outlines, region);
@@ -158,7 +158,7 @@ TEST_CASE("a comb and a spiral, whose corners lie in few rows and columns", "[me
     v += dv;
   }
   for (const auto& picture : {comb, spiral}) {
-    tracer.trace(face_layer(picture), outlines);
+    tracer.trace(face_plane(picture), outlines);
     REQUIRE(outlines.regions.size() == 1);
     CHECK(outlines.points.size() > 100);
     monotone.run(outlines, outlines.regions[0]);
