@@ -13,7 +13,7 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::string_view kProduct = "product";
+constexpr std::array<std::string_view, 2> kWaysOfRdm = {"quads", "product"};
 constexpr std::array<std::string_view, 4> kSameMesh = {"rdm_kept", "rdm_plain", "grid_binary", "mask_binary"};
 constexpr int kSideMin = 16, kSideMaxPixels = 4096;
 
@@ -22,7 +22,7 @@ constexpr int kSideMin = 16, kSideMaxPixels = 4096;
 std::vector<std::string> frames_mesher_names() {
   const auto contestants = contestant_names();
   std::vector<std::string> out(contestants.begin(), contestants.end());
-  out.emplace_back(kProduct);
+  out.insert(out.end(), kWaysOfRdm.begin(), kWaysOfRdm.end());
   return out;
 }
 
@@ -61,7 +61,7 @@ CLI::App* add_frames_command(CLI::App& app, FramesOptions& options) {
   const auto meshers = frames_mesher_names();
   frames
       ->add_option("--meshers", options.meshers,
-                   "meshers to draw; by default one of each different mesh, and the product")
+                   "meshers to draw; by default one of each different mesh, quads and product")
       ->delimiter(',')
       ->check(CLI::IsMember(std::set<std::string>(meshers.begin(), meshers.end())));
   frames->add_option("--luanti", options.luanti, "folder of a Luanti world")

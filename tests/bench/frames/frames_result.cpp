@@ -49,7 +49,7 @@ const FramesRow* find(const std::vector<FramesRow>& rows, const std::string& wor
 }
 
 std::string title(const Column& column) {
-  return column.second == "product" ? column.first + ", product path" : column.first;
+  return column.second == "plain" ? column.first : fmt::format("{}, {}", column.first, column.second);
 }
 
 /// Means over the rows of one mesher.

@@ -13,15 +13,16 @@ namespace runstone::bench {
 
 struct FramesRow {
   std::string world, mesher;
-  /// "plain": indexed triangles, one vertex format and shader for all meshers. "product": the client's
-  /// renderer, whose sky, fog and light cost more a pixel, and whose picture cannot be compared.
+  /// "plain": indexed triangles, one vertex format and shader for all meshers. "quads": the same shader, but
+  /// packed quads of 8 bytes, an instance each, as the client draws them. "product": the client's renderer,
+  /// whose sky, fog and light cost more a pixel, and whose picture cannot be compared.
   std::string path;
   std::size_t vertices = 0;  // 4 a quad, as the thesis counts; those that a triangle mesh shares count once
   std::size_t triangles = 0;
   std::size_t upload_bytes = 0;
   unsigned frames = 0;  // timed
   double p50_ms = 0, p90_ms = 0, p99_ms = 0;
-  /// Of plain rows with something to draw. Sums over the chunks, each for itself; shares of the triangles.
+  /// Of plain and quads rows with something to draw. Sums over the chunks, each for itself; shares of the triangles.
   std::optional<std::size_t> t_junctions;   // places (common/mesh/reference/t_junctions.hpp)
   std::optional<double> thin_16, thin_100;  // longer than 1:16, 1:100 (thin_triangles.hpp)
   /// Likewise; means over the pictures.

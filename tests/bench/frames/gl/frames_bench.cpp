@@ -52,15 +52,14 @@ std::string gl_text(GLenum what) {
 using Refusal = std::string;
 
 /// The chunks of a world as a mesher has them, on the GPU, and what can be said of them before they are drawn.
-Refusal mesh_world(const FramesWorld& world, std::string_view mesher, std::size_t vertices_max,
-                   PlainScene& scene, FramesRow& row) {
+Refusal mesh_world(const FramesWorld& world, std::size_t vertices_max, PlainScene& scene, FramesRow& row) {
   reference::ThinTriangles thin;
   std::size_t junctions = 0;
   reference::Surface surface;
   IndexedMesh mesh;
   const auto side = static_cast<std::int32_t>(world.edge);
   for (const FramesChunk& chunk : world.chunks) {
-    const auto contestant = make_contestant(mesher, chunk.volume, *world.visibility);
+    const auto contestant = make_contestant(row.mesher, chunk.volume, *world.visibility);
     if (!contestant) return "it cannot take the chunks";
     PhaseTimes phases{};
     contestant->mesh(phases);
@@ -68,9 +67,14 @@ Refusal mesh_world(const FramesWorld& world, std::string_view mesher, std::size_
     if (scene.vertices() + surface.vertex_count() > vertices_max) {
       return fmt::format("more than {} vertices", vertices_max);
     }
-    index_surface(surface, mesh);
     const VoxelPos at = origin_of(chunk.at, side);
-    scene.add(glm::vec3{at.x, at.y, at.z}, world.edge, mesh);
+    const glm::vec3 origin{at.x, at.y, at.z};
+    if (row.path == "quads") {
+      scene.add(origin, world.edge, surface.quads);
+    } else {
+      index_surface(surface, mesh);
+      scene.add(origin, world.edge, mesh);
+    }
     const reference::ThinTriangles of_chunk = reference::count_thin_triangles(surface);
     thin.above_16 += of_chunk.above_16;
     thin.above_100 += of_chunk.above_100;
@@ -139,7 +143,6 @@ class FramesBench {
 
   /// Draws `scene`, which has what `row` says.
   Painter plain_painter(FramesRow row, PlainScene& scene) {
-    row.path = "plain";
     row.vertices = scene.vertices();
     row.triangles = scene.triangles();
     row.upload_bytes = scene.byte_size();
@@ -163,20 +166,22 @@ class FramesBench {
     std::vector<Painter> out;
     FramesRow row;
     row.world = world.name;
+    row.path = "plain";
     row.mesher = "none";  // what a frame costs with nothing in it
     out.push_back(plain_painter(row, new_scene()));
     for (const std::string& mesher : meshers) {
-      row.mesher = mesher;
       if (mesher == "product") {
         out.push_back(product_painter(world));
         continue;
       }
       FramesRow of_mesher = row;
+      of_mesher.mesher = mesher == "quads" ? "rdm" : mesher;
+      if (mesher == "quads") of_mesher.path = mesher;
       PlainScene& scene = new_scene();
       // The reference has to be there whatever it costs.
       const std::size_t vertices_max =
           mesher == kReference ? std::numeric_limits<std::size_t>::max() : options_.vertices_max;
-      const Refusal refusal = mesh_world(world, mesher, vertices_max, scene, of_mesher);
+      const Refusal refusal = mesh_world(world, vertices_max, scene, of_mesher);
       if (!refusal.empty()) {
         result_.skipped.push_back(fmt::format("{} {}: {}", world.name, mesher, refusal));
         scenes_.pop_back();

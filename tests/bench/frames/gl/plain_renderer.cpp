@@ -30,13 +30,15 @@ std::uint64_t samples_of(Draw&& draw) {
 
 PlainRenderer::PlainRenderer(GlContextLoader loader, int width, int height) : width_(width), height_(height) {
   if (gladLoadGL(loader) == 0) throw std::runtime_error("the OpenGL loader found no functions");
-  program_ = link_program("plain", kPlainVertexShader, kPlainFragmentShader);
+  colour_.indexed = link_program("plain", kPlainVertexShader, kPlainFragmentShader);
+  colour_.packed = link_program("plain packed", kPackedVertexShader, kPlainFragmentShader);
   target_.bind(width, height);
   GLint major = 0, minor = 0;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
   if (major * 10 + minor < 45) return;
-  lanes_program_ = link_program("lanes", kPlainVertexShader, kLanesFragmentShader);
+  lanes_.indexed = link_program("lanes", kPlainVertexShader, kLanesFragmentShader);
+  lanes_.packed = link_program("lanes packed", kPackedVertexShader, kLanesFragmentShader);
   lanes_colour_ = GlRenderbuffer::make();
   glBindRenderbuffer(GL_RENDERBUFFER, lanes_colour_.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_R32F, width, height);
@@ -63,7 +65,7 @@ void PlainRenderer::bind(bool depth_test) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void PlainRenderer::draw_with(const GlProgram& program, const PlainScene& scene, const Camera& camera) {
+void PlainRenderer::draw_with(const Programs& programs, const PlainScene& scene, const Camera& camera) {
   struct Visible {
     const PlainScene::Chunk* chunk;
     float distance2;
@@ -78,6 +80,7 @@ void PlainRenderer::draw_with(const GlProgram& program, const PlainScene& scene,
   std::sort(visible.begin(), visible.end(), [](const Visible& a, const Visible& b) {
     return std::tie(a.distance2, a.chunk) < std::tie(b.distance2, b.chunk);
   });
+  const GlProgram& program = scene.packed_ ? programs.packed : programs.indexed;
   glUseProgram(program.get());
   glUniformMatrix4fv(glGetUniformLocation(program.get(), "clip"), 1, GL_FALSE,
                      glm::value_ptr(clip_of(camera, width_, height_)));
@@ -85,13 +88,17 @@ void PlainRenderer::draw_with(const GlProgram& program, const PlainScene& scene,
   for (const Visible& v : visible) {
     glUniform3fv(origin, 1, glm::value_ptr(v.chunk->origin));
     glBindVertexArray(v.chunk->array.get());
-    glDrawElements(GL_TRIANGLES, v.chunk->index_count, GL_UNSIGNED_INT, nullptr);
+    if (scene.packed_) {
+      glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, v.chunk->count);
+    } else {
+      glDrawElements(GL_TRIANGLES, v.chunk->count, GL_UNSIGNED_INT, nullptr);
+    }
   }
 }
 
 void PlainRenderer::draw(const PlainScene& scene, const Camera& camera) {
   bind(true);
-  draw_with(program_, scene, camera);
+  draw_with(colour_, scene, camera);
 }
 
 DrawnPicture PlainRenderer::read() {
@@ -104,22 +111,22 @@ DrawnPicture PlainRenderer::read() {
 
 std::uint64_t PlainRenderer::fragments_drawn(const PlainScene& scene, const Camera& camera) {
   bind(true);
-  return samples_of([&] { draw_with(program_, scene, camera); });
+  return samples_of([&] { draw_with(colour_, scene, camera); });
 }
 
 std::uint64_t PlainRenderer::fragments_covered(const PlainScene& scene, const Camera& camera) {
   bind(false);
-  return samples_of([&] { draw_with(program_, scene, camera); });
+  return samples_of([&] { draw_with(colour_, scene, camera); });
 }
 
 std::optional<double> PlainRenderer::lanes_shaded(const PlainScene& scene, const Camera& camera) {
-  if (!lanes_program_) return std::nullopt;
+  if (!lanes_.indexed) return std::nullopt;
   bind(true);
   glBindFramebuffer(GL_FRAMEBUFFER, lanes_framebuffer_.get());
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  draw_with(lanes_program_, scene, camera);
+  draw_with(lanes_, scene, camera);
   glDisable(GL_BLEND);
   std::vector<float> lanes(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   glReadPixels(0, 0, width_, height_, GL_RED, GL_FLOAT, lanes.data());

@@ -1,5 +1,5 @@
-// PlainRenderer: the plainest way to draw a mesh: indexed triangles of one vertex format with one small
-// shader, back faces culled, chunks from near to far. What it draws looks the same whoever made the mesh.
+// PlainRenderer: the plainest way to draw a mesh: indexed triangles of one vertex format, or packed quads, with
+// one small shader, back faces culled, chunks from near to far. What it draws looks the same whoever made the mesh.
 // All calls from the one thread whose context is current.
 #pragma once
 #include <cstdint>
@@ -34,11 +34,14 @@ class PlainRenderer {
   std::optional<double> lanes_shaded(const PlainScene& scene, const Camera& camera);
 
  private:
-  void draw_with(const GlProgram& program, const PlainScene& scene, const Camera& camera);
+  struct Programs {
+    GlProgram indexed, packed;
+  };
+  void draw_with(const Programs& programs, const PlainScene& scene, const Camera& camera);
   void bind(bool depth_test);
 
   int width_, height_;
-  GlProgram program_, lanes_program_;
+  Programs colour_, lanes_;
   FrameTarget target_;
   GlFramebuffer lanes_framebuffer_;
   GlRenderbuffer lanes_colour_, lanes_depth_;

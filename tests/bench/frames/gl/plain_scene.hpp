@@ -1,11 +1,14 @@
-// PlainScene: one mesher's block of chunks on the GPU, a vertex and an index buffer for each chunk.
+// PlainScene: one mesher's block of chunks on the GPU: indexed triangles, a vertex and an index buffer for each
+// chunk, or packed quads, one buffer for each.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "client/render/gl_handle.hpp"
+#include "common/mesh/quad.hpp"
 #include "tests/bench/frames/indexed_mesh.hpp"
 
 namespace runstone::bench {
@@ -15,6 +18,8 @@ class PlainScene {
   /// Uploads a chunk of `edge` voxels a side that begins at `origin` in the block; nothing if it is empty.
   /// Throws std::runtime_error if the GPU has no memory left.
   void add(const glm::vec3& origin, unsigned edge, const IndexedMesh& mesh);
+  /// The same of packed quads. A scene is of one sort.
+  void add(const glm::vec3& origin, unsigned edge, std::span<const Quad> quads);
 
   std::size_t vertices() const { return vertices_; }
   std::size_t triangles() const { return triangles_; }
@@ -26,8 +31,11 @@ class PlainScene {
     glm::vec3 origin, centre;
     GlVertexArray array;
     GlBuffer vertices, indices;
-    GLsizei index_count = 0;
+    GLsizei count = 0;  // indices, or quads
   };
+  Chunk& new_chunk(const glm::vec3& origin, unsigned edge);
+
+  bool packed_ = false;
   std::vector<Chunk> chunks_;
   std::size_t vertices_ = 0, triangles_ = 0, bytes_ = 0;
 };
