@@ -4,40 +4,16 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 
+#include "tests/bench/shuffled.hpp"
 #include "tests/bench/statistics.hpp"
 #include "tests/support/count_allocations.hpp"
 
 namespace runstone::bench {
 namespace {
 
-/// Samples of one contestant, a value a repetition.
-struct Samples {
-  std::vector<double> call_ns, copy_ns;
-  std::array<std::vector<double>, kPhaseCount> phase_ns;
-};
-
-/// What Google Benchmark hands over: the time of each repetition, and our counters with it.
-class Collector final : public benchmark::BenchmarkReporter {
- public:
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration) continue;
-      Samples& to = samples_[run.run_name.function_name];
-      to.call_ns.push_back(run.GetAdjustedRealTime());
-      to.copy_ns.push_back(run.counters.at("copy"));
-      for (std::size_t p = 0; p < kPhaseCount; ++p) {
-        to.phase_ns[p].push_back(run.counters.at(std::string(kPhaseNames[p])));
-      }
-    }
-  }
-  const Samples& of(std::string_view contestant) const { return samples_.find(contestant)->second; }
-
- private:
-  std::map<std::string, Samples, std::less<>> samples_;
-};
+/// What a repetition measures, in this order: ns of a call, ns of a copy, ns of each phase.
+enum Figure : std::size_t { kCall, kCopy, kFirstPhase };
 
 /// What this thread needs of its core for each of `calls` calls of `work`.
 template <class Work>
@@ -48,62 +24,49 @@ double core_ns_per_call(std::uint64_t calls, Work work) {
 }
 
 /// Shares the time of a call out among its phases.
-void count_phases(benchmark::State& state, PhaseTimes phases, std::uint64_t wall_ns, double call_ns) {
+void add_phases(PhaseTimes phases, std::uint64_t wall_ns, double call_ns, std::vector<double>& figures) {
   std::uint64_t before_mesh = 0;
   for (const std::uint64_t phase : phases) before_mesh += phase;
   phases[static_cast<std::size_t>(Phase::mesh)] = wall_ns - before_mesh;
-  for (std::size_t p = 0; p < kPhaseCount; ++p) {
-    state.counters[std::string(kPhaseNames[p])] =
-        call_ns * static_cast<double>(phases[p]) / static_cast<double>(wall_ns);
+  for (const std::uint64_t phase : phases) {
+    figures.push_back(call_ns * static_cast<double>(phase) / static_cast<double>(wall_ns));
   }
 }
 
-void repeat(benchmark::State& state, const Contestant& contestant, std::size_t mesh_bytes,
-            std::uint64_t calls) {
+std::vector<double> repeat(const Contestant& contestant, std::size_t mesh_bytes, std::uint64_t calls) {
   const std::size_t bytes = contestant.storage_bytes + mesh_bytes;
   std::vector<char> from(bytes, 1), to(bytes, 2);
-  for (auto _ : state) {
-    PhaseTimes phases{};
-    for (std::uint64_t i = 0; i < calls; ++i) contestant.mesh(phases);
-    phases = {};
-    const std::uint64_t start = now_ns();
-    const double call_ns = core_ns_per_call(calls, [&] { contestant.mesh(phases); });
-    count_phases(state, phases, now_ns() - start, call_ns);
-    state.SetIterationTime(call_ns * 1e-9);
-    state.counters["copy"] = core_ns_per_call(calls, [&] {
-      std::memcpy(to.data(), from.data(), bytes);
-      benchmark::DoNotOptimize(to.data());
-      benchmark::ClobberMemory();
-    });
-  }
+  PhaseTimes phases{};
+  for (std::uint64_t i = 0; i < calls; ++i) contestant.mesh(phases);
+  phases = {};
+  const std::uint64_t start = now_ns();
+  const double call_ns = core_ns_per_call(calls, [&] { contestant.mesh(phases); });
+  const std::uint64_t wall_ns = now_ns() - start;
+  const double copy_ns = core_ns_per_call(calls, [&] {
+    std::memcpy(to.data(), from.data(), bytes);
+    benchmark::DoNotOptimize(to.data());
+    benchmark::ClobberMemory();
+  });
+  std::vector<double> figures = {call_ns, copy_ns};
+  add_phases(phases, wall_ns, call_ns, figures);
+  return figures;
 }
 
-/// Google Benchmark takes its flags from a command line, once in a process.
-void shuffle_repetitions() {
-  static const bool done = [] {
-    char name[] = "runstone-bench", flag[] = "--benchmark_enable_random_interleaving=true";
-    char* arguments[] = {name, flag, nullptr};
-    int count = 2;
-    benchmark::Initialize(&count, arguments);
-    return true;
-  }();
-  static_cast<void>(done);
-}
-
-Timing timing_of(const Samples& samples) {
+Timing timing_of(const std::vector<std::vector<double>>& samples) {
+  const std::vector<double>& calls = samples[kCall];
   Timing out;
-  out.median_ns = median(samples.call_ns);
-  out.min_ns = *std::min_element(samples.call_ns.begin(), samples.call_ns.end());
-  out.p90_ns = quantile(samples.call_ns, 0.9);
-  out.copy_ns = median(samples.copy_ns);
-  for (std::size_t p = 0; p < kPhaseCount; ++p) out.phase_ns[p] = median(samples.phase_ns[p]);
+  out.median_ns = median(calls);
+  out.min_ns = *std::min_element(calls.begin(), calls.end());
+  out.p90_ns = quantile(calls, 0.9);
+  out.copy_ns = median(samples[kCopy]);
+  for (std::size_t p = 0; p < kPhaseCount; ++p) out.phase_ns[p] = median(samples[kFirstPhase + p]);
   return out;
 }
 
 }  // namespace
 
 std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestants, unsigned repetitions) {
-  shuffle_repetitions();
+  std::vector<ShuffledCase> cases;
   std::vector<std::optional<Timing>> out(contestants.size());
   reference::Surface surface;
   for (std::size_t i = 0; i < contestants.size(); ++i) {
@@ -125,23 +88,15 @@ std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestant
     timing.mesh = figures_of(surface);
     timing.storage_bytes = contestant.storage_bytes;
     out[i] = timing;
-    benchmark::RegisterBenchmark(std::string(contestant.name).c_str(),
-                                 [&contestant, bytes = timing.mesh.bytes, calls](benchmark::State& s) {
-                                   repeat(s, contestant, bytes, calls);
-                                 })
-        ->Iterations(1)
-        ->Repetitions(static_cast<int>(repetitions))
-        ->UseManualTime()
-        ->Unit(benchmark::kNanosecond);
+    cases.push_back({std::string(contestant.name), [&contestant, bytes = timing.mesh.bytes, calls] {
+                       return repeat(contestant, bytes, calls);
+                     }});
   }
-  if (std::none_of(out.begin(), out.end(), [](const auto& timing) { return timing.has_value(); })) return out;
-  Collector collector;
-  benchmark::RunSpecifiedBenchmarks(&collector, ".");
-  benchmark::ClearRegisteredBenchmarks();
-  for (std::size_t i = 0; i < contestants.size(); ++i) {
+  const auto samples = run_shuffled(cases, repetitions);
+  for (std::size_t i = 0, measured = 0; i < contestants.size(); ++i) {
     if (!out[i]) continue;
     const Timing& known = *out[i];
-    Timing timing = timing_of(collector.of(contestants[i].name));
+    Timing timing = timing_of(samples[measured++]);
     timing.quads = known.quads;
     timing.mesh = known.mesh;
     timing.storage_bytes = known.storage_bytes;

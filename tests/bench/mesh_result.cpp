@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/machine_json.hpp"
 #include "tests/bench/statistics.hpp"
 
 namespace runstone::bench {
@@ -156,13 +157,7 @@ void write_csv(const MeshResult& result, std::ostream& out) {
 }
 
 void write_json(const MeshResult& result, std::ostream& out) {
-  const Machine& m = result.machine;
-  nlohmann::ordered_json json = {{"machine",
-                                  {{"cpu", m.cpu},
-                                   {"cores", m.cores},
-                                   {"compiler", m.compiler},
-                                   {"commit", m.commit},
-                                   {"simd", m.simd}}},
+  nlohmann::ordered_json json = {{"machine", json_of(result.machine)},
                                  {"repetitions", result.repetitions},
                                  {"rows", nlohmann::ordered_json::array()},
                                  {"skipped", result.skipped},

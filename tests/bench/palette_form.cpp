@@ -2,23 +2,21 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <bit>
-
 #include "common/core/assert.hpp"
+#include "tests/bench/packed_longs.hpp"
 
 namespace runstone::bench {
 namespace {
 
 constexpr int kLevel = 6;
 constexpr unsigned kDirectBits = 15;
-constexpr unsigned kIndirectBitsMax = 8;
 constexpr std::size_t kSectionBytesMax = 8 * 1024 + 600;  // direct longs, and room for any head
 
 struct Scratch {
   Bytes plain;
   std::vector<Material> palette;  // of the section written last
   std::vector<Material> names;    // of the section read last
+  PackedLongs numbers;            // of the section at hand: places in its palette, or ids
   Bytes received;
   std::vector<std::uint16_t> index_of = std::vector<std::uint16_t>(65536, 0xffff);  // by id; 0xffff: absent
 };
@@ -32,19 +30,9 @@ void put_long(Bytes& out, std::uint64_t v) {
   for (int shift = 56; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(v >> shift));
 }
 
-/// Calls value(i) for the indices or ids in order.
-template <class Value>
-void put_longs(Bytes& out, unsigned bits, Value&& value) {
-  const std::size_t per_long = 64 / bits;
-  const std::size_t longs = (4096 + per_long - 1) / per_long;
-  ByteWriter(out).varint(longs);
-  for (std::size_t i = 0; i < 4096;) {
-    std::uint64_t word = 0;
-    for (std::size_t k = 0; k < per_long && i < 4096; ++k, ++i) {
-      word |= std::uint64_t{value(i)} << (k * bits);
-    }
-    put_long(out, word);
-  }
+void put_longs(Bytes& out, const PackedLongs& numbers) {
+  ByteWriter(out).varint(numbers.longs().size());
+  for (const std::uint64_t word : numbers.longs()) put_long(out, word);
 }
 
 void put_section(const PaletteSection& section, Scratch& s) {
@@ -67,16 +55,20 @@ void put_section(const PaletteSection& section, Scratch& s) {
     w.varint(0);
     return;
   }
-  const auto bits = std::max(4u, static_cast<unsigned>(std::bit_width(s.palette.size() - 1)));
-  if (bits > kIndirectBitsMax) {
+  const unsigned bits = palette_bits(s.palette.size());
+  if (bits > kPaletteBitsMax) {
     w.u8(kDirectBits);
-    put_longs(s.plain, kDirectBits, [&](std::size_t i) { return section[i]; });
+    s.numbers.reset(section.size(), kDirectBits);
+    s.numbers.assign([&](std::size_t i) { return section[i]; });
+    put_longs(s.plain, s.numbers);
     return;
   }
   w.u8(static_cast<std::uint8_t>(bits));
   w.varint(s.palette.size());
   for (const Material id : s.palette) w.varint(id);
-  put_longs(s.plain, bits, [&](std::size_t i) { return s.index_of[section[i]]; });
+  s.numbers.reset(section.size(), bits);
+  s.numbers.assign([&](std::size_t i) { return s.index_of[section[i]]; });
+  put_longs(s.plain, s.numbers);
 }
 
 Result<void> read_section(ByteReader& in, Scratch& s, PaletteSection& out) {
@@ -86,7 +78,7 @@ Result<void> read_section(ByteReader& in, Scratch& s, PaletteSection& out) {
   s.names.clear();
   if (bits == 0) {
     s.names.push_back(static_cast<Material>(in.varint_max(0x7fff, "id of a section")));
-  } else if (bits <= kIndirectBitsMax) {
+  } else if (bits <= kPaletteBitsMax) {
     const std::uint64_t count = in.varint_max(256, "palette of a section");
     for (std::uint64_t i = 0; i < count; ++i) {
       s.names.push_back(static_cast<Material>(in.varint_max(0x7fff, "id of a section")));
@@ -99,20 +91,21 @@ Result<void> read_section(ByteReader& in, Scratch& s, PaletteSection& out) {
     out.fill(s.names[0]);
     return {};
   }
-  const std::size_t per_long = 64 / bits;
-  if (longs != (4096 + per_long - 1) / per_long) return fail(ErrorCode::bad_value, "longs of a section");
-  std::size_t i = 0;
-  for (std::size_t word_at = 0; word_at < longs; ++word_at) {
-    std::uint64_t word = 0;
-    for (std::size_t b = 0; b < 8; ++b) word = word << 8 | words[8 * word_at + b];
-    for (std::size_t k = 0; k < per_long && i < 4096; ++k, ++i, word >>= bits) {
-      const auto value = static_cast<std::size_t>(word & ((1u << bits) - 1));
-      if (bits <= kIndirectBitsMax && value >= s.names.size()) {
-        return fail(ErrorCode::bad_value, "index behind the palette of a section");
-      }
-      out[i] = bits <= kIndirectBitsMax ? s.names[value] : static_cast<Material>(value);
-    }
+  s.numbers.reset(out.size(), bits);
+  if (longs != s.numbers.longs().size()) return fail(ErrorCode::bad_value, "longs of a section");
+  const std::uint8_t* from = words.data();
+  for (std::uint64_t& word : s.numbers.longs()) {
+    for (std::size_t b = 0; b < 8; ++b) word = word << 8 | *from++;
   }
+  std::size_t i = 0;
+  std::uint32_t highest = 0;
+  s.numbers.for_each([&](std::uint32_t value) {
+    highest = std::max(highest, value);
+    out[i++] = static_cast<Material>(value);
+  });
+  if (bits > kPaletteBitsMax) return {};
+  if (highest >= s.names.size()) return fail(ErrorCode::bad_value, "index behind the palette of a section");
+  for (Material& voxel : out) voxel = s.names[voxel];
   return {};
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/machine_json.hpp"
+
 namespace runstone::bench {
 namespace {
 
@@ -32,11 +34,7 @@ void write_csv(std::span<const Figure> figures, std::ostream& out) {
 void write_json(const Machine& machine, std::span<const Figure> figures, std::span<const Bar> bars,
                 std::ostream& out) {
   nlohmann::ordered_json json;
-  json["machine"] = {{"cpu", machine.cpu},
-                     {"cores", machine.cores},
-                     {"compiler", machine.compiler},
-                     {"commit", machine.commit},
-                     {"simd", machine.simd}};
+  json["machine"] = json_of(machine);
   json["figures"] = nlohmann::ordered_json::array();
   for (const Figure& figure : figures) {
     json["figures"].push_back({{"experiment", figure.experiment},
