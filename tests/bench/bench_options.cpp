@@ -26,8 +26,8 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   bool quick = false;
   CLI::App app(
       "Measures meshing, storage, edits, the log, the network, frames, and prints tables of Markdown, or "
-      "makes a "
-      "page of them all.",
+      "makes "
+      "a page of them all.",
       "runstone-bench");
   app.require_subcommand(1);
   const auto worlds_of = [&](CLI::App* command, const std::set<std::string>& worlds) {
@@ -101,6 +101,14 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
 
+  CLI::App* storage = app.add_subcommand("storage", "ways to keep voxels: bytes, reads, walks, edits");
+  common(storage, measured_world_names());
+  files(storage);
+  unsigned storage_repetitions = 15;
+  storage->add_option("--repetitions", storage_repetitions, "repetitions of each store on each volume")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+
   CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
   common(mesh_once, measured_world_names());
   unsigned times = 1;
@@ -133,6 +141,10 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     options.command = BenchOptions::Command::bytes;
     options.repetitions = bytes_repetitions;
   }
+  if (storage->parsed()) {
+    options.command = BenchOptions::Command::storage;
+    options.repetitions = storage_repetitions;
+  }
   if (mesh_once->parsed()) {
     options.command = BenchOptions::Command::mesh_once;
     options.meshers = {mesher};
@@ -144,7 +156,8 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
     if (mesh->count("--orders") == 0) options.orders = {"best"};
   }
   if (options.edges.empty()) {
-    options.edges = chunk_edge->parsed() ? std::vector<unsigned>{16, 32, 64} : std::vector<unsigned>{32, 62};
+    const bool powers = chunk_edge->parsed() || storage->parsed();
+    options.edges = powers ? std::vector<unsigned>{16, 32, 64} : std::vector<unsigned>{32, 62};
   }
   return {options, 0};
 }

@@ -13,7 +13,7 @@
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames, report };
+  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames, storage, report };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> parts;    // volumes by name; empty: all

@@ -15,6 +15,7 @@
 #include "tests/bench/mesh_once.hpp"
 #include "tests/bench/net/net_bench.hpp"
 #include "tests/bench/report/report.hpp"
+#include "tests/bench/storage/storage_bench.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -99,6 +100,16 @@ int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
+int storage(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_storage_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    fmt::print(out, "{} repetitions of each store on each volume, shuffled; Morton codes by {}\n",
+               result.repetitions, result.morton_code);
+    write_tables(result, out);
+    for (const std::string& cell : result.skipped) fmt::print(out, "\nskipped: {}\n", cell);
+  });
+}
+
 int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
   const auto done = run_mesh_once(options, out);
   if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
@@ -115,6 +126,8 @@ int bench_program(int argc, const char* const* argv, std::ostream& out, std::ost
       return mesh(*parsed.options, out, err);
     case BenchOptions::Command::mesh_once:
       return mesh_once(*parsed.options, out, err);
+    case BenchOptions::Command::storage:
+      return storage(*parsed.options, out, err);
     case BenchOptions::Command::chunk_edge:
       return chunk_edge(*parsed.options, out, err);
     case BenchOptions::Command::bytes:

@@ -11,6 +11,7 @@
 
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/contestant.hpp"
+#include "tests/bench/storage/stores.hpp"
 #include "tests/bench/transfer_form.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -325,4 +326,64 @@ TEST_CASE("report: a step is measured once, a run goes on, and the page is there
   const Output unknown = run({"report", "--out", folder / "r", "--steps", "everything"});
   CHECK(unknown.exit_code == 2);
   CHECK(unknown.err.find("everything") != std::string::npos);
+}
+
+TEST_CASE("runstone-bench storage has a row for every store on every volume", "[bench]") {
+  const test::TempFolder folder;
+  const std::string csv = folder / "storage.csv", json = folder / "storage.json";
+  const Output output = run({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios", "--edges",
+                             "16,32", "--repetitions", "1", "--csv", csv, "--json", json});
+  INFO(output.err);
+  REQUIRE(output.exit_code == 0);
+  const std::vector<CsvRow> rows = read_csv(csv);
+  std::map<std::string, std::map<std::string, CsvRow>> cells;
+  std::map<std::string, std::set<std::string>> parts;  // by world and edge
+  for (const CsvRow& row : rows) {
+    CAPTURE(row.at("world"), row.at("part"), row.at("edge"), row.at("store"));
+    for (const char* figure : {"build_ns", "read_ns", "walk_ns", "edit_ns", "brush_ns"}) {
+      CAPTURE(figure);
+      CHECK(std::stod(row.at(figure)) > 0);
+    }
+    CHECK(std::stod(row.at("brush_voxels")) > 100);
+    CHECK(std::stod(row.at("brush_voxels")) < 739);  // all of a ball; edges cut off some
+    parts[row.at("world") + " " + row.at("edge")].insert(row.at("part"));
+    CHECK(cells[row.at("world") + " " + row.at("part") + " " + row.at("edge")]
+              .emplace(row.at("store"), row)
+              .second);
+  }
+  CHECK(parts["scenarios 32"].size() == 37);
+  CHECK(parts["scenarios 16"].size() == 36);
+  CHECK(parts["luanti 32"].size() > 20);
+  for (const auto& [cell, stores] : cells) {
+    CAPTURE(cell);
+    CHECK(stores.size() == bench::storage::store_names().size());
+    const std::size_t voxels = stores.at("flat").at("edge") == "16" ? 4096 : 32768;
+    const auto bytes = [&](const char* store) { return std::stoul(stores.at(store).at("bytes")); };
+    CHECK(bytes("flat") > 2 * voxels);
+    CHECK(bytes("flat") < 2 * voxels + 100);
+    CHECK(bytes("morton") < 2 * voxels + 100);
+    CHECK(bytes("runs") >= 4 * std::stoul(stores.at("runs").at("runs")));
+    CHECK(bytes("interval_map") > 48 * std::stoul(stores.at("runs").at("runs")));
+  }
+  CHECK(std::stoul(cells["empty 0 -16 0 32"]["octree"].at("bytes")) < 200);
+  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["octree"].at("bytes")) > 65536);
+  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["dag"].at("bytes")) <
+        1000);  // one leaf, one node a height
+
+  const auto document = nlohmann::json::parse(text_of(json));
+  CHECK(document.at("rows").size() == rows.size());
+  CHECK(document.at("repetitions") == 1);
+  CHECK(document.at("machine").contains("commit"));
+  CHECK((document.at("morton_code") == "pdep" || document.at("morton_code") == "table"));
+  for (const char* group : {"landscapes", "patterns", "luanti", "scenarios"}) {
+    CAPTURE(group);
+    for (const char* edge : {"16", "32"}) {
+      CHECK(output.out.find(std::string("**") + group + "**, edge " + edge) != std::string::npos);
+    }
+  }
+  CHECK(output.out.find("skipped: scenarios edge 16: scenario 5 is data of edge 32") != std::string::npos);
+
+  const Output odd = run({"storage", "--worlds", "hills", "--edges", "62"});
+  CHECK(odd.exit_code == 1);
+  CHECK(odd.err.find("edge 62") != std::string::npos);
 }

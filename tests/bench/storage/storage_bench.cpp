@@ -1,0 +1,80 @@
+#include "tests/bench/storage/storage_bench.hpp"
+
+#include <fmt/ostream.h>
+
+#include <bit>
+
+#include "tests/bench/contestant.hpp"
+#include "tests/bench/measured_worlds.hpp"
+#include "tests/bench/shuffled.hpp"
+#include "tests/bench/statistics.hpp"
+#include "tests/bench/storage/stores.hpp"
+
+namespace runstone::bench {
+namespace {
+
+/// All stores on one volume.
+void measure_volume(const storage::StoreCase& asked, unsigned repetitions, const StorageRow& shared,
+                    std::vector<StorageRow>& rows) {
+  const auto stores = storage::make_stores(asked);
+  std::vector<ShuffledCase> cases;
+  for (const auto& store : stores) cases.push_back({std::string(store.name), store.repetition});
+  const auto samples = run_shuffled(cases, repetitions);
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    const auto figure = [&](storage::StoreFigure which) {
+      return median(samples[i][static_cast<std::size_t>(which)]);
+    };
+    StorageRow row = shared;
+    row.store = stores[i].name;
+    row.bytes = stores[i].bytes;
+    row.build_ns = figure(storage::StoreFigure::build);
+    row.read_ns = figure(storage::StoreFigure::read);
+    row.walk_ns = figure(storage::StoreFigure::walk);
+    row.edit_ns = figure(storage::StoreFigure::edit);
+    row.brush_ns = figure(storage::StoreFigure::brush);
+    rows.push_back(std::move(row));
+  }
+}
+
+}  // namespace
+
+Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options, std::ostream& progress) {
+  for (const unsigned edge : options.edges) {
+    if (!std::has_single_bit(edge)) {
+      return Unexpected<std::string>{
+          fmt::format("edge {}: trees and Morton codes want a power of two", edge)};
+    }
+  }
+  const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
+  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  StorageResult result;
+  result.machine = this_machine();
+  result.repetitions = options.repetitions;
+  result.morton_code = storage::morton_code_maker();
+  for (std::size_t w = 0; w < worlds->size(); ++w) {
+    for (const unsigned edge : options.edges) {
+      const std::uint64_t start = now_ns();
+      const MeasuredWorld world = worlds->at_edge(w, edge);
+      if (!world.missing.empty()) {
+        result.skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
+      }
+      for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+        const RunChunk& chunk = world.volumes[v].scene.chunk;
+        const storage::StoreCase asked = storage::make_store_case(chunk, v);
+        StorageRow shared;
+        shared.world = world.name;
+        shared.part = world.parts[v];
+        shared.edge = edge;
+        shared.runs = chunk.runs.size();
+        shared.brush_voxels = asked.brush_voxels;
+        measure_volume(asked, options.repetitions, shared, result.rows);
+      }
+      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge, world.volumes.size(),
+                 static_cast<double>(now_ns() - start) * 1e-9);
+      progress.flush();
+    }
+  }
+  return result;
+}
+
+}  // namespace runstone::bench

@@ -1,0 +1,165 @@
+#include "tests/bench/storage/stores.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tests/bench/contestant.hpp"
+#include "tests/bench/storage/flat_array.hpp"
+#include "tests/bench/storage/interval_map.hpp"
+#include "tests/bench/storage/morton_array.hpp"
+#include "tests/bench/storage/palette_store.hpp"
+#include "tests/bench/storage/run_store.hpp"
+#include "tests/bench/storage/voxel_tree.hpp"
+
+namespace runstone::bench::storage {
+namespace {
+
+constexpr std::array<std::string_view, 7> kNames = {"flat",         "morton", "palette", "runs",
+                                                    "interval_map", "octree", "dag"};
+
+constexpr double kBlockNs = 50'000;              // of calls timed together, or one call if that takes longer
+constexpr std::size_t kBatchBytes = 256 * 1024;  // of stores that are built or painted in one go,
+constexpr std::size_t kBatchMax = 16;            // and how many at most
+
+/// What asking the clock costs by itself.
+double clock_ns() {
+  static const double cost = [] {
+    std::uint64_t least = ~std::uint64_t{0};
+    for (int i = 0; i < 200; ++i) {
+      const std::uint64_t start = core_ns();
+      least = std::min(least, core_ns() - start);
+    }
+    return static_cast<double>(least);
+  }();
+  return cost;
+}
+
+template <class Work>
+double core_ns_of(Work&& work) {
+  const std::uint64_t start = core_ns();
+  work();
+  // The clock may tick a little faster than at its best: no time is below one.
+  return std::max(static_cast<double>(core_ns() - start) - clock_ns(), 1.0);
+}
+
+/// Of a call of work that leaves things as they are: once to warm up, then as often as makes a block.
+template <class Work>
+double block_ns(Work&& work) {
+  const double once = std::max(core_ns_of(work), 20.0);
+  const auto calls = static_cast<std::uint64_t>(std::max(1.0, kBlockNs / once));
+  return core_ns_of([&] {
+           for (std::uint64_t i = 0; i < calls; ++i) work();
+         }) /
+         static_cast<double>(calls);
+}
+
+template <VoxelStore Store>
+double read_ns(const Store& store, const StoreCase& asked) {
+  return block_ns([&] {
+           std::uint64_t sum = 0;
+           for (const LocalPos at : asked.reads) sum += store.at(at);
+           benchmark::DoNotOptimize(sum);
+           benchmark::ClobberMemory();
+         }) /
+         static_cast<double>(asked.reads.size());
+}
+
+template <VoxelStore Store>
+double walk_ns(const Store& store, const StoreCase& asked) {
+  return block_ns([&] {
+           std::uint64_t sum = 0;
+           store.walk(
+               [&](std::uint32_t count, Material material) { sum += std::uint64_t{count} * material; });
+           benchmark::DoNotOptimize(sum);
+           benchmark::ClobberMemory();
+         }) /
+         asked.chunk.volume();
+}
+
+/// On a copy: what an edit leaves behind (a palette that grew) stays out of the store.
+template <VoxelStore Store>
+double edit_ns(const Store& store, const StoreCase& asked) {
+  Store edited = store;
+  return block_ns([&] {
+           for (const PointEdit& edit : asked.edits) {
+             edited.set(edit.at, edit.now);
+             benchmark::ClobberMemory();  // or an array would only be written the second time
+             edited.set(edit.at, edit.before);
+             benchmark::ClobberMemory();
+           }
+         }) /
+         static_cast<double>(2 * asked.edits.size());
+}
+
+/// Batches, so that the clock is asked seldom.
+template <VoxelStore Store>
+std::size_t batch_of(const Store& store) {
+  return std::clamp<std::size_t>(kBatchBytes / store.byte_size(), 1, kBatchMax);
+}
+
+template <VoxelStore Store>
+double build_ns(const Store& store, const StoreCase& asked) {
+  const std::size_t batch = batch_of(store);
+  std::vector<Store> built;
+  built.reserve(batch);
+  built.emplace_back(asked.chunk);  // to warm up
+  built.clear();
+  return core_ns_of([&] {
+           for (std::size_t i = 0; i < batch; ++i) built.emplace_back(asked.chunk);
+         }) /
+         static_cast<double>(batch);
+}
+
+/// Each brush on the voxels as they were.
+template <VoxelStore Store>
+double brush_ns(const Store& store, const StoreCase& asked) {
+  const std::size_t batch = batch_of(store);
+  double sum = 0;
+  for (const Brush& brush : asked.brushes) {
+    std::vector<Store> painted(batch, store);
+    sum += core_ns_of([&] {
+      for (Store& each : painted) each.paint(brush.ball, brush.material);
+    });
+  }
+  return sum / static_cast<double>(batch * asked.brushes.size());
+}
+
+template <VoxelStore Store>
+StoreContestant contestant(std::string_view name, const StoreCase& asked) {
+  const auto store = std::make_shared<const Store>(asked.chunk);
+  return {name, store->byte_size(), [store, &asked] {
+            std::vector<double> out(kStoreFigureCount);
+            const auto figure = [&](StoreFigure which) -> double& {
+              return out[static_cast<std::size_t>(which)];
+            };
+            figure(StoreFigure::build) = build_ns(*store, asked);
+            figure(StoreFigure::read) = read_ns(*store, asked);
+            figure(StoreFigure::walk) = walk_ns(*store, asked);
+            figure(StoreFigure::edit) = edit_ns(*store, asked);
+            figure(StoreFigure::brush) = brush_ns(*store, asked);
+            return out;
+          }};
+}
+
+}  // namespace
+
+std::span<const std::string_view> store_names() { return kNames; }
+
+std::vector<StoreContestant> make_stores(const StoreCase& asked) {
+  std::vector<StoreContestant> out;
+  out.push_back(contestant<FlatArray>(kNames[0], asked));
+  out.push_back(morton_by_pdep() ? contestant<MortonArray<MortonByPdep>>(kNames[1], asked)
+                                 : contestant<MortonArray<MortonByTable>>(kNames[1], asked));
+  out.push_back(contestant<PaletteStore>(kNames[2], asked));
+  out.push_back(contestant<RunStore>(kNames[3], asked));
+  out.push_back(contestant<IntervalMap>(kNames[4], asked));
+  out.push_back(contestant<SparseOctree>(kNames[5], asked));
+  out.push_back(contestant<VoxelDag>(kNames[6], asked));
+  return out;
+}
+
+std::string_view morton_code_maker() { return morton_by_pdep() ? "pdep" : "table"; }
+
+}  // namespace runstone::bench::storage
