@@ -10,6 +10,7 @@
 #include "tests/bench/report/chart/chart_css.hpp"
 #include "tests/bench/report/chart/chart_text.hpp"
 #include "tests/bench/report/chart/frame.hpp"
+#include "tests/bench/report/chart/legend.hpp"
 #include "tests/bench/report/chart/svg.hpp"
 #include "tests/unit/chart/sample_charts.hpp"
 #include "tests/unit/chart/svg_reader.hpp"
@@ -23,6 +24,7 @@ const Width kWidths[] = {Width::wide, Width::narrow};
 
 std::vector<std::string> plain_names(std::size_t count) {
   std::vector<std::string> out;
+  out.reserve(count);
   for (std::size_t i = 0; i < count; ++i) out.push_back("mesher number " + std::to_string(i));
   return out;
 }
@@ -223,6 +225,13 @@ TEST_CASE("the style sheet knows every class, and both themes every colour", "[c
     CHECK(count == 3);  // light, dark by the system, dark by the page
   }
   CHECK(std::count(css.begin(), css.end(), '{') == std::count(css.begin(), css.end(), '}'));
+}
+
+TEST_CASE("no two series look alike, even of one role", "[chart]") {
+  const std::vector<Role> roles = {Role::ours,     Role::other, Role::ours,
+                                   Role::baseline, Role::other, Role::baseline};
+  CHECK(colours_of(roles) ==
+        std::vector<std::string>{"c-ours", "c-other0", "c-ours2", "c-baseline", "c-other1", "c-baseline2"});
 }
 
 TEST_CASE("a frame holds both layouts", "[chart]") {

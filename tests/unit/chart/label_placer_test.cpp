@@ -60,6 +60,7 @@ TEST_CASE("labels of a crowd never overlap", "[chart][property]") {
     LabelPlacer placer({0, 0, 400, 200});
     std::vector<Box> labels;
     std::vector<std::pair<double, double>> points;
+    points.reserve(20);
     for (int i = 0; i < 20; ++i) points.emplace_back(random() % 400, random() % 200);
     for (const auto& [x, y] : points) placer.block_point(x, y, 4);
     for (const auto& [x, y] : points) {

@@ -96,6 +96,7 @@ std::string svg_of(const BarChart& chart, Width width) {
 
   const std::vector<std::string> colours = colours_of(roles);
   std::vector<LegendEntry> entries;
+  entries.reserve(roles.size());
   for (std::size_t i = 0; i < roles.size(); ++i)
     entries.push_back({chart.series[i].name, roles[i], colours[i]});
 

@@ -18,6 +18,7 @@ std::vector<std::size_t> panels_of(std::size_t columns, std::size_t per_panel_ma
   const std::size_t limit = std::max<std::size_t>(per_panel_max, 1);
   const std::size_t panels = (columns + limit - 1) / limit;
   std::vector<std::size_t> out;
+  out.reserve(panels);
   for (std::size_t i = 0; i < panels; ++i) out.push_back(columns / panels + (i < columns % panels ? 1 : 0));
   return out;
 }

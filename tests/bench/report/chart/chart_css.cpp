@@ -12,6 +12,7 @@ namespace {
 constexpr std::string_view kLight =
     "--paper:#fff;--ink:#1b1f24;--quiet:#5a646f;--grid:#e4e8ec;--axis:#9aa4af;"
     "--ours:#0067b1;--baseline:#c85200;--thesis:#6d7580;--rest:#8592a0;"
+    "--ours2:#00355f;--baseline2:#742f00;--thesis2:#3f464e;"
     "--other0:#00835d;--other1:#a8508a;--other2:#2f8fc0;--other3:#9a7b00;"
     "--other4:#7a4a28;--other5:#6a5acd;--other6:#4b7a80;--other7:#66741c;"
     "--heat0:#08519c;--heat1:#2f72b3;--heat2:#7fb0da;--heat3:#bcd7ec;--heat4:#f0f0ec;"
@@ -20,6 +21,7 @@ constexpr std::string_view kLight =
 constexpr std::string_view kDark =
     "--paper:#14181d;--ink:#e6e9ed;--quiet:#a3acb7;--grid:#2b323a;--axis:#5d6874;"
     "--ours:#4aa8f0;--baseline:#ff9248;--thesis:#a9b2bc;--rest:#738190;"
+    "--ours2:#b4dcfc;--baseline2:#ffd3b0;--thesis2:#dce1e6;"
     "--other0:#35c79a;--other1:#e08fc2;--other2:#8fd3f7;--other3:#e2c23a;"
     "--other4:#c89a6b;--other5:#a79cf5;--other6:#7fb5bd;--other7:#b5c252;"
     "--heat0:#66bbff;--heat1:#4796dc;--heat2:#2f6ca6;--heat3:#274e75;--heat4:#2f343b;"
@@ -59,6 +61,9 @@ constexpr std::string_view kRules = R"(
 .chart .c-baseline{--c:var(--baseline)}
 .chart .c-thesis{--c:var(--thesis)}
 .chart .c-rest{--c:var(--rest)}
+.chart .c-ours2{--c:var(--ours2)}
+.chart .c-baseline2{--c:var(--baseline2)}
+.chart .c-thesis2{--c:var(--thesis2)}
 )";
 
 }  // namespace

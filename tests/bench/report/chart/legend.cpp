@@ -1,5 +1,7 @@
 #include "tests/bench/report/chart/legend.hpp"
 
+#include <map>
+
 #include "tests/bench/report/chart/chart_text.hpp"
 #include "tests/bench/report/chart/marks.hpp"
 
@@ -15,8 +17,9 @@ constexpr double kLine = 20;
 
 std::vector<std::string> colours_of(const std::vector<Role>& roles) {
   std::vector<std::string> out;
-  std::size_t others = 0;
-  for (const Role role : roles) out.push_back(class_of(role, role == Role::other ? others++ : 0));
+  out.reserve(roles.size());
+  std::map<Role, std::size_t> counts;
+  for (const Role role : roles) out.push_back(class_of(role, counts[role]++));
   return out;
 }
 

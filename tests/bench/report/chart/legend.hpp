@@ -15,7 +15,7 @@ struct LegendEntry {
   bool is_line = false;     // the swatch
 };
 
-/// The colours of series, others counted apart.
+/// The colours of series: no two alike while the palette lasts.
 std::vector<std::string> colours_of(const std::vector<Role>& roles);
 
 /// Draws from `top` down; returns where the next thing may begin.

@@ -123,6 +123,7 @@ std::string svg_of(const LineChart& chart, Width width) {
   double top = 0;
   if (!has_end_labels) {
     std::vector<LegendEntry> entries;
+    entries.reserve(roles.size());
     for (std::size_t i = 0; i < roles.size(); ++i) {
       entries.push_back({chart.lines[i].name, roles[i], colours[i], true});
     }

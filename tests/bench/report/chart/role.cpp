@@ -16,9 +16,10 @@ std::string class_of(Role role) {
   return "c-rest";
 }
 
-std::string class_of(Role role, std::size_t other_index) {
+std::string class_of(Role role, std::size_t index) {
   constexpr std::size_t kPalette = 8;  // chart_css() has as many
-  return role == Role::other ? "c-other" + std::to_string(other_index % kPalette) : class_of(role);
+  if (role == Role::other) return "c-other" + std::to_string(index % kPalette);
+  return class_of(role) + (index > 0 ? "2" : "");
 }
 
 }  // namespace runstone::bench::chart

@@ -15,7 +15,8 @@ enum class Role {
 /// The CSS class of a role: "c-ours", "c-baseline", "c-thesis", "c-rest".
 std::string class_of(Role role);
 
-/// The same, with the others told apart: "c-other0" .. "c-other7" and round again. `other_index` counts them.
-std::string class_of(Role role, std::size_t other_index);
+/// The same for series that must be told apart; `index` counts those of the same role. Others are "c-other0" ..
+/// "c-other7" and round again; a second one of ours is "c-ours2", another shade, and so are those after it.
+std::string class_of(Role role, std::size_t index);
 
 }  // namespace runstone::bench::chart

@@ -43,9 +43,11 @@ std::string svg_of(const StackChart& chart, Width width) {
   if (!scale.has_values()) return note_svg(width, "Nothing was measured.", label);
 
   std::vector<Role> roles;
+  roles.reserve(chart.parts.size());
   for (const Series& part : chart.parts) roles.push_back(part.role);
   const std::vector<std::string> colours = colours_of(roles);
   std::vector<LegendEntry> entries;
+  entries.reserve(roles.size());
   for (std::size_t i = 0; i < chart.parts.size(); ++i) {
     entries.push_back({chart.parts[i].name, roles[i], colours[i]});
   }
