@@ -20,6 +20,7 @@
 #include "common/runs/run_builder.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/mesher_jury.hpp"
+#include "tests/support/polygon_jury.hpp"
 
 namespace {
 
@@ -146,6 +147,9 @@ class Trial {
   void mesh(const test::MeshScene& scene) {
     const std::string fault = jury_.fault(scene);
     demand(fault.empty(), fault.c_str());
+    const std::string of_polygons =
+        polygon_jury_.fault(scene, test::mesh_visibility(), test::mesh_materials(), jury_.exposed());
+    demand(of_polygons.empty(), of_polygons.c_str());
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, mesh_);
     const auto difference =
         test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), jury_.exposed());
@@ -185,6 +189,7 @@ class Trial {
 
  private:
   test::MesherJury jury_;
+  test::PolygonJury polygon_jury_;
   RdmScratch scratch_, plain_;
   ChunkMesh mesh_, other_;
   std::array<ChunkBorders, kDirectionCount> kept_;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "common/mesh/reference/culled_mesher.hpp"
+#include "tests/bench/measured_worlds.hpp"
 #include "tests/bench/seeded_worlds.hpp"
+#include "tests/support/polygon_jury.hpp"
 #include "tests/support/triangle_oracle.hpp"
 
 using namespace runstone;
@@ -34,4 +37,28 @@ TEST_CASE("every contestant hands out its last mesh, in place of what was there"
       }
     }
   }
+}
+
+TEST_CASE("in a real world polygons show the faces that culling shows", "[bench]") {
+  const auto worlds = MeasuredWorlds::open({"luanti"}, RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
+  REQUIRE(worlds.has_value());
+  const MeasuredWorld world = worlds->at_edge(0, 32);
+  test::PolygonJury jury;
+  std::vector<Quad> culled;
+  std::size_t faces = 0;
+  for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+    const test::MeshScene& scene = world.volumes[v].scene;
+    reference::mesh_culled(test::grid_of(scene), *world.visibility, culled);
+    std::vector<test::UnitFace> owed;
+    for (const Quad quad : culled) {
+      const QuadFields q = unpack(quad);
+      owed.push_back({q.x, q.y, q.z, q.direction, q.material});
+    }
+    faces += owed.size();
+    CAPTURE(world.parts[v]);
+    // The world's materials have no table here; those beyond one count as opaque, and which are drawn is said
+    // by the faces.
+    CHECK(jury.fault(scene, *world.visibility, MaterialTable{}, owed) == "");
+  }
+  CHECK(faces > 10'000);
 }
