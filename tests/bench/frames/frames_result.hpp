@@ -47,7 +47,7 @@ struct FramesResult {
   std::string gl_renderer, gl_version, gl_context;
   int width = 0, height = 0;
   unsigned frames = 0;    // asked for
-  unsigned pictures = 0;  // of each mesher in each world, compared; one of those that draw slowly
+  unsigned pictures = 0;  // of each mesher in each world, compared
   std::vector<FramesRow> rows;
   std::vector<std::string> skipped;  // what was not measured, each with the reason
 

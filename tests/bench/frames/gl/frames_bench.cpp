@@ -27,8 +27,7 @@ namespace {
 
 constexpr const char* kReference = "culled";  // no T-junctions: every face has its own four corners
 constexpr std::uint64_t kSeed = 37;           // of the order in which meshers draw
-/// What a mesher may take for its frames, ms a frame asked for; one that takes longer draws fewer of them, and
-/// one picture.
+/// What a mesher may take for its frames, ms a frame asked for; one that takes longer draws fewer of them.
 constexpr double kFrameMsMean = 50;
 constexpr unsigned kFramesMin = 3;
 
@@ -39,7 +38,6 @@ struct Painter {
   PlainScene* scene = nullptr;              // of a plain one
   bool wanted = true;                       // or there as the reference only
   unsigned stride = 1;                      // draws every so manieth frame
-  unsigned pictures = 0;
   std::vector<double> frame_ms;
 };
 
@@ -222,8 +220,6 @@ class FramesBench {
       const double wanted = options_.frames * std::min(1.0, kFrameMsMean / warm_ms);
       const unsigned frames = std::max(kFramesMin, static_cast<unsigned>(wanted));
       painter.stride = std::max(1u, options_.frames / frames);
-      if (painter.row.triangles == 0 || painter.scene == nullptr) continue;  // no picture to look at
-      painter.pictures = warm_ms > kFrameMsMean ? 1 : options_.pictures;
     }
     SplitMix64 rng(kSeed);
     std::vector<std::size_t> order(painters.size());
@@ -249,15 +245,16 @@ class FramesBench {
       plain_.draw(*reference->scene, at);
       const DrawnPicture expected = plain_.read();
       for (Painter& painter : painters) {
-        if (picture < painter.pictures && painter.wanted) look(painter, at, expected);
+        if (painter.scene != nullptr && painter.row.triangles != 0 && painter.wanted)
+          look(painter, at, expected);
       }
     }
   }
 
   void look(Painter& painter, const Camera& at, const DrawnPicture& expected) {
     FramesRow& row = painter.row;
-    const auto add = [&painter](std::optional<double>& to, double value) {
-      to = to.value_or(0) + value / painter.pictures;
+    const auto add = [this](std::optional<double>& to, double value) {
+      to = to.value_or(0) + value / options_.pictures;
     };
     const auto drawn = static_cast<double>(plain_.fragments_drawn(*painter.scene, at));
     const DrawnPicture picture = plain_.read();
