@@ -187,9 +187,9 @@ TEST_CASE("packed quads give the picture of the same quads indexed, pixel by pix
   std::vector<Quad> quads;
   for (int i = 0; i < 200; ++i) {
     const auto below = [&rng](std::uint32_t bound) { return static_cast<std::uint8_t>(rng.below(bound)); };
-    QuadFields fields{below(64), below(64), below(64), 1, 1, static_cast<Direction>(below(6)), 1};
-    fields.width = static_cast<std::uint8_t>(1 + below(64));
-    fields.height = static_cast<std::uint8_t>(1 + below(64));
+    QuadFields fields{below(128), below(128), below(128), 1, 1, static_cast<Direction>(below(6)), 1};
+    fields.width = static_cast<std::uint8_t>(1 + below(128));
+    fields.height = static_cast<std::uint8_t>(1 + below(128));
     // Quads of one plane may overlap, so they look alike.
     fields.material = static_cast<Material>(10000 * (1 + static_cast<unsigned>(fields.direction)));
     quads.push_back(pack(fields));
