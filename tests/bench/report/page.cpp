@@ -117,7 +117,8 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options, const 
   const ThesisData thesis = ThesisData::read(options.thesis);
   const Evidence evidence{findings, thesis};
   const std::vector<ReportSection> sections = {thesis_section(evidence), field_section(evidence),
-                                               beyond_section(evidence), network_section(evidence)};
+                                               drawing_section(evidence), beyond_section(evidence),
+                                               network_section(evidence)};
   std::error_code error;
   std::filesystem::create_directories(options.out + "/csv", error);
   WrittenPage out{options.out + "/index.html", 0, 0};

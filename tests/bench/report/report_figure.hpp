@@ -32,8 +32,10 @@ struct Evidence {
 
 /// The thesis' own figures from our numbers beside its own.
 ReportSection thesis_section(const Evidence& evidence);
-/// All meshers against each other, and how voxels are stored.
+/// All meshers against each other.
 ReportSection field_section(const Evidence& evidence);
+/// What their meshes cost to draw, and other ways to keep voxels.
+ReportSection drawing_section(const Evidence& evidence);
 /// What the thesis left as future work: real worlds, axis orders, dirty layers, edits.
 ReportSection beyond_section(const Evidence& evidence);
 /// The same voxels over links: bytes, transfers, latency, crowds.

@@ -7,10 +7,12 @@
 #include "tests/bench/bytes_bench.hpp"
 #include "tests/bench/chunk_edge.hpp"
 #include "tests/bench/edit_bench.hpp"
+#include "tests/bench/frames/frames_bench.hpp"
 #include "tests/bench/mesh_bench.hpp"
 #include "tests/bench/net/net_bench.hpp"
 #include "tests/bench/report/scenario_case.hpp"
 #include "tests/bench/report/step.hpp"
+#include "tests/bench/storage/storage_bench.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -90,6 +92,7 @@ class Steps {
     bench.repetitions = options_.is_quick ? 3 : repetitions;
     return bench;
   }
+  const std::string& luanti() const { return options_.luanti; }
   bool is_quick() const { return options_.is_quick; }
   std::vector<Step> take() { return std::move(out_); }
 
@@ -121,6 +124,25 @@ void add_meshing(Steps& steps) {
   const Words scaled = {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "culled"};
   steps.add_mesh("chunk-sizes", 5, 30, {{"scenarios"}, {"1", "17"}, {8, 16, 32, 64, 128}, {"best"}, scaled});
   steps.add_mesh("chunk-sizes-terrain", 5, 30, {{"terrain"}, {}, {8, 16, 32, 64, 128}, {"best"}, scaled});
+}
+
+void add_drawing(Steps& steps) {
+  FramesOptions frames;
+  frames.luanti = steps.luanti();
+  std::string command = "frames";
+  if (steps.is_quick()) {
+    frames.frames = 6;
+    frames.pictures = 1;
+    frames.width = 640;
+    frames.height = 360;
+    command += " --frames 6 --pictures 1 --size 640x360";
+  }
+  steps.add("frames", std::move(command), 90, 900,
+            [frames](std::ostream& progress) { return json_of(run_frames_bench(frames, progress)); });
+  BenchOptions storage = steps.bench_options(9);
+  storage.edges = {32};
+  steps.add("storage", fmt::format("storage --edges 32 --repetitions {}", storage.repetitions), 20, 120,
+            [storage](std::ostream& progress) { return json_of(run_storage_bench(storage, progress)); });
 }
 
 void add_edits(Steps& steps) {
@@ -160,6 +182,7 @@ std::vector<Step> report_steps(const ReportOptions& options) {
   Steps steps(options);
   add_scenarios(steps);
   add_meshing(steps);
+  add_drawing(steps);
   add_edits(steps);
   add_network(steps);
   return steps.take();
