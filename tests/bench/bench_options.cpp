@@ -105,7 +105,7 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   common(storage, measured_world_names());
   files(storage);
   unsigned storage_repetitions = 15;
-  storage->add_option("--repetitions", storage_repetitions, "repetitions of each store on each volume")
+  storage->add_option("--min-runs", storage_repetitions, "repetitions of each store on each volume")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
 

@@ -141,7 +141,7 @@ void add_drawing(Steps& steps) {
             [frames](std::ostream& progress) { return json_of(run_frames_bench(frames, progress)); });
   BenchOptions storage = steps.bench_options(9);
   storage.edges = {32};
-  steps.add("storage", fmt::format("storage --edges 32 --repetitions {}", storage.repetitions), 20, 120,
+  steps.add("storage", fmt::format("storage --edges 32 --min-runs {}", storage.repetitions), 20, 120,
             [storage](std::ostream& progress) { return json_of(run_storage_bench(storage, progress)); });
 }
 

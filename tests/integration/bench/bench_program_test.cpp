@@ -332,7 +332,7 @@ TEST_CASE("runstone-bench storage has a row for every store on every volume", "[
   const test::TempFolder folder;
   const std::string csv = folder / "storage.csv", json = folder / "storage.json";
   const Output output = run({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios", "--edges",
-                             "16,32", "--repetitions", "1", "--csv", csv, "--json", json});
+                             "16,32", "--min-runs", "1", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
