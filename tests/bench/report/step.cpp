@@ -129,15 +129,21 @@ void add_meshing(Steps& steps) {
 void add_drawing(Steps& steps) {
   FramesOptions frames;
   frames.luanti = steps.luanti();
-  std::string command = "frames";
+  frames.frames = steps.is_quick() ? 6 : 15;
+  frames.pictures = steps.is_quick() ? 1 : 2;
+  frames.vertices_max = steps.is_quick() ? 3'000'000 : 12'000'000;
+  std::string command = fmt::format("frames --frames {} --pictures {} --vertices-max {}", frames.frames,
+                                    frames.pictures, frames.vertices_max);
   if (steps.is_quick()) {
-    frames.frames = 6;
-    frames.pictures = 1;
     frames.width = 640;
     frames.height = 360;
-    command += " --frames 6 --pictures 1 --size 640x360";
+    for (const unsigned scenario : {5, 8, 13, 14, 20, 23, 33}) {
+      frames.worlds.push_back(fmt::format("scenario_{}", scenario));
+    }
+    frames.worlds.emplace_back("luanti");
+    command += " --size 640x360 --worlds " + joined(frames.worlds);
   }
-  steps.add("frames", std::move(command), 90, 900,
+  steps.add("frames", std::move(command), 45, 700,
             [frames](std::ostream& progress) { return json_of(run_frames_bench(frames, progress)); });
   BenchOptions storage = steps.bench_options(9);
   storage.edges = {32};
