@@ -5,7 +5,7 @@ execute_process(COMMAND git rev-parse --short HEAD WORKING_DIRECTORY ${SOURCE} O
 if(failed)
   set(commit unknown)
 else()
-  execute_process(COMMAND git diff --quiet HEAD -- common protocol server/app/*luanti* tests/bench tests/support
+  execute_process(COMMAND git diff --quiet HEAD -- common protocol process server client tests/bench tests/support
                   WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE differs)
   if(differs)
     string(APPEND commit -dirty)

@@ -41,7 +41,7 @@ Result<void, std::string> write_finding(const std::string& folder, const Finding
                         {"result", finding.result}};
   {
     std::ofstream out(unfinished);
-    out << content.dump(1) << '\n';
+    out << content.dump(1, ' ', false, json::error_handler_t::replace) << '\n';
     out.flush();
     if (!out) return Unexpected<std::string>{"cannot write " + unfinished};
   }

@@ -15,9 +15,9 @@ Findings Findings::read(const std::string& folder, const std::vector<std::string
     if (found) {
       out.found_.emplace(step, *std::move(found));
     } else {
-      const auto failed = failures.find(step);
-      out.missing_.emplace(step, failed == failures.end() ? found.error() : "failed: " + failed->second);
+      out.missing_.emplace(step, found.error());
     }
+    if (const auto failed = failures.find(step); failed != failures.end()) out.failed_.insert(*failed);
   }
   std::ptrdiff_t most = 0;
   for (const auto& [name, one] : out.found_) {
@@ -42,8 +42,18 @@ Rows Findings::rows(const std::string& step, const char* member) const {
   if (finding == nullptr) return {};
   const nlohmann::json& result = finding->result;
   if (result.is_array()) return Rows(result);
+  if (!result.is_object()) return {};
   const auto found = result.find(member);
   return found == result.end() ? Rows() : Rows(*found);
+}
+
+Rows Findings::object(const std::string& step, const std::string& member) const {
+  const Finding* finding = find(step);
+  if (finding == nullptr) return {};
+  const nlohmann::json& result = finding->result;
+  if (member.empty() || !result.is_object()) return member.empty() ? Rows::of(result) : Rows();
+  const auto found = result.find(member);
+  return found == result.end() ? Rows() : Rows::of(*found);
 }
 
 Rows Findings::figures(const std::vector<std::string>& steps) const {
@@ -57,6 +67,11 @@ std::vector<std::string> Findings::doubts(const std::vector<std::string>& steps)
   for (const std::string& step : steps) {
     const Finding* finding = find(step);
     const auto why = missing_.find(step);
+    if (const auto failed = failed_.find(step); failed != failed_.end()) {
+      out.push_back(fmt::format("{} failed in this run: {}.{}", step, failed->second,
+                                finding == nullptr ? "" : " What is shown is older."));
+      if (finding == nullptr) continue;
+    }
     if (finding == nullptr && (why == missing_.end() || why->second == kNotMeasured)) {
       absent.push_back(step);
     } else if (finding == nullptr) {

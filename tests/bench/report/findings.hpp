@@ -25,6 +25,8 @@ class Findings {
   const Finding* find(const std::string& step) const;
   /// Of the step's result: of its member of that name, or of an array itself. None if there is none.
   Rows rows(const std::string& step, const char* member = "rows") const;
+  /// An object that is a member of the step's result, or the result itself (""), as one row. None if there is none.
+  Rows object(const std::string& step, const std::string& member) const;
   /// Joins the figures of the network lab of several steps.
   Rows figures(const std::vector<std::string>& steps) const;
 
@@ -38,6 +40,7 @@ class Findings {
  private:
   std::map<std::string, Finding> found_;
   std::map<std::string, std::string> missing_;  // why, by step
+  StepFailures failed_;
   const Finding* common_ = nullptr;
 };
 

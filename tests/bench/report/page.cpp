@@ -64,8 +64,9 @@ std::string html_of(const ReportFigure& figure, const Findings& findings) {
   return out;
 }
 
-std::string html_of(const Verdicts& verdicts) {
-  std::string out = fmt::format("<p class=\"answer\">{}</p>\n", html_text(verdicts.answer));
+std::string html_of(const Verdicts& verdicts, const Findings& findings) {
+  std::string out = fmt::format("<p class=\"answer\">{}</p>\n", html_text(verdicts.answer)) +
+                    paragraphs("doubt", findings.doubts(verdicts.steps));
   if (verdicts.rows.empty()) return out;
   out +=
       "<table "
@@ -150,8 +151,8 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options, const 
       "content=\"light dark\">\n"
       "<title>Runstone: the evaluation</title>\n<style>\n{}\n{}</style>\n</head>\n<body>\n"
       "<h1>Meshing voxels from compressed runs: the evaluation</h1>\n{}{}{}{}{}{}</body>\n</html>\n",
-      chart::chart_css(), kPageStyle, provenance(findings), thesis_doubt, html_of(verdicts_of(evidence)), nav,
-      body, steps_table(steps, findings));
+      chart::chart_css(), kPageStyle, provenance(findings), thesis_doubt,
+      html_of(verdicts_of(evidence), findings), nav, body, steps_table(steps, findings));
   if (const auto done = write_text_file(out.file, page); !done) return Unexpected<std::string>{done.error()};
   if (const auto done = write_text_file(options.out + "/summary.md", summary_of(evidence)); !done) {
     return Unexpected<std::string>{done.error()};

@@ -21,19 +21,32 @@ namespace {
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
+/// The folder's own name and the size of what is in it, which tells worlds of one name apart.
+std::string world_name(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(folder, error);
+  std::uintmax_t bytes = fs::file_size(path / "map.sqlite", error);
+  if (error) bytes = 0;
+  return fmt::format("{} of {} bytes", path.filename().string(), bytes);
+}
+
 /// What this run would put its name to.
 Finding finding_of(const ReportOptions& options, const Step& step) {
   Finding out;
   out.step = step.name;
   out.machine = this_machine();
   out.is_quick = options.is_quick;
-  out.luanti = std::filesystem::path(options.luanti).lexically_normal().filename().string();
+  out.luanti = world_name(options.luanti);
   return out;
 }
 
 /// Whether such a finding lies there already.
 bool is_there(const ReportOptions& options, const Step& step) {
   const auto found = read_finding(options.out, step.name);
+  // Two trees with changes of their own have the same name.
+  const std::string commit = this_machine().commit;
+  if (commit.ends_with("-dirty") || commit == "unknown") return false;
   return found && is_comparable(*found, finding_of(options, step));
 }
 
@@ -52,6 +65,25 @@ Result<double, std::string> measure(const ReportOptions& options, const Step& st
     return Unexpected<std::string>{written.error()};
   }
   return seconds;
+}
+
+/// Why this run must not begin; empty if it may.
+std::string objection(const ReportOptions& options) {
+  const std::vector<Step> steps = report_steps(options);
+  for (const std::string& name : options.steps) {
+    const auto is_it = [&](const Step& step) { return step.name == name; };
+    if (std::none_of(steps.begin(), steps.end(), is_it)) return "a quick run has no step " + name;
+  }
+  if (!options.is_quick || options.is_again) return "";
+  for (const Step& step : steps) {
+    const auto found = read_finding(options.out, step.name);
+    if (found && !found->is_quick) {
+      return options.out +
+             " has figures of a full run, which a quick one would replace: take another folder, or say "
+             "--again";
+    }
+  }
+  return "";
 }
 
 std::vector<Step> wanted_steps(const ReportOptions& options) {
@@ -77,6 +109,7 @@ int run_report(const ReportOptions& options, std::ostream& out, std::ostream& er
   StepFailures failures;
   const auto make_page = [&] { return write_page(options, failures); };
   if (!options.is_page_only) {
+    if (const std::string why = objection(options); !why.empty()) return complain(why);
     std::ofstream log(options.out + "/run.log", std::ios::app);
     if (!log) return complain("cannot write " + options.out + "/run.log");
     const std::vector<Step> steps = wanted_steps(options);
@@ -100,6 +133,7 @@ int run_report(const ReportOptions& options, std::ostream& out, std::ostream& er
   if (!made) return complain(made.error());
   fmt::print(out, "{}: {} figures, {} of them without their measurements\n", made->file, made->figures,
              made->missing);
+  for (const auto& [step, why] : failures) fmt::print(err, "runstone-bench: {} failed: {}\n", step, why);
   return failures.empty() ? 0 : 1;
 }
 

@@ -43,6 +43,12 @@ Rows::Rows(const json& array) {
   }
 }
 
+Rows Rows::of(const json& object) {
+  Rows out;
+  if (object.is_object()) out.rows_.push_back(&object);
+  return out;
+}
+
 Rows Rows::where(std::string_view column, std::string_view text) const {
   Rows out = *this;
   std::erase_if(out.rows_, [&](const json* row) { return text_of(*row, column) != text; });

@@ -15,6 +15,9 @@ class Rows {
   /// The objects of an array; none of anything else.
   explicit Rows(const nlohmann::json& array);
 
+  /// One row: an object. None of anything else.
+  static Rows of(const nlohmann::json& object);
+
   Rows where(std::string_view column, std::string_view text) const;
   Rows where(std::string_view column, double number) const;
 

@@ -39,6 +39,9 @@ class Steps {
   void add(std::string name, std::string command, double quick_seconds, double seconds,
            std::function<Measured(std::ostream&)> measure) {
     const double expected = options_.is_quick ? quick_seconds : seconds;
+    const bool has_world = command.starts_with("net") || command.starts_with("frames") ||
+                           command.starts_with("storage") || command.find("luanti") != std::string::npos;
+    if (has_world) command += " --luanti DIR";
     out_.push_back({std::move(name), std::move(command), expected, std::move(measure)});
   }
 

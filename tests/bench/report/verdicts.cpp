@@ -8,9 +8,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "common/generate/scenarios/scenario_model.hpp"
 #include "tests/bench/report/chart/format_value.hpp"
 #include "tests/bench/report/mesher_names.hpp"
+#include "tests/bench/report/mesher_totals.hpp"
+#include "tests/bench/report/number_text.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -24,87 +25,92 @@ struct Candidate {
   double value = 0;
 };
 
-/// The least wins, the greatest loses. No row where fewer than two were measured.
+/// The least wins, the greatest loses; equals share. No row where fewer than two were measured.
 void judge(Verdicts& out, const char* question, const char* figure, std::vector<Candidate> candidates,
-           const std::string& unit) {
+           const std::function<std::string(double)>& text) {
   std::erase_if(candidates, [](const Candidate& each) { return !std::isfinite(each.value); });
   if (candidates.size() < 2) return;
   const auto [least, most] =
       std::minmax_element(candidates.begin(), candidates.end(),
                           [](const Candidate& a, const Candidate& b) { return a.value < b.value; });
-  const auto text = [&](const Candidate& each) {
-    return fmt::format("{}: {}{}", each.name, format_value(each.value), unit);
+  const auto all_with = [&](double value) {
+    std::string names;
+    for (const Candidate& each : candidates) {
+      if (each.value == value) names += (names.empty() ? "" : ", ") + each.name;
+    }
+    return names + ": " + text(value);
   };
-  out.rows.push_back({question, text(*least), text(*most), figure});
+  out.rows.push_back({question, all_with(least->value), all_with(most->value), figure});
 }
 
-/// Of each mesher measured in all scenarios: the geometric mean of one column, times `unit`; or, without one, its sum.
-std::vector<Candidate> of_meshers(const Rows& rows, const std::vector<const char*>& meshers,
-                                  const char* column, double unit = 0) {
+std::vector<Candidate> of_meshers(const std::vector<MesherTotal>& totals,
+                                  const std::vector<const char*>& meshers, double MesherTotal::* figure) {
   std::vector<Candidate> out;
-  for (const char* mesher : meshers) {
-    const Rows of = rows.where("mesher", mesher);
-    if (of.size() != kScenarioCount) continue;
-    const auto values = of.numbers(column);
-    const bool is_whole = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
-    if (is_whole)
-      out.push_back({long_name_of(mesher), unit == 0 ? sum_of(values) : unit * geometric_mean_of(values)});
-  }
+  for (const char* mesher : meshers) out.push_back({long_name_of(mesher), total_of(totals, mesher).*figure});
   return out;
 }
 
-double geometric_ratio(const Rows& rows, const char* mesher, const char* against) {
+/// Ours against decoding and meshing densely, part by part.
+struct Duel {
+  double gain = 0;  // geometric mean of dense / ours; NaN if nothing was measured
+  std::size_t wins = 0, parts = 0;
+  std::string lost;  // names of the parts
+};
+
+Duel duel_of(const Rows& rows) {
+  Duel out;
   std::vector<double> ratios;
   for (const std::string& part : rows.kinds("part")) {
     const Rows at = rows.where("part", part);
-    ratios.push_back(at.where("mesher", against).number("median_ns") /
-                     at.where("mesher", mesher).number("median_ns"));
+    const double ratio = at.where("mesher", "decode_binary").number("median_ns") /
+                         at.where("mesher", "rdm").number("median_ns");
+    if (!std::isfinite(ratio)) continue;
+    ratios.push_back(ratio);
+    ++out.parts;
+    if (ratio > 1) {
+      ++out.wins;
+    } else {
+      out.lost += (out.lost.empty() ? "" : ", ") + part;
+    }
   }
-  return geometric_mean_of(ratios);
+  out.gain = geometric_mean_of(ratios);
+  return out;
 }
 
 std::string answer_of(const Evidence& evidence) {
-  const Rows meshers = evidence.findings.rows("meshers"), landscapes = evidence.findings.rows("landscapes");
-  if (meshers.empty()) return "The meshers were not measured yet.";
-  const double gain = geometric_ratio(meshers, "rdm", "decode_binary");
-  std::size_t wins = 0, all = 0;
-  std::string losses;
-  for (const std::string& part : meshers.kinds("part")) {
-    const Rows at = meshers.where("part", part);
-    const bool is_won = at.where("mesher", "rdm").number("median_ns") <
-                        at.where("mesher", "decode_binary").number("median_ns");
-    wins += is_won ? 1U : 0U;
-    ++all;
-    if (!is_won) losses += (losses.empty() ? "" : ", ") + part;
-  }
-  const char* const loses = losses.empty() ? "" : "; it loses in scenario ";
-  std::string out = gain >= 1 ? fmt::format(
-                                    "Counted from what is stored, the fastest mesher is Run Directional "
-                                    "Meshing straight from compressed runs: over "
-                                    "the thesis' 37 scenarios, decoding and meshing with the fastest dense "
-                                    "mesher, binary greedy, takes {} times as "
-                                    "long (geometric mean), and RDM is faster in {} of {}{}{}. ",
-                                    format_value(gain), wins, all, loses, losses)
-                              : fmt::format(
-                                    "Counted from what is stored, decoding and meshing with the fastest "
-                                    "dense mesher, binary greedy, is the fastest "
-                                    "here: meshing straight from runs takes {} times as long (geometric "
-                                    "mean), and is faster in {} of {}. ",
-                                    format_value(1 / gain), wins, all);
-  const double real = geometric_ratio(landscapes.where("world", "luanti"), "rdm", "decode_binary");
-  if (!std::isnan(real)) {
-    out +=
-        fmt::format("In a real world, made by another program, decoding and meshing takes {} times as long. ",
-                    format_value(real));
+  const Rows rows = evidence.findings.rows("meshers");
+  const auto totals = mesher_totals(rows);
+  const Duel scenarios = duel_of(rows);
+  const Duel real = duel_of(evidence.findings.rows("landscapes").where("world", "luanti"));
+  if (std::isnan(scenarios.gain)) return "The meshers were not measured yet.";
+  const bool pays = scenarios.gain > 1;
+  const std::string sums =
+      format_value(total_of(totals, "decode_binary").sum_ns / total_of(totals, "rdm").sum_ns);
+  std::string out = fmt::format(
+      "{} is {}: over the thesis' 37 scenarios (the chunk in the middle), decoding and meshing with the "
+      "fastest dense mesher, binary "
+      "greedy, takes {} times as long as meshing straight from runs by the geometric mean and {} times by "
+      "the sum, and runs are faster "
+      "in {} of {}{}{}. ",
+      "Counted from what is stored, the fastest mesher",
+      pays ? "Run Directional Meshing from compressed runs" : "binary greedy", format_value(scenarios.gain),
+      sums, scenarios.wins, scenarios.parts, scenarios.lost.empty() ? "" : ", not in scenario ",
+      scenarios.lost);
+  if (!std::isnan(real.gain)) {
+    out += fmt::format(
+        "In a real world, made by another program, decoding and meshing takes {} times as long, and runs are "
+        "faster in "
+        "{} of {} volumes. ",
+        format_value(real.gain), real.wins, real.parts);
   }
   const double kept = mean_of(evidence.findings.rows("facts").numbers("run_bytes")) / kDenseBytes;
-  if (gain >= 1 && !std::isnan(kept)) {
+  if (!std::isnan(kept)) {
     out += fmt::format(
-        "So meshing from compressed data pays: a chunk of the scenarios takes {} % less memory than a dense "
-        "array of two bytes a "
-        "voxel, nothing is unpacked, and it costs less time, not more, except where nearly every voxel "
-        "differs from the next.",
-        format_value(100 * (1 - kept)));
+        "So meshing from compressed data {}: a chunk of the scenarios takes {} % less memory than a dense "
+        "array of two "
+        "bytes a voxel, nothing is unpacked, and on the whole it costs {} time, not {}.",
+        pays ? "pays" : "saves memory and does not pay in time here", format_value(100 * (1 - kept)),
+        pays ? "less" : "more", pays ? "more" : "less");
   }
   return out;
 }
@@ -113,23 +119,27 @@ std::string answer_of(const Evidence& evidence) {
 
 Verdicts verdicts_of(const Evidence& evidence) {
   const Findings& findings = evidence.findings;
-  const Rows meshers = findings.rows("meshers");
+  const auto totals = mesher_totals(findings.rows("meshers"));
+  const auto unit = [](const char* name) {
+    return [name](double value) { return fmt::format("{} {}", format_value(value), name); };
+  };
   Verdicts out;
+  out.steps = {"meshers", "landscapes", "facts", "bytes", "transfer-loopback", "transfer-broadband"};
   out.answer = answer_of(evidence);
   judge(out, "Fastest mesher from what is stored (37 scenarios)", "meshers-time",
-        of_meshers(meshers, {"rdm", "decode_binary", "rle_rdm", "culled"}, "median_ns", 1e-3), " µs");
+        of_meshers(totals, {"rdm", "decode_binary", "rle_rdm", "culled"}, &MesherTotal::mean_ns), time_text);
   judge(out, "Fewest triangles without searching for the optimum", "meshers-triangles",
-        of_meshers(meshers,
+        of_meshers(totals,
                    {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "culled", "simple", "greedy",
                     "naive_greedy", "run_strips"},
-                   "triangles"),
-        "");
+                   &MesherTotal::triangles),
+        count_text);
   judge(out, "Fewest T-junctions among meshers that merge", "t-junctions",
-        of_meshers(meshers,
-                   {"rdm", "decode_binary", "grid_rdm", "greedy", "naive_greedy", "run_strips",
-                    "optimal_greedy", "monotone", "poly2tri"},
-                   "t_junctions"),
-        "");
+        of_meshers(totals,
+                   {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "greedy", "naive_greedy", "run_strips",
+                    "run_strips_hidden", "optimal_greedy", "monotone", "poly2tri"},
+                   &MesherTotal::t_junctions),
+        count_text);
   std::vector<Candidate> forms;
   const Rows bytes = findings.rows("bytes").where("world", "luanti").where("set", "all");
   for (const auto& [form, name] :
@@ -141,7 +151,7 @@ Verdicts verdicts_of(const Evidence& evidence) {
                                                            {"minecraft", "Minecraft's form"}}}) {
     forms.push_back({name, bytes.where("form", form).number("bytes")});
   }
-  judge(out, "Fewest bytes of a chunk of a real world on the wire", "bytes", std::move(forms), " B");
+  judge(out, "Fewest bytes of a chunk of a real world on the wire", "bytes", std::move(forms), unit("B"));
   for (const char* profile : {"loopback", "broadband"}) {
     const Rows at =
         findings.rows(fmt::format("transfer-{}", profile), "figures").where("figure", "complete_ms");
@@ -156,7 +166,7 @@ Verdicts verdicts_of(const Evidence& evidence) {
     judge(out,
           profile == std::string_view("loopback") ? "A real world sent and meshed, on loopback"
                                                   : "The same over broadband",
-          "transfers", std::move(ways), " ms");
+          "transfers", std::move(ways), unit("ms"));
   }
   return out;
 }

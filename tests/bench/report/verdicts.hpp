@@ -15,6 +15,7 @@ struct ReportVerdict {
 struct Verdicts {
   std::string answer;  // three sentences, plain text
   std::vector<ReportVerdict> rows;
+  std::vector<std::string> steps;  // that they rest on
 };
 
 /// Of what was measured: a question without its measurements has no row.

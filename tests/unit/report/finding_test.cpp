@@ -74,8 +74,11 @@ TEST_CASE("findings tell what is missing, what failed and what is of another com
   const auto doubts = findings.doubts({"a", "c", "d", "e"});
   REQUIRE(doubts.size() == 3);
   CHECK(doubts[0].find("commit old") != std::string::npos);
-  CHECK(doubts[1] == "e: failed: no namespaces.");
+  CHECK(doubts[1] == "e failed in this run: no namespaces.");
   CHECK(doubts[2] == "Not measured: d.");
+  const auto older = Findings::read(out, {"a"}, {{"a", "no room"}});
+  CHECK(older.doubts({"a"}) ==
+        std::vector<std::string>{"a failed in this run: no room. What is shown is older."});
   CHECK(findings.is_missing({"d", "e"}));
   CHECK_FALSE(findings.is_missing({"d", "a"}));
   CHECK(findings.rows("a").where("world", "hills").number("median_ns") == 12.5);

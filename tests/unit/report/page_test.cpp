@@ -59,7 +59,7 @@ TEST_CASE("a figure shows what was measured, with its data, and nothing else of 
   const std::string page = text_of(made->file);
   CHECK(holds(page, "by hand take 250 µs as one stack and 1,000 µs one by one"));
   CHECK(holds(page, "<svg"));
-  CHECK(holds(page, "bytes: failed: disk &lt;full&gt;."));
+  CHECK(holds(page, "bytes failed in this run: disk &lt;full&gt;."));
   CHECK_FALSE(holds(page, "nan"));
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http", "<script"}) {
     CHECK_FALSE(holds(page, outside));
@@ -83,6 +83,31 @@ TEST_CASE("steps that measured nothing leave no broken number behind") {
   CHECK(made->missing == 0);
   const std::string page = text_of(made->file);
   for (const char* broken : {"nan", "NaN", "inf\"", "-inf"}) CHECK_FALSE(holds(page, broken));
+}
+
+TEST_CASE("a result of any other shape is no more than not measured") {
+  const test::TempFolder folder;
+  const ReportOptions options = options_of(folder / "out");
+  const nlohmann::json shapes[] = {nullptr,
+                                   3,
+                                   "text",
+                                   nlohmann::json::array({1, nullptr}),
+                                   {{"rows", 3}},
+                                   {{"rows", {{{"world", 3}, {"mesher", nullptr}}}}},
+                                   {{"gl", 3}, {"width", "wide"}}};
+  for (const nlohmann::json& shape : shapes) {
+    for (const Step& step : report_steps(options)) {
+      Finding finding = edits_finding();
+      finding.step = step.name;
+      finding.result = shape;
+      REQUIRE(write_finding(folder / "out", finding).has_value());
+    }
+    const auto made = write_page(options, {});
+    REQUIRE(made.has_value());
+    const std::string page = text_of(made->file);
+    CHECK(holds(page, "The meshers were not measured yet."));
+    CHECK_FALSE(holds(page, "nan"));
+  }
 }
 
 TEST_CASE("results of another commit are named where they show") {

@@ -39,9 +39,9 @@ TEST_CASE("means leave out what was not measured") {
 
 TEST_CASE("a table is CSV that quotes what needs it") {
   DataTable table{{"name", "value"}, {}};
-  table.add({"plain", 1.5});
+  table.add({"plain", 1'195'306.5});
   table.add({"a \"b\", c", std::nan("")});
-  CHECK(csv_of(table) == "name,value\r\nplain,1.5\r\n\"a \"\"b\"\", c\",\r\n");
+  CHECK(csv_of(table) == "name,value\r\nplain,1195306.5\r\n\"a \"\"b\"\", c\",\r\n");
 }
 
 }  // namespace
