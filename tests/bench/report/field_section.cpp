@@ -21,6 +21,9 @@ namespace {
 
 using chart::format_value;
 
+/// Short enough for a cell: "1.9k" of 1,940.
+std::string cell_text(double us) { return us < 1000 ? format_value(us) : fmt::format("{:.2g}k", us / 1000); }
+
 DataTable table_of(const std::vector<Ranked>& all, const char* column) {
   DataTable out{{"mesher", column}, {}};
   for (const Ranked& each : all) out.add({each.mesher, each.value});
@@ -57,6 +60,7 @@ class FieldFigures {
     chart::HeatMap chart;
     chart.value = {"µs of a chunk", true};
     chart.title = "time of every mesher in every scenario";
+    chart.text = cell_text;
     ReportFigure out;
     out.data.columns = {"scenario", "mesher",    "us",          "quads",
                         "vertices", "triangles", "t_junctions", "storage_bytes"};

@@ -94,7 +94,7 @@ std::string answer_of(const Evidence& evidence) {
       "in {} of {}{}{}. ",
       "Counted from what is stored, the fastest mesher",
       pays ? "Run Directional Meshing from compressed runs" : "binary greedy", format_value(scenarios.gain),
-      sums, scenarios.wins, scenarios.parts, scenarios.lost.empty() ? "" : ", not in scenario ",
+      sums, scenarios.wins, scenarios.parts, scenarios.lost.empty() ? "" : ", not in number ",
       scenarios.lost);
   if (!std::isnan(real.gain)) {
     out += fmt::format(

@@ -53,7 +53,7 @@ TEST_CASE("where runs are faster, the answer says so, by both means, and where t
   CHECK(holds(verdicts.answer, "the fastest mesher is Run Directional Meshing"));
   CHECK(holds(verdicts.answer, "takes 1.91 times as long"));  // (2^36 * 0.4)^(1/37)
   CHECK(holds(verdicts.answer, "and 1.8 times by the sum"));  // 37 * 200 / (36 * 100 + 500)
-  CHECK(holds(verdicts.answer, "faster in 36 of 37, not in scenario 37."));
+  CHECK(holds(verdicts.answer, "faster in 36 of 37, not in number 37."));
   CHECK(holds(summary,
               "Doubt: Not measured: landscapes, facts, bytes, transfer-loopback, transfer-broadband."));
   CHECK(holds(summary, "quick run"));

@@ -35,16 +35,15 @@ int turn_of(Role role) {
   return 3;
 }
 
-/// An arrow into the lower left corner; returns what it covers.
-Box draw_better(Svg& svg, const Box& area) {
-  const double x = area.x + 8;
-  const double y = area.y + area.height - 8;
-  svg.path("M" + number(x + 20) + " " + number(y - 20) + "L" + number(x) + " " + number(y) + "M" + number(x) +
-               " " + number(y - 9) + "L" + number(x) + " " + number(y) + "L" + number(x + 9) + " " +
-               number(y),
+/// An arrow to the lower left, above the right end of the picture, where no point lies.
+void draw_better(Svg& svg, const Box& area) {
+  const double x = area.x + area.width - 14;
+  const double y = area.y - 12;
+  svg.text(x - 6, y, Anchor::end, "better", "note");
+  svg.path("M" + number(x + 14) + " " + number(y - 12) + "L" + number(x) + " " + number(y + 2) + "M" +
+               number(x) + " " + number(y - 7) + "L" + number(x) + " " + number(y + 2) + "L" + number(x + 9) +
+               " " + number(y + 2),
            "arrow");
-  svg.text(x + 24, y - 16, Anchor::start, "better", "note");
-  return {area.x, y - 30, 32 + width_of("better", kTickSize), 38};
 }
 
 void draw_label(Svg& svg, const ScatterPoint& point, double x, double y, const Box& box) {
@@ -131,7 +130,7 @@ std::string svg_of(const ScatterChart& chart, Width width) {
   draw_vertical_axis(svg, y_scale, caption_of(chart.y), area);
   draw_horizontal_axis(svg, x_scale, caption_of(chart.x), area, width_of(width));
   LabelPlacer placer({area.x + 2, area.y - 6, area.width + 14, area.height + 4});
-  if (chart.is_low_better) placer.block(draw_better(svg, area));
+  if (chart.is_low_better) draw_better(svg, area);
   std::vector<PlacedPoint> points;
   for (const std::size_t i : shown) {
     const ScatterPoint& point = chart.points[i];

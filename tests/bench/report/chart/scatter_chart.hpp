@@ -20,7 +20,7 @@ struct ScatterChart {
   Axis x = {};
   Axis y = {};
   std::vector<ScatterPoint> points = {};
-  bool is_low_better = false;  // an arrow says that the lower left is the good corner
+  bool is_low_better = false;  // an arrow says that the lower left is better
   std::string title = {};
 };
 
