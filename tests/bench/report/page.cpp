@@ -131,12 +131,12 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options, const 
                         html_text(section.title), html_text(section.introduction));
     for (const ReportFigure& figure : section.figures) {
       ++out.figures;
+      const std::string csv_file = fmt::format("{}/csv/{}.csv", options.out, figure.id);
       body += html_of(figure, findings);
       if (findings.is_missing(figure.steps)) {
         ++out.missing;
-      } else if (const auto done = write_text_file(fmt::format("{}/csv/{}.csv", options.out, figure.id),
-                                                   csv_of(figure.data));
-                 !done) {
+        std::filesystem::remove(csv_file, error);  // of an earlier page
+      } else if (const auto done = write_text_file(csv_file, csv_of(figure.data)); !done) {
         return Unexpected<std::string>{done.error()};
       }
     }

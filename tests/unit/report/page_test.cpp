@@ -110,6 +110,37 @@ TEST_CASE("a result of any other shape is no more than not measured") {
   }
 }
 
+TEST_CASE("frames are compared over the worlds that most meshers drew; who drew few is named") {
+  const test::TempFolder folder;
+  Finding frames = edits_finding();
+  frames.step = "frames";
+  nlohmann::json rows = nlohmann::json::array();
+  for (int world = 1; world <= 4; ++world) {
+    const auto add = [&](const char* mesher, int vertices, double ms) {
+      rows.push_back({{"world", "scenario_" + std::to_string(world)},
+                      {"mesher", mesher},
+                      {"path", "plain"},
+                      {"vertices", vertices},
+                      {"p50_ms", ms}});
+    };
+    add("none", 0, 0.1);
+    add("culled", 400, 8);
+    if (world != 4) add("rdm", 40, 2.0 * world);  // 2, 4, 6
+    if (world == 1) add("simple", 4000, 80);
+  }
+  frames.result = {{"rows", rows},
+                   {"gl", {{"renderer", "llvmpipe"}, {"software", true}}},
+                   {"width", 640},
+                   {"height", 360}};
+  REQUIRE(write_finding(folder / "out", frames).has_value());
+  const auto made = write_page(options_of(folder / "out"), {});
+  REQUIRE(made.has_value());
+  const std::string page = text_of(made->file);
+  CHECK(holds(page, "A frame takes 3.63 ms (geometric mean of 3 worlds) with our mesh, 8 with culled faces"));
+  CHECK(holds(page, "Too large to be drawn in most worlds, so not in the means: simple."));
+  CHECK(holds(page, "Drawn by llvmpipe, 640 by 360 pixels."));
+}
+
 TEST_CASE("results of another commit are named where they show") {
   const test::TempFolder folder;
   Finding other = edits_finding();
