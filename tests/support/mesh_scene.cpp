@@ -58,6 +58,16 @@ MeshNeighbours MeshScene::pointers() const {
   return out;
 }
 
+MeshScene block_scene() {
+  MeshScene scene{uniform_chunk(Extent::cube(8), kEmpty), {}};
+  for (std::uint8_t z = 3; z < 7; ++z) {
+    for (std::uint8_t y = 2; y < 5; ++y)
+      fill(scene.chunk, index_of({1, y, z}, Extent::cube(8), AxisOrder::xyz), 2, kStone);
+  }
+  fill(scene.chunk, index_of({5, 5, 5}, Extent::cube(8), AxisOrder::xyz), 1, kWater);
+  return scene;
+}
+
 MeshScene random_scene(SplitMix64& rng, unsigned side_max) {
   // Materials beyond the table are opaque to the mesher; two or three materials make the largest faces.
   const unsigned materials = rng.below(4) == 0 ? 2 + rng.below(12) : kMeshMaterialCount;

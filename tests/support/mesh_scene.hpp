@@ -34,6 +34,9 @@ struct MeshScene {
   MeshNeighbours pointers() const;
 };
 
+/// A block of 2 x 3 x 4 stone at 1 2 3 with a voxel of water at 5 5 5, in a chunk of 8^3 alone.
+MeshScene block_scene();
+
 /// Seeded scene: any shapes, axis orders and extents (sides of the chunk up to `side_max`), each neighbour
 /// there or missing, and as deep as it likes along its direction.
 MeshScene random_scene(SplitMix64& rng, unsigned side_max);

@@ -1,4 +1,5 @@
 #include "tests/bench/frames/frames_result.hpp"
+#include "tests/bench/machine_json.hpp"
 
 #include <fmt/ostream.h>
 
@@ -168,13 +169,7 @@ void write_csv(const FramesResult& result, std::ostream& out) {
 }
 
 void write_json(const FramesResult& result, std::ostream& out) {
-  const Machine& m = result.machine;
-  nlohmann::ordered_json json = {{"machine",
-                                  {{"cpu", m.cpu},
-                                   {"cores", m.cores},
-                                   {"compiler", m.compiler},
-                                   {"commit", m.commit},
-                                   {"simd", m.simd}}},
+  nlohmann::ordered_json json = {{"machine", json_of(result.machine)},
                                  {"gl",
                                   {{"renderer", result.gl_renderer},
                                    {"version", result.gl_version},

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <tuple>
 
+#include "tests/bench/machine_json.hpp"
+
 namespace runstone::bench {
 namespace {
 
@@ -33,11 +35,7 @@ Result<void, std::string> write_finding(const std::string& folder, const Finding
                         {"luanti", finding.luanti},
                         {"measured_at", finding.measured_at},
                         {"seconds", finding.seconds},
-                        {"cpu", finding.machine.cpu},
-                        {"cores", finding.machine.cores},
-                        {"compiler", finding.machine.compiler},
-                        {"commit", finding.machine.commit},
-                        {"simd", finding.machine.simd},
+                        {"machine", json_of(finding.machine)},
                         {"result", finding.result}};
   {
     std::ofstream out(unfinished);
@@ -64,11 +62,12 @@ Result<Finding, std::string> read_finding(const std::string& folder, const std::
     content.at("luanti").get_to(out.luanti);
     content.at("measured_at").get_to(out.measured_at);
     content.at("seconds").get_to(out.seconds);
-    content.at("cpu").get_to(out.machine.cpu);
-    content.at("cores").get_to(out.machine.cores);
-    content.at("compiler").get_to(out.machine.compiler);
-    content.at("commit").get_to(out.machine.commit);
-    content.at("simd").get_to(out.machine.simd);
+    const json& machine = content.at("machine");
+    machine.at("cpu").get_to(out.machine.cpu);
+    machine.at("cores").get_to(out.machine.cores);
+    machine.at("compiler").get_to(out.machine.compiler);
+    machine.at("commit").get_to(out.machine.commit);
+    machine.at("simd").get_to(out.machine.simd);
     out.result = content.at("result");
     return out;
   } catch (const json::exception& error) {

@@ -20,10 +20,10 @@ Findings Findings::read(const std::string& folder, const std::vector<std::string
     if (const auto failed = failures.find(step); failed != failures.end()) out.failed_.insert(*failed);
   }
   std::ptrdiff_t most = 0;
-  for (const auto& [name, one] : out.found_) {
-    const auto alike = std::count_if(out.found_.begin(), out.found_.end(), [&one = one](const auto& other) {
-      return is_comparable(one, other.second);
-    });
+  for (const auto& each : out.found_) {
+    const Finding& one = each.second;
+    const auto alike = std::count_if(out.found_.begin(), out.found_.end(),
+                                     [&one](const auto& other) { return is_comparable(one, other.second); });
     if (alike > most) {
       most = alike;
       out.common_ = &one;

@@ -140,7 +140,7 @@ void add_drawing(Steps& steps) {
   if (steps.is_quick()) {
     frames.width = 640;
     frames.height = 360;
-    for (const unsigned scenario : {5, 8, 13, 14, 20, 23, 33}) {
+    for (const unsigned scenario : {5U, 8U, 13U, 14U, 20U, 23U, 33U}) {
       frames.worlds.push_back(fmt::format("scenario_{}", scenario));
     }
     frames.worlds.emplace_back("luanti");
@@ -178,7 +178,7 @@ void add_network(Steps& steps) {
     steps.add_net("transfer-" + profile, "transfer", {profile}, 8, 60,
                   [](NetOptions& net) { net.worlds = {"luanti", "terrain", "caves", "town", "noise"}; });
   }
-  for (const unsigned clients : {1, 10, 100, 300, 1000}) {
+  for (const unsigned clients : {1U, 10U, 100U, 300U, 1000U}) {
     if (steps.is_quick() && clients > 100) continue;
     steps.add_net(fmt::format("crowd-{}", clients), "crowd", {}, 8, 40 + clients / 20.0,
                   [clients](NetOptions& net) { net.clients = {clients}; });

@@ -9,29 +9,16 @@
 #include <set>
 #include <sstream>
 
-#include "tests/bench/bench_program.hpp"
 #include "tests/bench/contestant.hpp"
 #include "tests/bench/storage/stores.hpp"
 #include "tests/bench/transfer_form.hpp"
+#include "tests/integration/bench/bench_output.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
 using namespace runstone::bench;
 
 namespace {
-
-struct Output {
-  int exit_code = 0;
-  std::string out, err;
-};
-
-Output run(const std::vector<std::string>& arguments) {
-  std::vector<const char*> argv = {"runstone-bench"};
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  std::ostringstream out, err;
-  const int exit_code = bench_program(static_cast<int>(argv.size()), argv.data(), out, err);
-  return {exit_code, out.str(), err.str()};
-}
 
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
@@ -67,9 +54,9 @@ std::vector<CsvRow> read_csv(const std::string& file) {
 TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "mesh.csv", json = folder / "mesh.json";
-  const Output output =
-      run({"mesh", "--quick", "--worlds", "hills,town,checkerboard,uniform,scenarios,luanti", "--edges", "32",
-           "--csv", csv, "--json", json});
+  const BenchOutput output =
+      run_bench({"mesh", "--quick", "--worlds", "hills,town,checkerboard,uniform,scenarios,luanti", "--edges",
+                 "32", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
 
@@ -142,8 +129,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
 }
 
 TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
-  const Output output = run({"mesh", "--quick", "--worlds", "empty,scenarios", "--edges", "65,8", "--meshers",
-                             "rdm,decode_binary"});
+  const BenchOutput output = run_bench({"mesh", "--quick", "--worlds", "empty,scenarios", "--edges", "65,8",
+                                        "--meshers", "rdm,decode_binary"});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   for (const char* cell : {"skipped: empty 0 -32 0 edge 65 order xyz decode_binary: sides above 64",
@@ -155,7 +142,7 @@ TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
 }
 
 TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[bench]") {
-  const Output output = run(
+  const BenchOutput output = run_bench(
       {"mesh-once", "--worlds", "town,checkerboard", "--edges", "16", "--mesher", "culled", "--times", "3"});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
@@ -169,7 +156,8 @@ TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[be
   CHECK(worlds["checkerboard"].at("quads") == 16 * 16 * 16 / 2 * 6);
   CHECK(worlds["checkerboard"].at("meshes") == 3);
   CHECK(worlds["town"].at("mesher") == "culled");
-  const Output none = run({"mesh-once", "--worlds", "hills", "--edges", "65", "--mesher", "mask_binary"});
+  const BenchOutput none =
+      run_bench({"mesh-once", "--worlds", "hills", "--edges", "65", "--mesher", "mask_binary"});
   CHECK(none.exit_code == 1);
   CHECK(none.err.find("hills edge 65: nothing for mask_binary") != std::string::npos);
 }
@@ -177,8 +165,9 @@ TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[be
 TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "orders.csv";
-  REQUIRE(run({"mesh", "--quick", "--worlds", "hills", "--orders", "all", "--meshers", "rdm", "--csv", csv})
-              .exit_code == 0);
+  REQUIRE(
+      run_bench({"mesh", "--quick", "--worlds", "hills", "--orders", "all", "--meshers", "rdm", "--csv", csv})
+          .exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
   REQUIRE(rows.size() == 6);
   std::set<std::string> orders;
@@ -197,7 +186,7 @@ TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
 TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edges.csv";
-  const Output output = run({"chunk-edge", "--worlds", "town", "--edges", "32,64", "--csv", csv});
+  const BenchOutput output = run_bench({"chunk-edge", "--worlds", "town", "--edges", "32,64", "--csv", csv});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
@@ -213,26 +202,27 @@ TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[benc
 }
 
 TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
-  CHECK(run({}).exit_code == 2);
-  CHECK(run({"mesh", "--worlds", "atlantis"}).exit_code == 2);
-  CHECK(run({"mesh", "--meshers", "marching_cubes"}).exit_code == 2);
-  CHECK(run({"mesh", "--edges", "7"}).exit_code == 2);
-  CHECK(run({"mesh", "--help"}).exit_code == 0);
+  CHECK(run_bench({}).exit_code == 2);
+  CHECK(run_bench({"mesh", "--worlds", "atlantis"}).exit_code == 2);
+  CHECK(run_bench({"mesh", "--meshers", "marching_cubes"}).exit_code == 2);
+  CHECK(run_bench({"mesh", "--edges", "7"}).exit_code == 2);
+  CHECK(run_bench({"mesh", "--help"}).exit_code == 0);
   const test::TempFolder folder;
-  const Output nothing = run({"mesh", "--quick", "--worlds", "luanti", "--luanti", folder.path()});
+  const BenchOutput nothing = run_bench({"mesh", "--quick", "--worlds", "luanti", "--luanti", folder.path()});
   CHECK(nothing.exit_code == 1);
   CHECK(nothing.err.find("map.sqlite") != std::string::npos);
-  const Output odd = run({"chunk-edge", "--worlds", "town", "--edges", "62"});
+  const BenchOutput odd = run_bench({"chunk-edge", "--worlds", "town", "--edges", "62"});
   CHECK(odd.exit_code == 1);
   CHECK(odd.err.find("edge 62") != std::string::npos);
   const std::string nowhere = folder / "no/such.csv";
-  CHECK(run({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
+  CHECK(run_bench({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
 }
 
 TEST_CASE("runstone-bench edits has a row for every case and judges every bar", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edits.csv", json = folder / "edits.json";
-  const Output output = run({"edits", "--min-runs", "1", "--edits", "300", "--csv", csv, "--json", json});
+  const BenchOutput output =
+      run_bench({"edits", "--min-runs", "1", "--edits", "300", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::map<std::string, std::size_t> edits;
@@ -252,7 +242,7 @@ TEST_CASE("runstone-bench edits has a row for every case and judges every bar", 
 TEST_CASE("runstone-bench log opens moments with keyframes and without, and previews a rollback", "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "log.json";
-  const Output output = run({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
+  const BenchOutput output = run_bench({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const auto document = nlohmann::json::parse(text_of(json));
@@ -274,8 +264,8 @@ TEST_CASE("runstone-bench log opens moments with keyframes and without, and prev
 TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "bytes.csv", json = folder / "bytes.json";
-  const Output output = run({"bytes", "--min-runs", "1", "--worlds", "luanti,hills,scenarios,uniform",
-                             "--csv", csv, "--json", json});
+  const BenchOutput output = run_bench({"bytes", "--min-runs", "1", "--worlds",
+                                        "luanti,hills,scenarios,uniform", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::map<std::string, std::map<std::string, double>> bytes;  // by world and set, then form
@@ -308,7 +298,7 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
 TEST_CASE("report: a step is measured once, a run goes on, and the page is there") {
   const test::TempFolder folder;
   const std::vector<std::string> words = {"report", "--out", folder / "r", "--quick", "--steps", "facts"};
-  const Output first = run(words);
+  const BenchOutput first = run_bench(words);
   INFO(first.err);
   REQUIRE(first.exit_code == 0);
   CHECK(first.err.find("[1/1] facts") != std::string::npos);
@@ -318,24 +308,25 @@ TEST_CASE("report: a step is measured once, a run goes on, and the page is there
   CHECK(facts["result"]["rows"][16]["runs_zyx"] == 31776);  // lines meet in 992 runs
   CHECK(text_of(folder / "r/index.html").find("memory-group-1") != std::string::npos);
 
-  const Output second = run(words);
+  const BenchOutput second = run_bench(words);
   CHECK(second.exit_code == 0);
   // A tree with changes of its own has no name to go on from.
-  const bool is_dirty = facts["commit"].get<std::string>().ends_with("-dirty");
+  const bool is_dirty = facts["machine"]["commit"].get<std::string>().ends_with("-dirty");
   CHECK((second.err.find("is there") != std::string::npos) != is_dirty);
 
   auto full = facts;
   full["quick"] = false;
   std::ofstream(folder / "r/data/facts.json") << full;
-  const Output over = run(words);
+  const BenchOutput over = run_bench(words);
   CHECK(over.exit_code == 1);
   CHECK(over.err.find("figures of a full run") != std::string::npos);
 
-  const Output short_run = run({"report", "--out", folder / "r2", "--quick", "--steps", "latency-lossy"});
+  const BenchOutput short_run =
+      run_bench({"report", "--out", folder / "r2", "--quick", "--steps", "latency-lossy"});
   CHECK(short_run.exit_code == 1);
   CHECK(short_run.err.find("no step latency-lossy") != std::string::npos);
 
-  const Output unknown = run({"report", "--out", folder / "r", "--steps", "everything"});
+  const BenchOutput unknown = run_bench({"report", "--out", folder / "r", "--steps", "everything"});
   CHECK(unknown.exit_code == 2);
   CHECK(unknown.err.find("everything") != std::string::npos);
 }
@@ -343,8 +334,8 @@ TEST_CASE("report: a step is measured once, a run goes on, and the page is there
 TEST_CASE("runstone-bench storage has a row for every store on every volume", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "storage.csv", json = folder / "storage.json";
-  const Output output = run({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios", "--edges",
-                             "16,32", "--min-runs", "1", "--csv", csv, "--json", json});
+  const BenchOutput output = run_bench({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios",
+                                        "--edges", "16,32", "--min-runs", "1", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
@@ -395,7 +386,7 @@ TEST_CASE("runstone-bench storage has a row for every store on every volume", "[
   }
   CHECK(output.out.find("skipped: scenarios edge 16: scenario 5 is data of edge 32") != std::string::npos);
 
-  const Output odd = run({"storage", "--worlds", "hills", "--edges", "62"});
+  const BenchOutput odd = run_bench({"storage", "--worlds", "hills", "--edges", "62"});
   CHECK(odd.exit_code == 1);
   CHECK(odd.err.find("edge 62") != std::string::npos);
 }

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "client/platform/gl_context.hpp"
-#include "tests/bench/bench_program.hpp"
+#include "tests/integration/bench/bench_output.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;
@@ -18,17 +18,9 @@ using namespace runstone::bench;
 
 namespace {
 
-struct Output {
-  int exit_code = 0;
-  std::string out, err;
-};
-
-Output run(const std::vector<std::string>& arguments) {
-  std::vector<const char*> argv = {"runstone-bench", "frames"};
-  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  std::ostringstream out, err;
-  const int exit_code = bench_program(static_cast<int>(argv.size()), argv.data(), out, err);
-  return {exit_code, out.str(), err.str()};
+BenchOutput run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "frames");
+  return run_bench(arguments);
 }
 
 /// Of indexed triangles.
@@ -52,9 +44,9 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
   if (!has_context()) return;
   const test::TempFolder folder;
   const std::string json = folder / "frames.json", csv = folder / "frames.csv";
-  const Output output = run({"--worlds", "scenario_6,scenario_1,luanti", "--meshers",
-                             "rdm,rdm_plain,culled,rle_rdm,quads,product", "--frames", "4", "--pictures", "2",
-                             "--size", "160x90", "--csv", csv, "--json", json});
+  const BenchOutput output = run({"--worlds", "scenario_6,scenario_1,luanti", "--meshers",
+                                  "rdm,rdm_plain,culled,rle_rdm,quads,product", "--frames", "4", "--pictures",
+                                  "2", "--size", "160x90", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::ifstream in(json);
@@ -117,8 +109,8 @@ TEST_CASE("without the culled mesher seams are still counted against its picture
   if (!has_context()) return;
   const test::TempFolder folder;
   const std::string json = folder / "frames.json";
-  const Output output = run({"--worlds", "scenario_2", "--meshers", "rdm", "--frames", "3", "--pictures", "1",
-                             "--size", "64x36", "--json", json});
+  const BenchOutput output = run({"--worlds", "scenario_2", "--meshers", "rdm", "--frames", "3", "--pictures",
+                                  "1", "--size", "64x36", "--json", json});
   REQUIRE(output.exit_code == 0);
   std::ifstream in(json);
   const auto document = nlohmann::json::parse(in);
@@ -129,8 +121,8 @@ TEST_CASE("without the culled mesher seams are still counted against its picture
 
 TEST_CASE("a mesh that is too large is named instead", "[frames]") {
   if (!has_context()) return;
-  const Output output = run({"--worlds", "scenario_6", "--meshers", "simple,culled,rdm", "--frames", "3",
-                             "--size", "64x36", "--vertices-max", "20000"});
+  const BenchOutput output = run({"--worlds", "scenario_6", "--meshers", "simple,culled,rdm", "--frames", "3",
+                                  "--size", "64x36", "--vertices-max", "20000"});
   REQUIRE(output.exit_code == 0);
   CHECK(output.out.find("skipped: scenario_6 simple: more than 20000 vertices") != std::string::npos);
   CHECK(output.out.find("| rdm |") != std::string::npos);
@@ -140,7 +132,7 @@ TEST_CASE("a mesh that is too large is named instead", "[frames]") {
 
 TEST_CASE("runstone-bench frames refuses what it cannot do", "[frames]") {
   const auto refused = [](const std::vector<std::string>& arguments, const char* why) {
-    const Output output = run(arguments);
+    const BenchOutput output = run(arguments);
     CAPTURE(output.err);
     CHECK(output.exit_code != 0);
     CHECK(output.err.find(why) != std::string::npos);

@@ -33,17 +33,7 @@ QuadLayers layers_of(std::vector<Quad> quads) {
   return out;
 }
 
-/// A block of 2 x 3 x 4 stone at 1 2 3 with a voxel of water at 5 5 5, and its right mesh.
-MeshScene block() {
-  MeshScene scene{uniform_chunk(Extent::cube(8), kEmpty), {}};
-  for (std::uint8_t z = 3; z < 7; ++z) {
-    for (std::uint8_t y = 2; y < 5; ++y)
-      fill(scene.chunk, index_of({1, y, z}, Extent::cube(8), AxisOrder::xyz), 2, kStone);
-  }
-  fill(scene.chunk, index_of({5, 5, 5}, Extent::cube(8), AxisOrder::xyz), 1, kWater);
-  return scene;
-}
-
+/// The right mesh of block_scene().
 ChunkMesh block_mesh() {
   ChunkMesh mesh;
   mesh.opaque = layers_of(
@@ -57,7 +47,7 @@ ChunkMesh block_mesh() {
   return mesh;
 }
 
-std::string verdict(const ChunkMesh& mesh) { return scene_difference(block(), mesh).value_or("right"); }
+std::string verdict(const ChunkMesh& mesh) { return scene_difference(block_scene(), mesh).value_or("right"); }
 
 TEST_CASE("a mesh written by hand passes the oracle, and so does another cut into quads", "[mesh]") {
   CHECK(verdict(block_mesh()) == "right");
@@ -122,7 +112,7 @@ TEST_CASE("the oracle sees quads in the wrong group", "[mesh]") {
 }
 
 TEST_CASE("the oracle names what is wrong with a raw list of quads", "[mesh]") {
-  const MeshScene scene = block();
+  const MeshScene scene = block_scene();
   const ChunkMesh mesh = block_mesh();
   std::vector<Quad> right = mesh.transparent.quads;  // in any order, of any pass
   right.insert(right.end(), mesh.opaque.quads.rbegin(), mesh.opaque.quads.rend());
@@ -149,9 +139,10 @@ TEST_CASE("the oracle names what is wrong with a raw list of quads", "[mesh]") {
 }
 
 TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand", "[mesh]") {
-  CHECK(all_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 25 * 6);
+  CHECK(all_faces(DenseChunk::of(block_scene().chunk), mesh_materials()).size() == 25 * 6);
   // Six lines of four stones along z, and one water: all sides but the inner ends.
-  CHECK(tail_culled_faces(DenseChunk::of(block().chunk), mesh_materials()).size() == 6 * (4 * 4 + 2) + 6);
+  CHECK(tail_culled_faces(DenseChunk::of(block_scene().chunk), mesh_materials()).size() ==
+        6 * (4 * 4 + 2) + 6);
   // A full chunk is one run: -x only on the first slow layer, -y only on the first line of each.
   const auto faces =
       tail_culled_faces(DenseChunk::of(uniform_chunk(Extent::cube(8), kStone)), mesh_materials());
@@ -223,7 +214,7 @@ TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is cau
 
 TEST_CASE("the greedy count merges what a rectangle can cover", "[mesh]") {
   CHECK(greedy_quad_count({}) == 0);
-  CHECK(greedy_quad_count(expected_faces(block())) == 12);
+  CHECK(greedy_quad_count(expected_faces(block_scene())) == 12);
   const MeshScene full{uniform_chunk(Extent::cube(8), kStone), {}};
   CHECK(greedy_quad_count(expected_faces(full)) == 6);
 }

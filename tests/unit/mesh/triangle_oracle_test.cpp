@@ -36,26 +36,15 @@ TriangleMesh triangles_of(const std::vector<Quad>& quads) {
   return out;
 }
 
-/// A box of 2 x 3 x 4 stone at 1 2 3 and a voxel of water.
-MeshScene box() {
-  MeshScene scene{uniform_chunk(Extent::cube(8), kEmpty), {}};
-  for (std::uint8_t z = 3; z < 7; ++z) {
-    for (std::uint8_t y = 2; y < 5; ++y)
-      fill(scene.chunk, index_of({1, y, z}, Extent::cube(8), AxisOrder::xyz), 2, kStone);
-  }
-  fill(scene.chunk, index_of({5, 5, 5}, Extent::cube(8), AxisOrder::xyz), 1, kWater);
-  return scene;
-}
-
 TriangleMesh box_mesh() {
-  const ChunkMesh mesh = mesh_of(box());
+  const ChunkMesh mesh = mesh_of(block_scene());
   std::vector<Quad> quads = mesh.opaque.quads;
   quads.insert(quads.end(), mesh.transparent.quads.begin(), mesh.transparent.quads.end());
   return triangles_of(quads);
 }
 
 std::string verdict(const TriangleMesh& mesh) {
-  return triangles_difference(mesh, Extent::cube(8), mesh_materials(), expected_faces(box()))
+  return triangles_difference(mesh, Extent::cube(8), mesh_materials(), expected_faces(block_scene()))
       .value_or("right");
 }
 
@@ -142,7 +131,7 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
 TEST_CASE("a surface is judged by what is in it", "[mesh]") {
   reference::Surface surface;
   const auto judge = [&surface] {
-    return surface_difference(surface, Extent::cube(8), mesh_materials(), expected_faces(box()))
+    return surface_difference(surface, Extent::cube(8), mesh_materials(), expected_faces(block_scene()))
         .value_or("right");
   };
   CHECK_THAT(judge(), Contains("is missing"));
@@ -150,7 +139,7 @@ TEST_CASE("a surface is judged by what is in it", "[mesh]") {
   CHECK(judge() == "right");
   CHECK(surface.vertex_count() == 48);
   CHECK(surface.triangle_count() == 24);
-  surface.quads = mesh_of(box()).opaque.quads;
+  surface.quads = mesh_of(block_scene()).opaque.quads;
   CHECK_THAT(judge(), Contains("quads and triangles"));
   surface.triangles.clear();
   CHECK_THAT(judge(), Contains("is missing"));  // the water
