@@ -180,7 +180,9 @@ ReportFigure seams(const Evidence& evidence, const Frames& frames) {
   out.sentence = fmt::format(
       "Pixels inside a plane that differ from the picture of culled faces: {} a picture with our mesh, {} "
       "with Poly2Tri. A GPU shades "
-      "in blocks of 2 x 2: long thin triangles waste lanes, ours {} a fragment against {} of culled faces.",
+      "in blocks of 2 x 2, so it shades more lanes than fragments along every edge: {} lanes a fragment with "
+      "our mesh, {} with culled "
+      "faces.",
       format_value(mean("rdm", "pinhole_pixels")), format_value(mean("poly2tri", "pinhole_pixels")),
       format_value(mean("rdm", "lanes")), format_value(mean("culled", "lanes")));
   out.steps = {"frames"};

@@ -70,7 +70,7 @@ std::string svg_of(const RankChart& chart, Width width) {
     if (is_narrow && !note.empty()) {
       svg.text(rows.end(), rows.bar_top(i) - 5, Anchor::end, note, "note");
     } else if (!note.empty()) {
-      svg.text(end + 2 * kGap + width_of(text, kTextSize), y + 4, Anchor::start, note, "note");
+      svg.text(end + 2 * kGap + width_of(text, kTextSize) * kStrong, y + 4, Anchor::start, note, "note");
     }
     svg.end_mark();
   }
