@@ -10,6 +10,7 @@
 #include "tests/bench/report/chart/line_chart.hpp"
 #include "tests/bench/report/chart/range_chart.hpp"
 #include "tests/bench/report/chart/rank_chart.hpp"
+#include "tests/bench/report/number_text.hpp"
 #include "tests/bench/report/report_figure.hpp"
 
 namespace runstone::bench {
@@ -129,7 +130,7 @@ ReportFigure latency(const Evidence& evidence) {
   const Rows rows = evidence.findings.figures(steps);
   chart::RangeChart chart;
   chart.x = {"ms from the click to the mesh", true};
-  chart.value_names = {"", "p50", "p99", "max"};
+  chart.value_names = {"p50", "p50", "p99", "max"};
   chart.title = "latency";
   const auto add = [&](const char* profile, const char* what, const char* figure, const std::string& name,
                        Role role) {
@@ -206,7 +207,7 @@ ReportFigure crowds(const Evidence& evidence) {
       "arrived, {} disconnects.",
       most, evidence.findings.common() == nullptr ? 0 : evidence.findings.common()->machine.cores,
       format_value(value(most, "seen_p50_ms")), format_value(value(most, "seen_p99_ms")),
-      format_value(value(most, "samples")), format_value(value(most, "never")),
+      count_text(value(most, "samples")), format_value(value(most, "never")),
       format_value(value(most, "disconnects")));
   out.steps = steps;
   out.data = table_of(rows);
