@@ -1,9 +1,8 @@
 # runstone_module(common/runs DEPS common/core LIBS PRIVATE zstd::libzstd_shared)
 # makes one static library from every source below the folder. Includes start at the repository root;
-# DEPS are other modules by folder and are the only include arrows this module may draw
-# (tests/unit/house/include_arrows_test walks the includes and holds them to it). EXCLUDE is a regular expression of
-# paths that are left out.
-# A module inside of another one's folder is declared first, and keeps its sources to itself.
+# DEPS are the other modules whose headers it may include (tests/unit/house/include_arrows_test checks it).
+# EXCLUDE is a regular expression of paths that are left out.
+# A module inside another one's folder is declared first and keeps its sources to itself.
 function(runstone_target_name folder out)
   string(REPLACE "/" "_" name ${folder})
   set(${out} runstone_${name} PARENT_SCOPE)
@@ -23,6 +22,8 @@ function(runstone_module folder)
     endif()
   endforeach()
   set_property(GLOBAL APPEND PROPERTY RUNSTONE_MODULES ${folder})
+  string(REPLACE ";" " " arrows "${ARG_DEPS}")
+  set_property(GLOBAL APPEND_STRING PROPERTY RUNSTONE_ARROWS "${folder}: ${arrows}\n")
   if(ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${ARG_EXCLUDE})
     list(FILTER headers EXCLUDE REGEX ${ARG_EXCLUDE})
@@ -55,6 +56,21 @@ function(runstone_module folder)
       target_link_libraries(${name} ${ARG_LIBS})
     endif()
   endif()
+endfunction()
+
+# Writes one line for each module, "folder: dep dep", for the include test.
+function(runstone_write_arrows file)
+  get_property(arrows GLOBAL PROPERTY RUNSTONE_ARROWS)
+  file(GENERATE OUTPUT ${file} CONTENT "${arrows}")
+endfunction()
+
+# Sets `out` to the module that owns a path: the innermost module whose folder contains it, or "".
+function(runstone_module_of path out)
+  get_property(modules GLOBAL PROPERTY RUNSTONE_MODULES)
+  while(path AND NOT path IN_LIST modules)
+    cmake_path(GET path PARENT_PATH path)
+  endwhile()
+  set(${out} "${path}" PARENT_SCOPE)
 endfunction()
 
 # runstone_program(runstone-server server/app/server_main.cpp DEPS server/app)

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/extent.hpp"
 

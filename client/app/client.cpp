@@ -16,11 +16,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "client/app/body_marker.hpp"
+#include "client/display/body_marker.hpp"
 #include "client/net/key_file.hpp"
 #include "client/replica/surface.hpp"
 #include "common/core/key_text.hpp"
-#include "process/steady_clock.hpp"
+#include "common/os/steady_clock.hpp"
 
 namespace runstone {
 namespace {

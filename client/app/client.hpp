@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "client/app/exit_code.hpp"
+#include "common/os/exit_code.hpp"
 #include "client/app/options.hpp"
-#include "client/app/picture.hpp"
+#include "client/display/picture.hpp"
 #include "client/app/player.hpp"
-#include "client/app/report.hpp"
-#include "client/bots/script_host.hpp"
-#include "client/bots/script_runner.hpp"
+#include "client/report/report.hpp"
+#include "client/script/script_host.hpp"
+#include "client/script/script_runner.hpp"
 #include "client/cache/cache_thread.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "client/app/client.hpp"
-#include "client/app/draw_program.hpp"
-#include "client/app/stop_signals.hpp"
+#include "client/display/draw_program.hpp"
+#include "common/os/stop_signals.hpp"
 
 namespace {
 

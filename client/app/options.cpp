@@ -5,7 +5,7 @@
 #include <map>
 #include <thread>
 
-#include "client/app/host_port.hpp"
+#include "common/os/host_port.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/limits.hpp"
 

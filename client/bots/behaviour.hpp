@@ -9,7 +9,7 @@
 
 #include "client/bots/ground.hpp"
 #include "common/core/ids.hpp"
-#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/messages.hpp"
 

@@ -1,6 +1,6 @@
 #include "client/bots/edit_ledger.hpp"
 
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 

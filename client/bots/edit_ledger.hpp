@@ -6,7 +6,7 @@
 #include "client/replica/replica.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
-#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 
 namespace runstone {
 

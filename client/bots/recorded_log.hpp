@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/rlog/rlog_reader.hpp"
 

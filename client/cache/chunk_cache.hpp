@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "client/cache/cache_database.hpp"
-#include "client/cache/folder_lock.hpp"
+#include "common/os/folder_lock.hpp"
 #include "client/replica/cache_question.hpp"
 #include "common/core/result.hpp"
 

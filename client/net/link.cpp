@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "client/net/read_report.hpp"
-#include "process/steady_clock.hpp"
+#include "common/os/steady_clock.hpp"
 
 namespace runstone {
 namespace {

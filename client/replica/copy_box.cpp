@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/clipboard_builder.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/runs/cut.hpp"
 #include "common/runs/reorder.hpp"
 

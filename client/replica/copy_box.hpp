@@ -6,7 +6,7 @@
 #include "client/replica/replica.hpp"
 #include "common/core/coords.hpp"
 #include "common/core/result.hpp"
-#include "common/edits/clipboard.hpp"
+#include "common/edits/clipboard/clipboard.hpp"
 
 namespace runstone {
 

@@ -10,7 +10,7 @@
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "common/edits/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 
 namespace runstone {
 

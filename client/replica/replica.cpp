@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/replica/layer_diff.hpp"
+#include "common/runs/layer_diff.hpp"
 #include "common/core/assert.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 

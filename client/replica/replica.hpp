@@ -31,8 +31,8 @@
 #include "client/replica/replica_news.hpp"
 #include "client/replica/tracked_chunk.hpp"
 #include "common/core/result.hpp"
-#include "common/edits/edit_stack.hpp"
-#include "common/edits/height_limits.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/descriptor/height_limits.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 

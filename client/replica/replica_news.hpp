@@ -9,8 +9,8 @@
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
-#include "common/edits/edit_stack.hpp"
-#include "common/edits/stack_depths.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/apply/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {

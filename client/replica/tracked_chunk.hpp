@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
-#include "common/edits/edit_stack.hpp"
+#include "common/edits/apply/edit_stack.hpp"
 #include "common/runs/chunk.hpp"
 
 namespace runstone {

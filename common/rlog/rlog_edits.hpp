@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 #include "common/rlog/rlog_block.hpp"
 
 namespace runstone {

@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "protocol/codec/commit_walk.hpp"
 #include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "process/low_priority.hpp"
-#include "server/app/control_socket.hpp"
-#include "server/app/logging.hpp"
-#include "server/app/server_core.hpp"
+#include "common/os/low_priority.hpp"
+#include "server/admin/control_socket.hpp"
+#include "server/runtime/logging.hpp"
+#include "server/runtime/server_core.hpp"
 
 namespace runstone {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/core/result.hpp"
 #include "server/admin/server_config.hpp"
 #include "server/app/stop_report.hpp"
-#include "server/app/world_folder.hpp"
+#include "server/store/world_folder.hpp"
 #include "server/rollback/rollback_desk.hpp"
 
 namespace runstone {

@@ -17,9 +17,9 @@
 #include <string>
 
 #include "common/runs/dense.hpp"
-#include "process/open_files.hpp"
-#include "server/app/console.hpp"
-#include "server/app/logging.hpp"
+#include "common/os/open_files.hpp"
+#include "server/admin/console.hpp"
+#include "server/runtime/logging.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "server/app/compact_program.hpp"
-#include "server/app/control_program.hpp"
-#include "server/app/import_program.hpp"
-#include "server/app/world_folder.hpp"
+#include "server/admin/compact_program.hpp"
+#include "server/admin/control_program.hpp"
+#include "server/import/import_program.hpp"
+#include "server/store/world_folder.hpp"
 
 namespace runstone {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "server/app/digest_list.hpp"
+#include "server/replay/digest_list.hpp"
 #include "server/store/store.hpp"
 
 namespace runstone {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 

@@ -6,7 +6,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/key_text.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/history/base_chunk.hpp"
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
-#include "common/edits/edit_changes.hpp"
-#include "common/edits/edit_geometry.hpp"
-#include "common/edits/restore.hpp"
+#include "common/edits/apply/edit_changes.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/restore/restore.hpp"
 
 namespace runstone {
 

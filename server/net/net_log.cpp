@@ -5,8 +5,8 @@
 #include <mutex>
 #include <utility>
 
-#include "process/steady_clock.hpp"
-#include "server/world/token_bucket.hpp"
+#include "common/os/steady_clock.hpp"
+#include "server/limits/token_bucket.hpp"
 
 namespace runstone {
 

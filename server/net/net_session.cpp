@@ -10,7 +10,7 @@
 #include <chrono>
 #include <utility>
 
-#include "process/steady_clock.hpp"
+#include "common/os/steady_clock.hpp"
 #include "server/net/net_log.hpp"
 
 namespace runstone {

@@ -18,7 +18,7 @@
 #include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"
 #include "server/net/send_queue.hpp"
-#include "server/world/token_bucket.hpp"
+#include "server/limits/token_bucket.hpp"
 
 namespace runstone {
 

@@ -9,7 +9,7 @@
 
 #include "server/net/byte_stream.hpp"
 #include "server/net/tcp_room.hpp"
-#include "server/net/thread_cpu_ns.hpp"
+#include "common/os/thread_cpu_ns.hpp"
 
 namespace runstone {
 namespace {

@@ -2,7 +2,7 @@
 // younger (snapshot, keyframe, base or generator), and the edits that touched the chunk since, by the log's
 // index of places. Blocks on the disk.
 #pragma once
-#include "common/edits/followed_chunk.hpp"
+#include "common/edits/apply/followed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/rollback/chunk_logs.hpp"

@@ -2,7 +2,7 @@
 // *action* is an edit with cause player. A *toggle* is an undo or redo: records of the player with that cause
 // whose subject is the action, one per chunk. An action is undone if its last toggle is an undo.
 // Undo takes back the newest action that is not undone; redo the one undone last, unless the player has done
-// something new since. What counts as "the player's tail" of a voxel then (common/edits/restore.hpp):
+// something new since. What counts as "the player's tail" of a voxel then (common/edits/restore/restore.hpp):
 //   - all records of the action itself;
 //   - all records of the player's other actions that are undone, as if they had never been;
 //   - of the player's other actions that stand, only their toggles, which cancel each other out. Otherwise an

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/rollback/restore_plan.hpp"
 
 namespace runstone {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/rollback/restore_paste.hpp"
 #include "server/rollback/restore_plan.hpp"
 

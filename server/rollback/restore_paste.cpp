@@ -5,7 +5,7 @@
 #include <map>
 
 #include "common/core/assert.hpp"
-#include "common/edits/clipboard_builder.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
 
 namespace runstone {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/edits/edit_descriptor.hpp"
-#include "common/edits/restore.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/edits/restore/restore.hpp"
 
 namespace runstone {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/edits/edit_changes.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/apply/edit_changes.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/rollback/chunk_past.hpp"
 
 namespace runstone {

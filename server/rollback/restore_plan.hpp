@@ -1,5 +1,5 @@
 // RestorePlan: what has to be written into one chunk so that the selected edits are taken back there
-// (common/edits/restore.hpp says what that means), as it follows from the log up to some sequence. A plan is
+// (common/edits/restore/restore.hpp says what that means), as it follows from the log up to some sequence. A plan is
 // made on a worker; whoever carries it out later sees by the version whether the chunk is still the one that
 // the plan was made for.
 #pragma once
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/followed_chunk.hpp"
-#include "common/edits/restore.hpp"
+#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/restore/restore.hpp"
 #include "common/generate/generator.hpp"
 #include "server/rollback/chunk_logs.hpp"
 #include "server/store/store.hpp"

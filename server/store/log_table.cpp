@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 #include "server/store/sql.hpp"
 
 namespace runstone {

@@ -20,12 +20,12 @@
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 #include "common/generate/generator.hpp"
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/players/player_rows.hpp"
+#include "server/world/player_rows.hpp"
 #include "server/store/log_query.hpp"
 
 namespace runstone {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "server/store/world_schema.hpp"
 

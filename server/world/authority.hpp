@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/decided_marks.hpp"
 #include "server/world/edit_check.hpp"

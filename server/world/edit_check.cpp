@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 
 namespace runstone {
 

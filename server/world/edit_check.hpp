@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/edits/edit_descriptor.hpp"
-#include "common/edits/height_limits.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/edits/descriptor/height_limits.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
-#include "server/players/player_rows.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 

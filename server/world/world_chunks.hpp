@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/edit_stack.hpp"
-#include "common/edits/stack_depths.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/apply/stack_depths.hpp"
 #include "common/runs/chunk.hpp"
 #include "server/interest/chunk_key_hash.hpp"
 

@@ -9,7 +9,7 @@
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/players/player_rows.hpp"
+#include "server/world/player_rows.hpp"
 #include "server/world/authority.hpp"
 #include "server/world/snapshot_keeper.hpp"
 

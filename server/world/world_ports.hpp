@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/players/player_rows.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/stack_depths.hpp"
+#include "common/edits/apply/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"

@@ -10,7 +10,7 @@
 #include "common/core/bytes.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/interest/held_claims.hpp"
-#include "server/world/token_bucket.hpp"
+#include "server/limits/token_bucket.hpp"
 
 namespace runstone {
 

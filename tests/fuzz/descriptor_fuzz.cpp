@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/edits/edit_geometry.hpp"
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 
 namespace runstone {
 namespace {

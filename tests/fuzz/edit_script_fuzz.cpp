@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/edits/edit_stack.hpp"
-#include "common/edits/edit_stack_strategies.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/apply/edit_stack_strategies.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"

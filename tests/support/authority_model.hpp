@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/edit_geometry.hpp"
-#include "common/edits/edit_stack.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/edits/apply/edit_stack.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 

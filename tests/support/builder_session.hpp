@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "common/edits/edit_record.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
 
 namespace runstone::test {
 

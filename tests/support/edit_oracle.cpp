@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "common/edits/clipboard_builder.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/support/random_chunk.hpp"
 

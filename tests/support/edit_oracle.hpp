@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "common/edits/edit_descriptor.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "tests/support/dense_chunk.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "common/mesh/reference/face_plane.hpp"
+#include "tests/reference/face_plane.hpp"
 
 namespace runstone::test {
 

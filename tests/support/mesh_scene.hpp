@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "common/edits/edit_stack.hpp"
+#include "common/edits/apply/edit_stack.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/reference/dense_grid.hpp"
+#include "tests/reference/dense_grid.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "tests/support/face_oracle.hpp"
 

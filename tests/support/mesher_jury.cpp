@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "common/mesh/reference/culled_mesher.hpp"
-#include "common/mesh/reference/rle_rdm.hpp"
-#include "common/mesh/reference/simple_mesher.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/rle_rdm.hpp"
+#include "tests/reference/simple_mesher.hpp"
 #include "common/runs/reorder.hpp"
 
 namespace runstone::test {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/reference/binary_greedy.hpp"
-#include "common/mesh/reference/greedy_mesher.hpp"
-#include "common/mesh/reference/grid_rdm.hpp"
-#include "common/mesh/reference/naive_greedy_mesher.hpp"
-#include "common/mesh/reference/optimal_greedy_mesher.hpp"
-#include "common/mesh/reference/run_strip_mesher.hpp"
+#include "tests/reference/binary_greedy.hpp"
+#include "tests/reference/greedy_mesher.hpp"
+#include "tests/reference/grid_rdm.hpp"
+#include "tests/reference/naive_greedy_mesher.hpp"
+#include "tests/reference/optimal_greedy_mesher.hpp"
+#include "tests/reference/run_strip_mesher.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {

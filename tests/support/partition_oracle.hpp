@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/mesh/reference/face_plane.hpp"
-#include "common/mesh/reference/independent_set.hpp"
+#include "tests/reference/face_plane.hpp"
+#include "tests/reference/independent_set.hpp"
 
 namespace runstone::test {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/reference/face_plane.hpp"
+#include "tests/reference/face_plane.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {

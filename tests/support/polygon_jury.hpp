@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/reference/monotone_mesher.hpp"
-#include "common/mesh/reference/poly2tri_mesher.hpp"
+#include "tests/reference/monotone_mesher.hpp"
+#include "tests/reference/poly2tri_mesher.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "common/core/m61.hpp"
-#include "common/edits/edit_geometry.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "server/app/replay_program.hpp"
+#include "server/replay/replay_program.hpp"
 
 namespace runstone::test {
 

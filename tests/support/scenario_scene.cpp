@@ -7,9 +7,9 @@
 
 #include "common/generate/columns_world.hpp"
 #include "common/generate/scenarios/scenario_world.hpp"
-#include "common/mesh/reference/culled_mesher.hpp"
-#include "common/mesh/reference/grid_rdm.hpp"
-#include "common/mesh/reference/rle_rdm.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/grid_rdm.hpp"
+#include "tests/reference/rle_rdm.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/support/thesis_table.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/generate/generator.hpp"
-#include "common/mesh/reference/material_octree.hpp"
+#include "tests/reference/material_octree.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {

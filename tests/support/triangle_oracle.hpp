@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/reference/surface.hpp"
+#include "tests/reference/surface.hpp"
 #include "tests/support/face_oracle.hpp"
 
 namespace runstone::test {

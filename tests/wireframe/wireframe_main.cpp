@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/reference/culled_mesher.hpp"
-#include "common/mesh/reference/rle_rdm.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/rle_rdm.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/bench/seeded_worlds.hpp"
+#include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/wireframe/wireframe.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/divider.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/side_axes.hpp"

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/sweep_input.hpp"
 #include "common/mesh/rdm/sweep_state.hpp"

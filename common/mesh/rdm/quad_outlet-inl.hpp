@@ -13,7 +13,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/mesh/quad.hpp"
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"

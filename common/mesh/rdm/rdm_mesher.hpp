@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "common/core/coords.hpp"
-#include "common/edits/edit_stack.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/chunk_borders.hpp"
 #include "common/mesh/visibility.hpp"
+#include "common/runs/dirty_layers.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone {

@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {

@@ -2,7 +2,7 @@
 // path of the mesher joins faces: strips are as long as they can be, and go on while the next row repeats
 // them exactly. Internal to rdm.
 #pragma once
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 
 namespace runstone::rdm {
 

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/quad_outlet-inl.hpp"
 #include "common/mesh/rdm/row_strips.hpp"
 #include "common/mesh/rdm/strip_lanes-inl.hpp"

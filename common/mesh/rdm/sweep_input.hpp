@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"

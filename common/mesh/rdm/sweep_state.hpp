@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "common/mesh/quad.hpp"
-#include "common/mesh/rdm/bit_row.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/material_codes.hpp"
 #include "common/runs/extent.hpp"
 

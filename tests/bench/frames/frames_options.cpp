@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "tests/bench/contestant.hpp"
+#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/frames/frames_world.hpp"
 
 namespace runstone::bench {

@@ -1,5 +1,5 @@
 #include "tests/bench/frames/frames_result.hpp"
-#include "tests/bench/machine_json.hpp"
+#include "tests/bench/harness/machine_json.hpp"
 
 #include <fmt/ostream.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/harness/statistics.hpp"
 
 namespace runstone::bench {
 namespace {

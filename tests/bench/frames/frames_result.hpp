@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/machine.hpp"
+#include "tests/bench/harness/machine.hpp"
 
 namespace runstone::bench {
 
@@ -23,7 +23,7 @@ struct FramesRow {
   unsigned frames = 0;  // timed
   double p50_ms = 0, p90_ms = 0, p99_ms = 0;
   /// Of plain and quads rows with something to draw. Sums over the chunks, each for itself; shares of the triangles.
-  std::optional<std::size_t> t_junctions;   // places (common/mesh/reference/t_junctions.hpp)
+  std::optional<std::size_t> t_junctions;   // places (tests/reference/t_junctions.hpp)
   std::optional<double> thin_16, thin_100;  // longer than 1:16, 1:100 (thin_triangles.hpp)
   /// Likewise; means over the pictures.
   std::optional<double> covered_pixels;    // with something drawn in them

@@ -8,7 +8,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/generate/scenarios/scenario_model.hpp"
-#include "tests/bench/luanti_world.hpp"
+#include "tests/bench/worlds/luanti_world.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::bench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/voxel_world.hpp"
+#include "tests/bench/worlds/voxel_world.hpp"
 
 namespace runstone::bench {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/mesh/reference/surface.hpp"
+#include "tests/reference/surface.hpp"
 
 namespace runstone::bench {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <tuple>
 
-#include "tests/bench/machine_json.hpp"
+#include "tests/bench/harness/machine_json.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
-#include "tests/bench/machine.hpp"
+#include "tests/bench/harness/machine.hpp"
 
 namespace runstone::bench {
 

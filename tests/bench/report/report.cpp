@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/bench/contestant.hpp"
-#include "tests/bench/net/child.hpp"
+#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/network/child.hpp"
 #include "tests/bench/report/page.hpp"
 #include "tests/bench/report/progress_bar.hpp"
 #include "tests/bench/report/step.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/harness/statistics.hpp"
 
 namespace runstone::bench {
 namespace {

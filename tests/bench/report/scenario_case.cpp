@@ -10,9 +10,9 @@
 #include "common/core/assert.hpp"
 #include "common/generate/scenarios/scenario_model.hpp"
 #include "common/runs/reorder.hpp"
-#include "tests/bench/cell.hpp"
-#include "tests/bench/order_name.hpp"
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/meshing/cell.hpp"
+#include "tests/bench/meshing/order_name.hpp"
+#include "tests/bench/harness/statistics.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::bench {

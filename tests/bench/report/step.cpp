@@ -4,12 +4,12 @@
 #include <sstream>
 #include <utility>
 
-#include "tests/bench/bytes_bench.hpp"
-#include "tests/bench/chunk_edge.hpp"
-#include "tests/bench/edit_bench.hpp"
+#include "tests/bench/wire/bytes_bench.hpp"
+#include "tests/bench/meshing/chunk_edge.hpp"
+#include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
-#include "tests/bench/mesh_bench.hpp"
-#include "tests/bench/net/net_bench.hpp"
+#include "tests/bench/meshing/mesh_bench.hpp"
+#include "tests/bench/network/net_bench.hpp"
 #include "tests/bench/report/scenario_case.hpp"
 #include "tests/bench/report/step.hpp"
 #include "tests/bench/storage/storage_bench.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/assert.hpp"
-#include "common/edits/run_patch.hpp"
+#include "common/edits/apply/run_patch.hpp"
 #include "common/runs/run_cursor.hpp"
 #include "tests/bench/storage/heap_bytes.hpp"
 #include "tests/bench/storage/strides.hpp"

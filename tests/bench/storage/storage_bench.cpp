@@ -4,10 +4,10 @@
 
 #include <bit>
 
-#include "tests/bench/contestant.hpp"
-#include "tests/bench/measured_worlds.hpp"
-#include "tests/bench/shuffled.hpp"
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/harness/shuffled.hpp"
+#include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/storage/stores.hpp"
 
 namespace runstone::bench {

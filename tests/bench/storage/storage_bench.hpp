@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
-#include "tests/bench/bench_options.hpp"
+#include "tests/bench/app/bench_options.hpp"
 #include "tests/bench/storage/storage_result.hpp"
 
 namespace runstone::bench {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/bench/machine_json.hpp"
-#include "tests/bench/measured_worlds.hpp"
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/harness/machine_json.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/harness/statistics.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/machine.hpp"
+#include "tests/bench/harness/machine.hpp"
 
 namespace runstone::bench {
 

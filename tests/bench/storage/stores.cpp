@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "tests/bench/contestant.hpp"
+#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/storage/flat_array.hpp"
 #include "tests/bench/storage/interval_map.hpp"
 #include "tests/bench/storage/morton_array.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/bench_program.hpp"
+#include "tests/bench/app/bench_program.hpp"
 
 namespace runstone::bench {
 

@@ -9,9 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "tests/bench/contestant.hpp"
+#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/storage/stores.hpp"
-#include "tests/bench/transfer_form.hpp"
+#include "tests/bench/wire/transfer_form.hpp"
 #include "tests/integration/bench/bench_output.hpp"
 #include "tests/support/temp_folder.hpp"
 

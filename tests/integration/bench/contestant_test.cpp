@@ -1,12 +1,12 @@
 // What a contestant hands out is the mesh it made.
-#include "tests/bench/contestant.hpp"
+#include "tests/bench/meshing/contestant.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "common/mesh/reference/culled_mesher.hpp"
-#include "tests/bench/measured_worlds.hpp"
-#include "tests/bench/seeded_worlds.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/support/polygon_jury.hpp"
 #include "tests/support/triangle_oracle.hpp"
 

@@ -1,6 +1,6 @@
 // The lab's links with real sockets: what goes in comes out, no earlier than the profile says. Nothing is said of
 // how much later.
-#include "tests/bench/net/lab_link.hpp"
+#include "tests/bench/network/lab_link.hpp"
 
 #include <array>
 #include <asio/buffer.hpp>
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "tests/bench/net/child.hpp"
+#include "tests/bench/network/child.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/bench_program.hpp"
+#include "tests/bench/app/bench_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
 using namespace runstone;

@@ -1,5 +1,5 @@
 // The four forms of a picture: whatever pieces the stream comes in, they end in the same faces.
-#include "tests/bench/net/picture.hpp"
+#include "tests/bench/network/picture.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,10 +1,10 @@
-#include "tests/bench/net/sample_row.hpp"
+#include "tests/bench/network/sample_row.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/bench/net/crowd.hpp"
+#include "tests/bench/network/crowd.hpp"
 
 using namespace runstone::bench;
 using nlohmann::json;

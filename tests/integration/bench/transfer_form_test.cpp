@@ -1,5 +1,5 @@
 // What is compared with must be what it says: every form comes back, and Luanti's is the game's own.
-#include "tests/bench/transfer_form.hpp"
+#include "tests/bench/wire/transfer_form.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -8,9 +8,9 @@
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
 #include "common/runs/run_builder.hpp"
-#include "server/app/luanti_map.hpp"
-#include "tests/bench/luanti_form.hpp"
-#include "tests/bench/palette_form.hpp"
+#include "server/import/luanti_map.hpp"
+#include "tests/bench/wire/luanti_form.hpp"
+#include "tests/bench/wire/palette_form.hpp"
 #include "tests/support/luanti_bytes.hpp"
 #include "tests/support/random_chunk.hpp"
 

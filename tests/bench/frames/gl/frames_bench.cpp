@@ -14,13 +14,13 @@
 #include "client/render/renderer.hpp"
 #include "common/core/hash.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "common/mesh/reference/t_junctions.hpp"
-#include "common/mesh/reference/thin_triangles.hpp"
-#include "tests/bench/contestant.hpp"
+#include "tests/reference/t_junctions.hpp"
+#include "tests/reference/thin_triangles.hpp"
+#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/frames/frames_world.hpp"
 #include "tests/bench/frames/gl/orbit.hpp"
 #include "tests/bench/frames/gl/plain_renderer.hpp"
-#include "tests/bench/statistics.hpp"
+#include "tests/bench/harness/statistics.hpp"
 
 namespace runstone::bench {
 namespace {

@@ -1,0 +1,43 @@
+#include "client/display/screen.hpp"
+
+#include <utility>
+
+#include "client/platform/gl_context.hpp"
+#include "client/render/renderer.hpp"
+
+namespace runstone {
+namespace {
+
+class GlScreen final : public Screen {
+ public:
+  explicit GlScreen(std::unique_ptr<GlContext> context)
+      : context_(std::move(context)), renderer_(context_->loader()) {}
+
+  const char* name() const override { return context_->name(); }
+  void set_materials(const MaterialTable& materials) override { renderer_.set_materials(materials); }
+  void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) override {
+    renderer_.upload(key, edge, mesh);
+  }
+  void remove(const ChunkKey& key) override { renderer_.remove(key); }
+  RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers) override {
+    const RenderStats stats = renderer_.draw(camera, width, height, markers);
+    if (context_->is_window()) renderer_.present(width, height);
+    renderer_.finish();
+    context_->swap();
+    return stats;
+  }
+  Image read_image() override { return renderer_.read_image(); }
+
+ private:
+  std::unique_ptr<GlContext> context_;
+  Renderer renderer_;  // dies before its context
+};
+
+}  // namespace
+
+std::unique_ptr<Screen> make_headless_screen() { return std::make_unique<GlScreen>(make_headless_context()); }
+std::unique_ptr<Screen> make_window_screen(Window& window) {
+  return std::make_unique<GlScreen>(make_window_context(window));
+}
+
+}  // namespace runstone

@@ -1,0 +1,71 @@
+// runstone-bot: many players in one process. Exit codes: 0 played to the end, 1 something was lost, drifted or, of
+// a recorded log, refused, 2 could not start (docs/bots.md).
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "client/fleet/bot_fleet.hpp"
+#include "common/os/exit_code.hpp"
+#include "client/fleet/play_fleet.hpp"
+#include "client/fleet/recorded_file.hpp"
+#include "client/report/report.hpp"
+#include "common/os/stop_signals.hpp"
+
+namespace {
+
+/// Prints what a fleet did and writes the report that was asked for. Returns `code`, or the one for a report that cannot
+/// be written.
+template <class Report>
+int tell(const Report& report, const runstone::BotOptions& options, int code) {
+  using namespace runstone;
+  std::fputs(to_table(report).c_str(), stdout);
+  if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+  if (options.report.empty() || write_text(options.report, to_json(report))) return code;
+  std::fprintf(stderr, "runstone-bot: %s: cannot be written\n", options.report.c_str());
+  return kExitFailed;
+}
+
+int play(const runstone::BotOptions& options, const volatile std::sig_atomic_t& stop) {
+  using namespace runstone;
+  const auto log = read_recorded_file(options.play);
+  if (!log) {
+    std::fprintf(stderr, "runstone-bot: %s\n", log.error().c_str());
+    return kExitNoStart;
+  }
+  const PlayReport report = PlayFleet(options, *log).run(stop);
+  if (!report.started) {
+    std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
+    return kExitNoStart;
+  }
+  return tell(report, options, report.is_complete() ? kExitOk : kExitFailed);
+}
+
+int run(const runstone::BotOptions& options, const volatile std::sig_atomic_t& stop) {
+  using namespace runstone;
+  if (!options.play.empty()) return play(options, stop);
+  const FleetReport report = BotFleet(options).run(stop);
+  int code = report.is_sound() ? kExitOk : kExitFailed;
+  if (!report.failure.empty()) code = report.counts.due == 0 ? kExitNoStart : kExitFailed;
+  return tell(report, options, code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto parsed = runstone::parse_bot_options(argc, argv);
+  if (!parsed.options) return parsed.exit_code;
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("bot"));  // standard output is for the table
+  spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
+  const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();
+  int code = runstone::kExitNoStart;
+  try {
+    code = run(*parsed.options, stop);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "runstone-bot: %s\n", error.what());
+  }
+  spdlog::shutdown();
+  return code;
+}

@@ -1,0 +1,24 @@
+#include "client/fleet/recorded_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace runstone {
+
+Result<RecordedLog, std::string> read_recorded_file(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Unexpected<std::string>{file + ": cannot be read: " + std::strerror(errno)};
+  auto log = read_recorded_log(
+      [&in](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
+        in.clear();  // of an end that was read before
+        if (!in.seekg(static_cast<std::streamoff>(position))) return std::nullopt;
+        in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
+        if (in.bad()) return std::nullopt;
+        return static_cast<std::size_t>(in.gcount());
+      });
+  if (!log) return Unexpected<std::string>{file + ": " + log.error()};
+  return log;
+}
+
+}  // namespace runstone

@@ -1,0 +1,71 @@
+#include "client/fleet/session_link.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <type_traits>
+#include <utility>
+
+#include "client/net/key_file.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+
+template <class Session>
+LinkedSession<Session>::LinkedSession(asio::io_context& io, Session& session, const std::string& name,
+                                      const NetConfig& net)
+    : session_(session), name_(name), link_(io, net, *this) {
+  link_.start();
+}
+
+template <class Session>
+void LinkedSession<Session>::flush() {
+  for (const Message& message : session_.take_outgoing()) link_.send(connection_, encode_message(message));
+  if (session_.wants_close() && connection_ != 0) link_.close(connection_);
+}
+
+template <class Session>
+void LinkedSession<Session>::leave(std::int64_t milliseconds) {
+  session_.close(GoodbyeReason::closing, "");
+  flush();
+  link_.stop(milliseconds);
+}
+
+template <class Session>
+void LinkedSession<Session>::on_connected(ConnectionNumber connection) {
+  connection_ = connection;
+  session_.connected(random_nonce(), steady_now_us());
+  flush();
+}
+
+template <class Session>
+void LinkedSession<Session>::on_received(NetReceived received) {
+  const TimeUs now_us = steady_now_us();
+  session_.receive(std::move(received.message), {received.received_us, received.unpacked_us, now_us});
+  flush();
+}
+
+template <class Session>
+Result<bool> LinkedSession<Session>::on_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
+                                              TimeUs received_us) {
+  if constexpr (std::is_same_v<Session, LightSession>) {
+    return session_.receive_bytes(frame_class, body, chunk_edge, received_us);
+  } else {
+    return LinkEvents::on_bytes(frame_class, body, chunk_edge, received_us);
+  }
+}
+
+template <class Session>
+void LinkedSession<Session>::on_disconnected(ConnectionNumber /*connection*/, std::string why) {
+  connection_ = 0;
+  const bool is_wished = session_.wants_close() && !session_.end();
+  session_.disconnected();
+  last_failure_ = std::move(why);
+  if (session_.end() && !session_.end()->text.empty()) last_failure_ += " (" + session_.end()->text + ")";
+  if (!is_wished) ++losses_[last_failure_];
+  spdlog::debug("{}: {}", name_, last_failure_);
+}
+
+template class LinkedSession<ClientSession>;
+template class LinkedSession<LightSession>;
+
+}  // namespace runstone

@@ -1,0 +1,257 @@
+#include "client/report/report.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "common/core/hex.hpp"
+#include "common/runs/dense.hpp"
+
+namespace runstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json value_json(const std::optional<std::int64_t>& value) {
+  if (!value) return nullptr;
+  if (*value == Histogram::kInfinite) return "inf";
+  return *value;
+}
+
+Json histogram_json(const Histogram& histogram) {
+  Json out;
+  out["count"] = histogram.count();
+  out["infinite"] = histogram.infinite();
+  if (histogram.below_zero() != 0) out["below_zero"] = histogram.below_zero();
+  out["p50"] = value_json(histogram.percentile(0.50));
+  out["p90"] = value_json(histogram.percentile(0.90));
+  out["p99"] = value_json(histogram.percentile(0.99));
+  out["max"] = value_json(histogram.max());
+  const auto mean = histogram.mean();
+  out["mean"] = mean ? Json(*mean) : Json(nullptr);
+  return out;
+}
+
+Json way_json(const WayReport& way) {
+  Json out;
+  out["edits"] = way.edits;
+  out["without_effect"] = way.without_effect;
+  out["left_view"] = way.left_view;
+  out["unknown_submit"] = way.unknown_submit;
+  Json since = Json::object(), step = Json::object();
+  for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
+    const char* const name = to_string(static_cast<LatencyStage>(s));
+    if (way.since_submit[s].count() != 0) since[name] = histogram_json(way.since_submit[s]);
+    if (way.step[s].count() != 0) step[name] = histogram_json(way.step[s]);
+  }
+  out["since_submit"] = std::move(since);
+  out["step"] = std::move(step);
+  return out;
+}
+
+Json part_json(const JoinedPart& part) {
+  const auto ms = [](const std::optional<TimeUs>& us) {
+    return us ? Json(static_cast<double>(*us) / 1000) : Json(nullptr);
+  };
+  return Json{{"chunks", part.chunks},
+              {"meshed", part.done},
+              {"first_ms", ms(part.first_us)},
+              {"most_ms", ms(part.most_us)},
+              {"all_ms", ms(part.all_us)}};
+}
+
+Json replica_json(const Replica& replica) {
+  const ReplicaCounters& c = replica.counters();
+  return Json{{"confirmed_chunks", replica.confirmed_count()},
+              {"awaiting", replica.awaiting_count()},
+              {"unavailable", replica.unavailable_count()},
+              {"own_not_durable", replica.own_edits().all().size()},
+              {"newest", replica.newest()},
+              {"durable", replica.durable()},
+              {"snapshots_taken", c.snapshots_taken},
+              {"snapshots_stale", c.snapshots_stale},
+              {"snapshots_outside", c.snapshots_outside},
+              {"commits", c.commits},
+              {"chunk_edits_applied", c.chunk_edits_applied},
+              {"chunk_edits_contained", c.chunk_edits_contained},
+              {"chunk_edits_buffered", c.chunk_edits_buffered},
+              {"buffer_overflows", c.buffer_overflows},
+              {"confirmed_stacks", c.confirmed_stacks.text()},
+              {"predicted_stacks", c.predicted_stacks.text()},
+              {"gaps", c.gaps},
+              {"requests", c.requests},
+              {"audited", c.audited},
+              {"fell_behind", c.fell_behind},
+              {"drifted", c.drifted},
+              {"repaired", c.repaired},
+              {"claims_refuted", c.claims_refuted},
+              {"adopted", c.adopted},
+              {"claimed", c.claimed},
+              {"same_taken", c.same_taken},
+              {"updates_taken", c.updates_taken},
+              {"own_submitted", c.own_submitted},
+              {"own_confirmed", c.own_confirmed},
+              {"own_rejected", c.own_rejected},
+              {"own_durable", c.own_durable},
+              {"own_offered_again", c.own_offered_again},
+              {"dropped_by_epoch", c.dropped_by_epoch}};
+}
+
+Json cache_json(const std::optional<CacheCounters>& c) {
+  if (!c) return nullptr;
+  return Json{{"hits", c->hits},
+              {"misses", c->misses},
+              {"kept", c->kept},
+              {"evicted", c->evicted},
+              {"corrupt", c->corrupt},
+              {"not_common", c->not_common},
+              {"databases_set_aside", c->databases_set_aside}};
+}
+
+/// Milliseconds, or "inf", or "-" where nothing was measured.
+std::string cell(const std::optional<std::int64_t>& us) {
+  if (!us) return "-";
+  if (*us == Histogram::kInfinite) return "inf";
+  return fmt::format("{:.2f}", static_cast<double>(*us) / 1000);
+}
+
+void add_row(std::string& out, const char* way, const char* stage, const Histogram& h) {
+  if (h.count() == 0) return;
+  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", way, stage,
+                 h.count(), cell(h.percentile(0.5)), cell(h.percentile(0.9)), cell(h.percentile(0.99)),
+                 cell(h.max()));
+}
+
+double per_chunk(const ChunkStats& chunks) {
+  return chunks.chunks_meshed == 0
+             ? 0
+             : static_cast<double>(chunks.mesh_jobs) / static_cast<double>(chunks.chunks_meshed);
+}
+
+}  // namespace
+
+std::string to_json(const ClientReport& report, const ClientSession& session) {
+  Json out;
+  out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);
+  out["renderer"] = report.renderer;
+  out["seconds"] = report.seconds;
+  if (session.clock().known()) {
+    out["clock"] = Json{{"offset_us", session.clock().offset_us()},
+                        {"error_us", session.clock().error_us()},
+                        {"round_trip_us", session.clock().round_trip_us()}};
+  } else {
+    out["clock"] = nullptr;
+  }
+  Json latency;
+  for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
+    const auto way = static_cast<LatencyWay>(w);
+    latency[to_string(way)] = way_json(report.latency[way]);
+  }
+  latency["own_durable"] = histogram_json(report.latency.durable);
+  latency["own_rejected"] = report.latency.rejected;
+  latency["own_unseen"] = report.latency.unseen;
+  out["latency_us"] = std::move(latency);
+  out["join"] = Json{{"near", part_json(report.join.near)}, {"view", part_json(report.join.view)}};
+  const ChunkStats& chunks = report.chunks;
+  const char* encoding = "none";
+  if (session.welcome()) encoding = name_of(session.welcome()->encoding);
+  out["snapshots"] = Json{{"encoding", encoding},
+                          {"count", chunks.snapshots},
+                          {"wire_bytes", chunks.wire_bytes},
+                          {"raw_bytes", chunks.raw_bytes},
+                          {"runs", histogram_json(chunks.runs)},
+                          {"unpack_ns", histogram_json(chunks.unpack_ns)}};
+  out["mesh"] = Json{{"jobs", chunks.mesh_jobs},
+                     {"chunks", chunks.chunks_meshed},
+                     {"per_chunk", per_chunk(chunks)},
+                     {"kept_bytes", chunks.kept_mesh_bytes},
+                     {"whole_ns", histogram_json(chunks.whole_ns)},
+                     {"layers_ns", histogram_json(chunks.layers_ns)}};
+  out["cache"] = cache_json(report.cache);
+  out["frames"] =
+      Json{{"presented", report.frames.presented}, {"draw_us", histogram_json(report.frames.draw_us)}};
+  out["net"] =
+      Json{{"bytes_received", report.net.bytes_received}, {"bytes_sent", report.net.bytes_sent},
+           {"control_bytes", report.net.control_bytes},   {"edit_bytes", report.net.edit_bytes},
+           {"chunk_bytes", report.net.chunk_bytes},       {"messages_received", report.net.messages_received},
+           {"connections", report.net.connections}};
+  out["replica"] = replica_json(session.replica());
+  out["dense_expansions"] = dense_expansions();
+  return out.dump(2) + "\n";
+}
+
+std::string to_table(const ClientReport& report, const ClientSession& session) {
+  std::string out;
+  const auto into = std::back_inserter(out);
+  fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until", "count",
+                 "p50", "p90", "p99", "max");
+  for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
+    const auto way = static_cast<LatencyWay>(w);
+    for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
+      add_row(out, to_string(way), to_string(static_cast<LatencyStage>(s)),
+              report.latency[way].since_submit[s]);
+    }
+  }
+  add_row(out, "own", "durable", report.latency.durable);
+  if (session.clock().known()) {
+    fmt::format_to(into, "clock offset error: at most {:.3f} ms\n",
+                   static_cast<double>(session.clock().error_us()) / 1000);
+  }
+  const ChunkStats& chunks = report.chunks;
+  const auto each = [&chunks](std::uint64_t total) {
+    return chunks.snapshots == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(chunks.snapshots);
+  };
+  const Extent extent = Extent::cube(static_cast<unsigned>(std::max(session.replica().chunk_edge(), 0)));
+  fmt::format_to(
+      into,
+      "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as raw runs, {} as a "
+      "dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
+      chunks.snapshots, chunks.runs.mean().value_or(0), each(chunks.wire_bytes), each(chunks.raw_bytes),
+      extent.volume() * sizeof(Material), chunks.unpack_ns.mean().value_or(0) / 1000,
+      chunks.whole_ns.mean().value_or(0) / 1000);
+  fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks), chunks.mesh_jobs,
+                 chunks.chunks_meshed);
+  fmt::format_to(into, "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
+                 chunks.layers_ns.count(), chunks.layers_ns.mean().value_or(0) / 1000,
+                 static_cast<double>(chunks.kept_mesh_bytes) / (1 << 20));
+  if (report.frames.presented != 0) {
+    fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
+                   cell(report.frames.draw_us.percentile(0.5)));
+  }
+  fmt::format_to(into, "drift: {} of {} audited\n", session.replica().counters().drifted,
+                 session.replica().counters().audited);
+  fmt::format_to(into, "dense expansions: {}\n", dense_expansions());
+  return out;
+}
+
+bool write_digests(const std::string& file, const ClientSession& session) {
+  const Replica& replica = session.replica();
+  Json chunks = Json::array();
+  for (const ChunkKey& key : replica.confirmed_keys()) {
+    const ChunkPtr chunk = replica.confirmed(key);
+    chunks.push_back(Json{{"lod", key.lod},
+                          {"x", key.at.x},
+                          {"y", key.at.y},
+                          {"z", key.at.z},
+                          {"epoch", chunk->version.epoch},
+                          {"seq", chunk->version.seq},
+                          {"digest", to_hex(digest_of(chunk->voxels))}});
+  }
+  Json out;
+  out["world_id"] = session.welcome() ? Json(to_hex(session.welcome()->world_id)) : Json(nullptr);
+  out["seq"] = replica.newest();
+  out["chunks"] = std::move(chunks);
+  return write_text(file, out.dump(1) + "\n");
+}
+
+bool write_text(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  return !out.fail();
+}
+
+}  // namespace runstone

@@ -1,0 +1,154 @@
+// Script: what a client shall do, line by line (docs/client.md gives the language). Parsed once, before
+// connecting, so that a mistake costs nothing; run by ScriptRunner.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/materials/material_table.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+/// `7`, `~` and `~-2` (from the player), `^` and `^+1` (y only: from the highest shown solid voxel of the
+/// column).
+struct ScriptCoordinate {
+  enum class Base : std::uint8_t { world, player, surface };
+  Base base = Base::world;
+  double offset = 0;
+};
+using ScriptPosition = std::array<ScriptCoordinate, 3>;
+
+struct ScriptMask {
+  MaskKind kind = MaskKind::everything;
+  std::string material;  // name or number, for only_material
+};
+
+namespace script {
+
+struct Move {
+  ScriptPosition to;
+};
+struct Walk {
+  ScriptPosition to;
+  double speed = 1;
+};  // voxels a second
+/// To and fro between here and there, while later commands run, until the next Move, Walk or Roam.
+struct Roam {
+  ScriptPosition to;
+  double speed = 1;
+};  // voxels a second
+struct Look {
+  double yaw = 0, pitch = 0;
+};  // degrees
+struct LookAt {
+  ScriptPosition at;
+};
+struct Set {
+  ScriptPosition at;
+  std::string material;
+};
+struct Box {
+  ScriptPosition from, to;
+  std::string material;
+  ScriptMask mask;
+};  // corner voxels, both included
+struct Sphere {
+  ScriptPosition centre;
+  std::uint16_t radius = 0;
+  std::string material;
+  ScriptMask mask;
+};
+struct Stroke {
+  std::uint16_t radius = 1;
+  std::string material;
+  std::vector<ScriptPosition> points;  // two or more
+  ScriptMask mask;
+};
+struct Copy {
+  std::string name;
+  ScriptPosition from, to;
+  bool solid = false;  // empty voxels become untouched
+};  // corner voxels, both included
+struct Paste {
+  std::string name;
+  ScriptPosition at;  // smallest corner of what is copied, as it is turned
+  Orientation orientation;
+  ScriptMask mask;
+};
+struct Dig {};
+struct Place {
+  std::string material;
+};
+struct Wait {
+  double seconds = 0;
+};
+enum class Until : std::uint8_t { loaded, durable, synced };
+struct WaitUntil {
+  Until what = Until::loaded;
+  double seconds_max = 0;
+};
+struct Screenshot {
+  std::string file;
+};
+struct Expect {
+  ScriptPosition at;
+  std::string material;
+};
+struct Repeat {
+  std::uint32_t times = 0;
+  std::size_t end = 0;
+};  // index of its End
+struct End {
+  std::size_t repeat = 0;
+};  // index of its Repeat
+/// Open loop: edit i is due i / rate seconds after the start, whatever became of the ones before.
+struct Burst {
+  std::uint32_t count = 0;
+  double rate = 1;
+  std::int32_t radius = 0;
+  std::uint64_t seed = 0;
+  std::string material;
+};
+struct Digests {
+  std::string file;
+};
+struct Travel {
+  TravelTo to = TravelTo::live;
+  Sequence seq = 0;        // TravelTo::sequence
+  double seconds_ago = 0;  // TravelTo::time
+};
+/// A command for the server; undo and redo are two of them.
+struct Command {
+  std::string text;
+};
+struct Quit {};
+
+using Step =
+    std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
+                 WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Command, Quit>;
+
+}  // namespace script
+
+struct ScriptCommand {
+  std::uint32_t line = 0;  // from 1
+  script::Step step;
+};
+
+struct Script {
+  std::string file;  // for messages
+  std::vector<ScriptCommand> commands;
+};
+
+inline constexpr double kScriptWaitSecondsMax = 120;  // default of `wait loaded` and its kin
+
+/// Names the first wrong line. Materials are names or numbers; only the world knows them, so they are checked
+/// later.
+Result<Script, TextError> parse_script(std::string_view text, std::string_view file);
+
+}  // namespace runstone

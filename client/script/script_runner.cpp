@@ -1,0 +1,434 @@
+#include "client/script/script_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "common/core/key_text.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr TimeUs kWalkStepUs = 20'000;  // often enough to look smooth to others, of a walk and a roam
+constexpr double kUsPerSecond = 1e6;
+
+VoxelPos voxel_of(const WorldPos& at) {
+  const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
+  return {down(at.x), down(at.y), down(at.z)};
+}
+
+VoxelBox box_between(VoxelPos a, VoxelPos b) {  // both included
+  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+          {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
+}
+
+TimeUs after(TimeUs start_us, double seconds) {
+  return start_us + static_cast<TimeUs>(std::llround(seconds * kUsPerSecond));
+}
+
+}  // namespace
+
+void ScriptRunner::step(TimeUs now_us) {
+  now_us_ = now_us;
+  due_us_.reset();
+  if (finished_ || !host_.ready()) return;
+  roam();
+  run_commands();
+  if (roaming_ && !finished_) due_us_ = std::min(due_us_.value_or(INT64_MAX), now_us_ + kWalkStepUs);
+}
+
+void ScriptRunner::run_commands() {
+  for (int i = 0; i < kStepCommandsMax; ++i) {
+    if (next_ >= script_.commands.size()) {
+      finished_ = true;
+      return;
+    }
+    current_ = next_++;
+    const Progress progress =
+        std::visit([this](const auto& c) { return run(c); }, script_.commands[current_].step);
+    if (progress == Progress::waits) {
+      next_ = current_;
+      return;
+    }
+    started_ = false;
+    if (progress == Progress::stop) {
+      finished_ = true;
+      return;
+    }
+  }
+  due_us_ = now_us_;  // more to do at once
+}
+
+void ScriptRunner::fail(const std::string& what) {
+  failures_.push_back(script_.file + ":" + std::to_string(script_.commands[current_].line) + ": " + what);
+}
+
+ScriptRunner::Progress ScriptRunner::give_up(const std::string& what) {
+  fail(what);
+  return Progress::stop;
+}
+
+void ScriptRunner::start() {
+  if (started_) return;
+  started_ = true;
+  state_ = {};
+  state_.at_us = state_.last_us = now_us_;
+}
+
+// ---- words to values
+
+std::optional<WorldPos> ScriptRunner::resolve(const ScriptPosition& position) {
+  using Base = ScriptCoordinate::Base;
+  const WorldPos eye = host_.eye();
+  const auto plain = [](const ScriptCoordinate& c, double player) {
+    return c.base == Base::player ? player + c.offset : c.offset;
+  };
+  WorldPos out{plain(position[0], eye.x), plain(position[1], eye.y), plain(position[2], eye.z)};
+  if (position[1].base == Base::surface) {
+    const VoxelPos column = voxel_of(out);
+    const auto top = host_.surface(column.x, column.z);
+    if (!top) {
+      fail("no surface is shown at x=" + std::to_string(column.x) + " z=" + std::to_string(column.z));
+      return std::nullopt;
+    }
+    out.y = *top + position[1].offset;
+  }
+  const auto outside = [](double v) { return std::fabs(v) >= kWorldLimit; };
+  if (outside(out.x) || outside(out.y) || outside(out.z)) {
+    fail("position lies outside the world");
+    return std::nullopt;
+  }
+  return out;
+}
+
+std::optional<VoxelPos> ScriptRunner::resolve_voxel(const ScriptPosition& position) {
+  const auto at = resolve(position);
+  if (!at) return std::nullopt;
+  return voxel_of(*at);
+}
+
+std::optional<Material> ScriptRunner::resolve_material(const std::string& name) {
+  const auto id = host_.material(name);
+  if (!id) fail("the world has no material \"" + name + "\"");
+  return id;
+}
+
+std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
+  if (mask.kind != MaskKind::only_material) return Mask{mask.kind, kEmpty};
+  const auto id = resolve_material(mask.material);
+  if (!id) return std::nullopt;
+  return Mask{mask.kind, *id};
+}
+
+ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
+  if (const auto ok = validate(edit); !ok) return give_up(std::string("not an edit: ") + ok.error().what);
+  if (!host_.submit(edit, now_us_, now_us_)) fail("the client refused the edit");
+  return Progress::done;
+}
+
+// ---- moving
+
+ScriptRunner::Progress ScriptRunner::run(const script::Move& c) {
+  const auto to = resolve(c.to);
+  if (!to) return Progress::stop;
+  roaming_.reset();
+  host_.move_to(*to);
+  return Progress::done;
+}
+
+bool ScriptRunner::go(const WorldPos& to, double distance) {
+  const WorldPos from = host_.eye();
+  const double dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
+  const double left = std::sqrt(dx * dx + dy * dy + dz * dz);
+  if (distance >= left) {
+    host_.move_to(to);
+    return true;
+  }
+  const double share = distance / left;
+  host_.move_to({from.x + dx * share, from.y + dy * share, from.z + dz * share});
+  return false;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Walk& c) {
+  if (!started_) {
+    start();
+    const auto to = resolve(c.to);  // once: `~` means the player at the start
+    if (!to) return Progress::stop;
+    state_.centre = *to;
+    roaming_.reset();
+  }
+  const double distance = c.speed * static_cast<double>(now_us_ - state_.last_us) / kUsPerSecond;
+  state_.last_us = now_us_;
+  if (go(state_.centre, distance)) return Progress::done;
+  due_us_ = now_us_ + kWalkStepUs;
+  return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Roam& c) {
+  const auto to = resolve(c.to);
+  if (!to) return Progress::stop;
+  roaming_ = Roaming{*to, host_.eye(), c.speed, now_us_};
+  return Progress::done;
+}
+
+void ScriptRunner::roam() {
+  if (!roaming_) return;
+  const double distance = roaming_->speed * static_cast<double>(now_us_ - roaming_->last_us) / kUsPerSecond;
+  roaming_->last_us = now_us_;
+  if (go(roaming_->to, distance)) std::swap(roaming_->to, roaming_->back);
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Look& c) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  host_.look(c.yaw * kRadians, c.pitch * kRadians);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
+  const auto at = resolve(c.at);
+  if (!at) return Progress::stop;
+  const WorldPos eye = host_.eye();
+  const double dx = at->x - eye.x, dy = at->y - eye.y, dz = at->z - eye.z;
+  host_.look(std::atan2(dx, dz), std::atan2(dy, std::sqrt(dx * dx + dz * dz)));
+  return Progress::done;
+}
+
+// ---- edits
+
+ScriptRunner::Progress ScriptRunner::run(const script::Set& c) {
+  const auto at = resolve_voxel(c.at);
+  const auto material = resolve_material(c.material);
+  if (!at || !material) return Progress::stop;
+  return submit({SetVoxel{*at}, {}, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Box& c) {
+  const auto a = resolve_voxel(c.from);
+  const auto b = resolve_voxel(c.to);
+  const auto material = resolve_material(c.material);
+  const auto mask = resolve_mask(c.mask);
+  if (!a || !b || !material || !mask) return Progress::stop;
+  return submit({FillBox{box_between(*a, *b)}, *mask, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Sphere& c) {
+  const auto centre = resolve_voxel(c.centre);
+  const auto material = resolve_material(c.material);
+  const auto mask = resolve_mask(c.mask);
+  if (!centre || !material || !mask) return Progress::stop;
+  return submit({FillSphere{*centre, c.radius}, *mask, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Stroke& c) {
+  FillStroke stroke;
+  stroke.radius = c.radius;
+  for (const ScriptPosition& position : c.points) {
+    const auto point = resolve_voxel(position);
+    if (!point) return Progress::stop;
+    stroke.points.push_back(*point);
+  }
+  const auto material = resolve_material(c.material);
+  const auto mask = resolve_mask(c.mask);
+  if (!material || !mask) return Progress::stop;
+  return submit({std::move(stroke), *mask, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
+  const auto a = resolve_voxel(c.from);
+  const auto b = resolve_voxel(c.to);
+  if (!a || !b) return Progress::stop;
+  auto copied = host_.copy(box_between(*a, *b), c.solid);
+  if (!copied) return give_up("cannot copy \"" + c.name + "\": " + copied.error().what);
+  clipboards_[c.name] = *std::move(copied);
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
+  const auto held = clipboards_.find(c.name);
+  if (held == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
+  const auto at = resolve_voxel(c.at);
+  const auto mask = resolve_mask(c.mask);
+  if (!at || !mask) return Progress::stop;
+  return submit({runstone::Paste{*at, held->second, c.orientation}, *mask, kEmpty});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
+  const auto hit = host_.pick();
+  if (!hit) {
+    fail("nothing to dig within reach");
+    return Progress::done;
+  }
+  return submit({SetVoxel{hit->voxel}, {}, kEmpty});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Place& c) {
+  const auto material = resolve_material(c.material);
+  if (!material) return Progress::stop;
+  const auto hit = host_.pick();
+  const auto at = hit ? place_against(*hit) : std::nullopt;
+  if (!at) {
+    fail("nothing to place against within reach");
+    return Progress::done;
+  }
+  return submit({SetVoxel{*at}, {}, *material});
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
+  const auto material = resolve_material(c.material);
+  if (!material) return Progress::stop;
+  if (!started_) {
+    start();
+    state_.random = SplitMix64(c.seed);
+    state_.centre = host_.eye();
+  }
+  const VoxelPos centre = voxel_of(state_.centre);
+  for (; state_.count < c.count; ++state_.count) {
+    const TimeUs due_us = after(state_.at_us, state_.count / c.rate);
+    if (due_us > now_us_) {
+      due_us_ = due_us;
+      return Progress::waits;
+    }
+    const auto offset = [&] { return state_.random.between(-c.radius, c.radius); };
+    VoxelPos at = centre;
+    at.x += offset();
+    at.y += offset();
+    at.z += offset();
+    // Not failing the script: a refused edit is counted by the host as never seen.
+    static_cast<void>(host_.submit({SetVoxel{at}, {}, *material}, due_us, now_us_));
+  }
+  return Progress::done;
+}
+
+// ---- waiting, looking
+
+ScriptRunner::Progress ScriptRunner::run(const script::Wait& c) {
+  start();
+  const TimeUs due_us = after(state_.at_us, c.seconds);
+  if (now_us_ >= due_us) return Progress::done;
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::WaitUntil& c) {
+  if (!started_) {
+    start();
+    state_.mark = host_.sync_mark();
+  }
+  const char* name = "loaded";
+  bool reached = false;
+  switch (c.what) {
+    case script::Until::loaded:
+      reached = host_.loaded();
+      break;
+    case script::Until::durable:
+      reached = host_.durable();
+      name = "durable";
+      break;
+    case script::Until::synced:
+      reached = host_.synced(state_.mark);
+      name = "synced";
+      break;
+  }
+  if (reached) return Progress::done;
+  const TimeUs due_us = after(state_.at_us, c.seconds_max);
+  if (now_us_ >= due_us) {
+    fail(std::string("not ") + name + " in time");
+    return Progress::done;
+  }
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Screenshot& c) {
+  if (!started_) {
+    start();
+    if (!host_.screenshot(c.file)) {
+      fail("no picture: this client draws nothing");
+      return Progress::done;
+    }
+  }
+  const auto written = host_.screenshot_written();
+  if (!written) return Progress::waits;
+  if (!*written) fail(c.file + " cannot be written");
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Expect& c) {
+  const auto at = resolve_voxel(c.at);
+  const auto expected = resolve_material(c.material);
+  if (!at || !expected) return Progress::stop;
+  const auto present = host_.shown_at(*at);
+  if (!present) {
+    fail("expected " + c.material + " at " + text_of(*at) + ", but its chunk is not here");
+  } else if (*present != *expected) {
+    fail("expected " + c.material + " at " + text_of(*at) + ", found material " + std::to_string(*present));
+  }
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
+  if (!host_.digests(c.file)) fail(c.file + " cannot be written");
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Travel& c) {
+  if (!started_) {
+    start();
+    Travel travel;
+    travel.to = c.to;
+    travel.seq = c.seq;
+    if (c.to == TravelTo::time) {
+      travel.utc_us = host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
+    }
+    host_.travel(travel);
+  }
+  if (!host_.travelling()) {
+    const std::string refusal = host_.travel_refusal();
+    return refusal.empty() ? Progress::done : give_up("no such moment: " + refusal);
+  }
+  const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
+  if (now_us_ >= due_us) return give_up("the moment did not come in time");
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
+  if (!started_) {
+    start();
+    const std::string refusal = host_.command(c.text);
+    if (!refusal.empty()) return give_up("the command cannot be given: " + refusal);
+  }
+  if (!host_.commanding()) {
+    if (!host_.show_answer()) fail("the server refused \"" + c.text + "\"");
+    return Progress::done;
+  }
+  const TimeUs due_us = after(state_.at_us, kScriptWaitSecondsMax);
+  if (now_us_ >= due_us) return give_up("the server did not answer in time");
+  due_us_ = due_us;
+  return Progress::waits;
+}
+
+// ---- flow
+
+ScriptRunner::Progress ScriptRunner::run(const script::Repeat& c) {
+  if (c.times == 0) {
+    next_ = c.end + 1;
+  } else {
+    turns_left_.push_back(c.times);
+  }
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::End& c) {
+  if (--turns_left_.back() != 0) {
+    next_ = c.repeat + 1;
+  } else {
+    turns_left_.pop_back();
+  }
+  return Progress::done;
+}
+
+ScriptRunner::Progress ScriptRunner::run(const script::Quit&) { return Progress::stop; }
+
+}  // namespace runstone

@@ -1,0 +1,75 @@
+// Brush: one edit's mask and material as vectors, drawn over stretches of a line without a branch that depends
+// on either. Included once per instruction set, inside no namespace.
+#if defined(RUNSTONE_EDITS_BRUSH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_EDITS_BRUSH_LANES_INL
+#undef RUNSTONE_EDITS_BRUSH_LANES_INL
+#else
+#define RUNSTONE_EDITS_BRUSH_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "common/core/ids.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+#include "common/edits/apply/layer_canvas.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace runstone {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// As many voxels as a vector holds, at most those of a canvas block.
+using Voxels = hn::CappedTag<Material, LayerCanvas::kBlock>;
+
+class Brush {
+ public:
+  Brush(const Mask& mask, Material material)
+      : material_(material),
+        looked_at_(mask.kind == MaskKind::everything ? kEmpty : Material{0xffff}),
+        wanted_(mask.kind == MaskKind::only_material ? mask.material : kEmpty),
+        refused_(mask.kind == MaskKind::only_solid ? 1 : 0) {}
+
+  static std::int32_t lanes() { return static_cast<std::int32_t>(hn::Lanes(Voxels())); }
+
+  /// Draws voxels [first, last) of a line of the canvas; nothing if last <= first. Reads and writes whole
+  /// vectors around them.
+  HWY_INLINE void stroke(Material* line, std::int32_t first, std::int32_t last) const {
+    for (std::int32_t at = first & -lanes(); at < last; at += lanes()) stroke_at(at, line, first, last);
+  }
+  /// The same where a line has at most lanes() voxels.
+  HWY_INLINE void stroke_short(Material* line, std::int32_t first, std::int32_t last) const {
+    stroke_at(0, line, first, last);
+  }
+
+ private:
+  HWY_INLINE void stroke_at(std::int32_t at, Material* line, std::int32_t first, std::int32_t last) const {
+    const Voxels voxels;
+    const hn::RebindToSigned<Voxels> places;
+    const auto place = hn::Iota(places, static_cast<std::int16_t>(at));
+    const auto inside = hn::And(hn::Gt(place, hn::Set(places, static_cast<std::int16_t>(first - 1))),
+                                hn::Lt(place, hn::Set(places, static_cast<std::int16_t>(last))));
+    const auto present = hn::Load(voxels, line + at);
+    const auto same = hn::Eq(hn::And(present, hn::Set(voxels, looked_at_)), hn::Set(voxels, wanted_));
+    const auto admitted = hn::Xor(same, hn::Eq(hn::Set(voxels, refused_), hn::Set(voxels, Material{1})));
+    const auto written = hn::And(hn::RebindMask(voxels, inside), admitted);
+    hn::Store(hn::IfThenElse(written, hn::Set(voxels, material_), present), voxels, line + at);
+  }
+
+  // A voxel is written if (present & looked_at) == wanted, or where refused is 1, if not.
+  Material material_, looked_at_, wanted_, refused_;
+};
+
+/// Sets [from, stop), and up to a vector behind: runs are unpacked in ascending order, so the next one mends it.
+inline void fill_ahead(Material* from, const Material* stop, Material material) {
+  const auto v = hn::Set(Voxels(), material);
+  for (; from < stop; from += Brush::lanes()) hn::StoreU(v, Voxels(), from);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace runstone
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,78 @@
+// ChangeTally: what follows from the changed stretches of a chunk: the list of changes, the digest's
+// difference, the layers to mesh again and the number of voxels. Each stretch costs O(1), however many lines
+// it crosses. Internal to edits.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/core/digest.hpp"
+#include "common/edits/apply/apply_scratch.hpp"
+#include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/apply/line_bits.hpp"
+#include "common/runs/run_chunk.hpp"
+
+namespace runstone {
+
+struct AxisSums;
+
+class ChangeTally {
+ public:
+  /// `shape` gives extent and order only. Appends to `changes`, which must be empty.
+  ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors);
+
+  /// Voxels [first, last), all `before`, become `after`. Requires ascending, disjoint stretches that differ.
+  void stretch(VoxelIndex first, VoxelIndex last, Material before, Material after) {
+    voxels_ += last - first;
+    note(first, last, after);
+    if (first >= line_end_) open_line(first);
+    if (last <= line_end_) {
+      in_line(first - line_begin_, last - line_begin_, before, after);
+    } else {
+      across_lines(first, last, before, after);
+    }
+  }
+
+  /// The same for what differs in line m of layer s, told at once: changed voxels, and where a stretch of them must
+  /// end since before or after differ from the voxel in front. Requires lines ascending. O(stretches).
+  void line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts, const Material* before,
+            const Material* after);
+
+  /// Call once, after the last stretch.
+  void finish();
+  Digest digest_difference() const { return digest_; }  // modulo the digest's prime
+  DirtyLayers dirty() const;
+  std::uint64_t voxels() const { return voxels_; }
+
+ private:
+  void open_line(VoxelIndex first);
+  void close_line();
+  void close_layer();
+  void note(VoxelIndex first, VoxelIndex last, Material after) {
+    if (!changes_.empty() && changes_.back().last == first && changes_.back().material == after) {
+      changes_.back().last = last;
+    } else {
+      changes_.push_back({first, last, after});
+    }
+  }
+  void in_line(std::uint32_t first, std::uint32_t last, Material before, Material after);
+  void across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after);
+
+  __extension__ using Wide = unsigned __int128;
+  const RunChunk& shape_;
+  const AxisSums& sums_;
+  const OrderedExtent extent_;
+  const std::array<Axis, 3> axes_;
+  std::vector<Change>& changes_;
+  MaterialFactors& factors_;
+  VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line that the last stretch began in
+  std::array<Wide, kDigestLanes> line_sum_{};
+  std::uint32_t line_terms_ = 0;
+  std::uint32_t layer_ = 0;  // that line() was told of last
+  std::array<std::uint64_t, kDigestLanes> layer_sum_{};
+  std::array<LineBits, 3> dirty_{};  // by f, m, s
+  Digest digest_;
+  std::uint64_t voxels_ = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,102 @@
+#include "common/edits/apply/edit_stack.hpp"
+
+#include <algorithm>
+
+#include "common/core/assert.hpp"
+#include "common/edits/apply/change_tally.hpp"
+#include "common/edits/apply/edit_stack_strategies.hpp"
+#include "common/edits/apply/edit_sweep.hpp"
+#include "common/edits/apply/layer_painter.hpp"
+#include "common/edits/descriptor/ordered_shape.hpp"
+
+namespace runstone {
+namespace {
+
+// Returns how many of the edits may touch the chunk; each stands in the stack as all its parts.
+std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+                     std::vector<StackedEdit>& stack) {
+  stack.clear();
+  std::size_t count = 0;
+  for (const EditDescriptor& edit : edits) {
+    RUNSTONE_DASSERT(validate(edit).has_value());
+    const std::size_t before = stack.size();
+    for_each_part(edit, origin, chunk.extent, chunk.order, [&](const OrderedShape& shape, Material material) {
+      stack.push_back({shape, edit.mask, material});
+    });
+    count += stack.size() != before ? 1 : 0;
+  }
+  return count;
+}
+
+// A layer that edits cover whole costs the sweep a look at its runs, however many voxels it has.
+ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk, std::span<const StackedEdit> stack) {
+  if (edits == 1) return ChangeSearch::walk;
+  const OrderedExtent extent = ordered(chunk.extent, chunk.order);
+  const bool whole = std::any_of(stack.begin(), stack.end(),
+                                 [&](const StackedEdit& part) { return part.shape.covers_layers(extent); });
+  return whole ? ChangeSearch::sweep : ChangeSearch::paint;
+}
+
+// Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
+void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest, ApplyScratch& scratch,
+                    ApplyResult& result) {
+  scratch.changes.clear();
+  scratch.runs.clear();
+  ChangeTally tally(chunk, scratch.changes, scratch.factors);
+  switch (search) {
+    case ChangeSearch::walk:
+      walk_changes(chunk, scratch, tally);
+      break;
+    case ChangeSearch::sweep:
+      sweep_changes(chunk, scratch, tally);
+      break;
+    case ChangeSearch::paint:
+      paint_changes(chunk, scratch, tally);
+      break;
+  }
+  tally.finish();
+  if (scratch.changes.empty()) return;
+  digest = digest + tally.digest_difference();
+  result.changed = true;
+  result.dirty = tally.dirty();
+  result.voxels_changed = tally.voxels();
+  plan_patch(chunk, scratch.changes, result.areas, scratch.runs);
+}
+
+void reset(ApplyResult& result) {
+  result.changed = false;
+  result.dirty = {};
+  result.areas.clear();
+  result.voxels_changed = 0;
+}
+
+}  // namespace
+
+void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
+                 ApplyScratch& scratch, ApplyResult& result) {
+  reset(result);
+  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+  if (count == 0) return;
+  search_changes(cheaper_search(count, chunk, scratch.stack), chunk, digest, scratch, result);
+  write_patch(chunk, result.areas, scratch.runs, cheaper_write(chunk, result.areas), scratch.whole);
+}
+
+ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
+                        std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
+  ApplyResult result;
+  apply_stack(chunk, digest, origin, edits, scratch, result);
+  return result;
+}
+
+ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& digest, VoxelPos origin,
+                           std::span<const EditDescriptor> edits, ApplyScratch& scratch) {
+  ApplyResult result;
+  const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
+  if (count == 0) return result;
+  RUNSTONE_ASSERT(count == 1 || strategy.search != ChangeSearch::walk);
+  search_changes(strategy.search, chunk, digest, scratch, result);
+  write_patch(chunk, result.areas, scratch.runs, strategy.write, scratch.whole);
+  return result;
+}
+
+}  // namespace runstone

@@ -1,0 +1,102 @@
+#include "common/edits/descriptor/edit_record.hpp"
+
+#include <xxhash.h>
+
+#include <limits>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+
+namespace runstone {
+
+Result<void> validate_numbers(const EditRecord& record) {
+  const Sequence seq = record.version.seq;
+  if (seq == 0) return fail(ErrorCode::bad_value, "sequence 0 is the base, not an edit");
+  if (seq > kSequenceMax) return fail(ErrorCode::bad_value, "sequence exceeds 63 bits");
+  if (record.op.seq > kSequenceMax) return fail(ErrorCode::bad_value, "client sequence exceeds 63 bits");
+  if (record.subject >= seq) return fail(ErrorCode::bad_value, "subject is not an earlier edit");
+  return {};
+}
+
+Bytes encode_record(const EditRecord& record) {
+  RUNSTONE_ASSERT(validate_numbers(record).has_value());
+  RUNSTONE_ASSERT(static_cast<std::uint8_t>(record.cause) <= kCauseMax);
+  Bytes out;
+  ByteWriter w(out);
+  w.u8(kEditRecordVersion);
+  w.varint(record.log);
+  w.varint(record.version.epoch);
+  w.varint(record.version.seq);
+  w.varint(record.op.author);
+  w.u64(record.op.instance);
+  w.varint(record.op.seq);
+  w.svarint(record.time_us);
+  w.u8(static_cast<std::uint8_t>(record.cause));
+  w.varint(record.subject);
+  const VoxelBox box = bounding_box(record.edit);
+  w.svarint(box.min.x);
+  w.svarint(box.min.y);
+  w.svarint(box.min.z);
+  w.varint(static_cast<std::uint64_t>(box.max.x - box.min.x));
+  w.varint(static_cast<std::uint64_t>(box.max.y - box.min.y));
+  w.varint(static_cast<std::uint64_t>(box.max.z - box.min.z));
+  const Bytes descriptor = encode(record.edit);
+  w.varint(descriptor.size());
+  w.bytes(descriptor);
+  return out;
+}
+
+Result<EditRecord> decode_record(ByteView in) {
+  constexpr std::uint64_t kU32Max = std::numeric_limits<std::uint32_t>::max();
+  ByteReader r(in);
+  EditRecord record;
+  if (r.u8() != kEditRecordVersion) r.reject(ErrorCode::bad_version, "unknown edit record version");
+  record.log = static_cast<LogId>(r.varint_max(kU32Max, "log id exceeds 32 bits"));
+  record.version.epoch = static_cast<Epoch>(r.varint_max(kU32Max, "epoch exceeds 32 bits"));
+  record.version.seq = r.varint();
+  record.op.author = static_cast<AuthorId>(r.varint_max(kU32Max, "author exceeds 32 bits"));
+  record.op.instance = r.u64();
+  record.op.seq = r.varint();
+  record.time_us = r.svarint();
+  const std::uint8_t cause = r.u8();
+  if (cause > kCauseMax) r.reject(ErrorCode::bad_value, "unknown cause");
+  record.cause = static_cast<Cause>(cause <= kCauseMax ? cause : 0);
+  record.subject = r.varint();
+  if (r.ok()) {
+    if (const auto numbers = validate_numbers(record); !numbers) {
+      r.reject(numbers.error().code, numbers.error().what);
+    }
+  }
+  const auto coordinate = [&r] {
+    return static_cast<std::int32_t>(r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
+  };
+  // How long a side may be belongs to the kind. Below, the box must be the descriptor's.
+  const auto side = [&r] {
+    return static_cast<std::int32_t>(
+        r.varint_max(2 * std::uint64_t{kWorldLimit}, "box larger than the world"));
+  };
+  VoxelBox box;
+  box.min.x = coordinate();
+  box.min.y = coordinate();
+  box.min.z = coordinate();
+  box.max.x = box.min.x + side();
+  box.max.y = box.min.y + side();
+  box.max.z = box.min.z + side();
+  const auto length = r.varint_max(kRecordDescriptorBytesMax, "descriptor too long");
+  const std::uint64_t at = r.offset();
+  const ByteView bytes = r.bytes(static_cast<std::size_t>(length));
+  if (const auto done = r.finish(); !done) return Unexpected<Error>{done.error()};
+  auto edit = decode_descriptor(bytes);
+  if (!edit) return fail(edit.error().code, edit.error().what, at + edit.error().offset);
+  record.edit = *edit;
+  if (box != bounding_box(record.edit)) {
+    return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
+  }
+  return record;
+}
+
+std::uint64_t record_checksum(const EditRecord& record) {
+  const Bytes bytes = encode_record(record);
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+}  // namespace runstone

@@ -1,0 +1,45 @@
+#include "server/admin/control_program.hpp"
+
+#include <asio/io_context.hpp>
+#include <asio/local/stream_protocol.hpp>
+#include <asio/read_until.hpp>
+#include <asio/write.hpp>
+#include <ostream>
+
+#include "server/admin/control_socket.hpp"
+
+namespace runstone {
+
+Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out) {
+  const auto path = control_path(request.world);
+  if (!path) return Unexpected<std::string>{path.error()};
+  std::string line;
+  for (const std::string& word : request.words) {
+    if (!line.empty()) line += ' ';
+    // The shell has taken the quotes away that kept a name with blanks together.
+    line += word.find(' ') == std::string::npos ? word : "\"" + word + "\"";
+  }
+  line += '\n';
+  asio::io_context io;
+  asio::local::stream_protocol::socket socket(io);
+  asio::error_code error;
+  socket.connect(asio::local::stream_protocol::endpoint(*path), error);
+  if (error) {
+    return Unexpected<std::string>{*path + ": " + error.message() +
+                                   ": no server of this user runs that world"};
+  }
+  asio::write(socket, asio::buffer(line), error);
+  std::string in;
+  while (!error) {
+    const std::size_t bytes = asio::read_until(socket, asio::dynamic_buffer(in), '\n', error);
+    if (error) break;
+    const std::string answer = in.substr(0, bytes - 1);
+    in.erase(0, bytes);
+    if (answer == "=ok") return true;
+    if (answer == "=error") return false;
+    out << (answer.starts_with('|') ? answer.substr(1) : answer) << std::endl;
+  }
+  return Unexpected<std::string>{*path + ": the server ended before its answer did"};
+}
+
+}  // namespace runstone

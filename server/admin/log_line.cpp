@@ -1,0 +1,44 @@
+#include "server/admin/log_line.hpp"
+
+#include "common/core/key_text.hpp"
+#include "common/core/utc_text.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/admin/command.hpp"
+
+namespace runstone {
+namespace {
+
+const char* name_of(EditKind kind) {
+  switch (kind) {
+    case EditKind::set_voxel:
+      return "voxel";
+    case EditKind::fill_box:
+      return "box";
+    case EditKind::fill_sphere:
+      return "sphere";
+    case EditKind::fill_stroke:
+      return "stroke";
+    case EditKind::paste:
+      return "paste";
+  }
+  return "?";
+}
+
+}  // namespace
+
+std::string log_line(const EditRecord& record, const std::string& author, const MaterialTable& materials) {
+  const VoxelBox box = bounding_box(record.edit);
+  const EditKind kind = kind_of(record.edit);
+  std::string line = std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
+  line += name_of(record.cause);
+  if (record.subject != 0) line += " of " + std::to_string(record.subject);
+  line += std::string(" ") + name_of(kind) + " " + text_of(box.min);
+  const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
+  if (last != box.min) line += " to " + text_of(last);
+  if (kind != EditKind::paste && materials.knows(record.edit.material)) {
+    line += " := " + materials[record.edit.material].name;
+  }
+  return line;
+}
+
+}  // namespace runstone

@@ -1,0 +1,189 @@
+#include "server/import/import_luanti.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "common/core/assert.hpp"
+#include "common/formats/block_assembler.hpp"
+#include "common/formats/luanti_block.hpp"
+#include "common/runs/reorder.hpp"
+#include "server/import/luanti_map.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::uint64_t kProgressEvery = 64;  // blocks
+
+class Importer {
+ public:
+  Importer(std::string file, LuantiMap map, const LuantiImportOptions& options, const LuantiImportSink& sink)
+      : file_(std::move(file)), map_(std::move(map)), options_(options), sink_(sink) {}
+
+  Result<LuantiImportReport, ImportError> run() {
+    if (const auto trouble = scan()) return error(*trouble);
+    if (const auto trouble = make_table()) return error(*trouble);
+    sink_.materials(report_.materials);
+    report_.voxels.assign(report_.materials.size(), 0);
+    report_.spawn = {(report_.bounds.min.x + report_.bounds.max.x) / 2, report_.bounds.max.y,
+                     (report_.bounds.min.z + report_.bounds.max.z) / 2};
+    for (const ChunkCoord at : chunk_coords()) {
+      if (!make_chunk(at)) return error("the import was stopped");
+    }
+    advance(0);
+    return std::move(report_);
+  }
+
+ private:
+  Unexpected<ImportError> error(std::string what) const { return {ImportError{file_, std::move(what)}}; }
+
+  /// First pass: which blocks are sound, which names they use, how far they reach.
+  std::optional<std::string> scan() {
+    return map_.each_row([&](std::int64_t pos, ByteView data) {
+      const ChunkCoord at = luanti_block_coord(pos);
+      const auto block =
+          luanti_block_pos(at) == pos
+              ? decode_luanti_block(data)
+              : Result<LuantiBlock>(fail(ErrorCode::bad_value, "luanti block: not a block position"));
+      advance(1);
+      if (!block) {
+        report_.damaged.push_back({pos, at, block.error()});
+        return;
+      }
+      const VoxelBox box = box_of(at, kLuantiBlockEdge);
+      if (positions_.empty()) report_.bounds = box;
+      VoxelBox& all = report_.bounds;
+      all.min = {std::min(all.min.x, box.min.x), std::min(all.min.y, box.min.y),
+                 std::min(all.min.z, box.min.z)};
+      all.max = {std::max(all.max.x, box.max.x), std::max(all.max.y, box.max.y),
+                 std::max(all.max.z, box.max.z)};
+      positions_.push_back(pos);
+      ++report_.blocks;
+      for (std::size_t i = 0; i < block->voxels.runs.size(); ++i) {
+        const Material local = block->voxels.runs.material(i);
+        if (local != kEmpty) ids_.emplace(block->names[local - 1u], kEmpty);
+      }
+    });
+  }
+
+  std::optional<std::string> make_table() {
+    std::sort(positions_.begin(), positions_.end());  // a foreign map promises no order of its own
+    for (auto& [name, id] : ids_) {
+      MaterialInfo info = material_of_luanti_node(name, options_.keep_all);
+      if (info.visibility == Visibility::empty) continue;
+      // Two foreign names may come out as one of ours only if both were unprintable and their hashes agree.
+      if (const auto known = report_.materials.find(info.name)) {
+        id = *known;
+        continue;
+      }
+      const auto added = report_.materials.add(std::move(info));
+      if (!added) return std::string(added.error().what);
+      id = *added;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<ChunkCoord> chunk_coords() const {
+    const auto key = [](const ChunkCoord& c) { return std::tuple(c.z, c.y, c.x); };
+    std::vector<ChunkCoord> out;
+    out.reserve(positions_.size());
+    for (const std::int64_t pos : positions_) {
+      out.push_back(chunk_of(origin_of(luanti_block_coord(pos), kLuantiBlockEdge), options_.edge));
+    }
+    // The order of the map's own key, so that neighbouring rows are read together.
+    std::sort(out.begin(), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  /// A sound block with our materials. Only positions of the first pass come here, in the same read
+  /// transaction, so a row that is gone or no longer decodes means a failing disk.
+  std::optional<RunChunk> read_block(ChunkCoord at) {
+    const std::int64_t pos = luanti_block_pos(at);
+    if (!std::binary_search(positions_.begin(), positions_.end(), pos)) return std::nullopt;
+    advance(1);
+    const auto data = map_.find(pos);
+    auto block =
+        data ? decode_luanti_block(*data)
+             : Result<LuantiBlock>(fail(ErrorCode::io_failed, "luanti block: could not be read again"));
+    if (!block) {
+      report_.damaged.push_back({pos, at, block.error()});
+      --report_.blocks;
+      return std::nullopt;
+    }
+    to_.assign(block->names.size() + 1, kEmpty);
+    for (std::size_t i = 0; i < block->names.size(); ++i) {
+      const auto known = ids_.find(block->names[i]);
+      if (known != ids_.end()) to_[i + 1] = known->second;
+    }
+    return with_materials(block->voxels, to_);
+  }
+
+  bool make_chunk(ChunkCoord at) {
+    const auto side = static_cast<std::size_t>(options_.edge / kLuantiBlockEdge);
+    std::vector<RunChunk> blocks;
+    blocks.reserve(side * side * side);  // the lookup hands out pointers into it
+    RunChunk chunk = assemble_chunk(options_.edge, at, [&](ChunkCoord block) -> const RunChunk* {
+      auto voxels = read_block(block);
+      if (!voxels) return nullptr;
+      blocks.push_back(std::move(*voxels));
+      return &blocks.back();
+    });
+    if (chunk.is_uniform() && chunk.runs.material(0) == kEmpty) return true;
+    chunk = in_cheapest_order(std::move(chunk));
+    RUNSTONE_ASSERT(validate(chunk).has_value());
+    count(at, chunk);
+    return sink_.chunk({0, at}, std::move(chunk));
+  }
+
+  void count(ChunkCoord at, const RunChunk& chunk) {
+    ++report_.chunks;
+    report_.runs += chunk.runs.size();
+    for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
+      report_.voxels[chunk.runs.material(i)] += chunk.runs.end(i) - chunk.runs.begin(i);
+    }
+    // The highest voxel of the middle column: a chunk above another one comes later and replaces its answer.
+    const VoxelBox box = box_of(at, options_.edge);
+    const std::int32_t x = report_.spawn.x, z = report_.spawn.z;
+    if (!box.contains({x, box.min.y, z})) return;
+    for (std::int32_t y = box.max.y - 1; y >= box.min.y; --y) {
+      if (material_at(chunk, local_of({x, y, z}, options_.edge)) == kEmpty) continue;
+      report_.spawn.y = y + 1;
+      return;
+    }
+  }
+
+  void advance(std::uint64_t blocks) {
+    done_ += blocks;
+    if (sink_.progress && (blocks == 0 || done_ % kProgressEvery == 0)) {
+      // Both passes read each sound block once; a damaged one is read in the first alone.
+      sink_.progress(done_, 2 * map_.row_count() - report_.damaged.size());
+    }
+  }
+
+  std::string file_;
+  LuantiMap map_;
+  const LuantiImportOptions& options_;
+  const LuantiImportSink& sink_;
+  LuantiImportReport report_;
+  std::vector<std::int64_t> positions_;  // of sound blocks, ascending
+  std::map<std::string, Material> ids_;  // world material of every foreign name in use
+  std::vector<Material> to_;             // of the block in hand
+  std::uint64_t done_ = 0;               // block reads
+};
+
+}  // namespace
+
+Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
+                                                      const LuantiImportOptions& options,
+                                                      const LuantiImportSink& sink) {
+  RUNSTONE_ASSERT(options.edge == 16 || options.edge == 32 || options.edge == 64 || options.edge == 128);
+  const std::string file = folder + "/map.sqlite";
+  auto map = LuantiMap::open(file);
+  if (!map) return Unexpected<ImportError>{{file, map.error()}};
+  return Importer(file, std::move(map).value(), options, sink).run();
+}
+
+}  // namespace runstone

@@ -1,0 +1,113 @@
+#include "server/import/import_program.hpp"
+
+#include <sodium.h>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "server/import/import_luanti.hpp"
+#include "server/store/world_folder.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kChunksPerTransaction = 512;
+constexpr std::size_t kDamagedListed = 10;
+
+Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+/// Collects chunks and writes them as base, a transaction at a time.
+class BaseWriter {
+ public:
+  explicit BaseWriter(Store& store) : store_(store) {}
+  bool add(const ChunkKey& key, RunChunk&& voxels) {
+    auto chunk = std::make_shared<Chunk>();
+    chunk->digest = digest_of(voxels);
+    chunk->voxels = std::move(voxels);
+    pending_.emplace_back(key, std::move(chunk));
+    return pending_.size() < kChunksPerTransaction || flush();
+  }
+  bool flush() {
+    const auto saved = store_.save_base(pending_);
+    if (!saved) error_ = saved.error().message();
+    pending_.clear();
+    return saved.has_value();
+  }
+  const std::string& error() const { return error_; }
+
+ private:
+  Store& store_;
+  std::vector<std::pair<ChunkKey, ChunkPtr>> pending_;
+  std::string error_;
+};
+
+Result<void, std::string> fill(const ImportRequest& request, const LuantiImportReport& survey,
+                               const std::string& folder) {
+  WorldMeta meta;
+  meta.chunk_edge = request.edge;
+  meta.generator.name = "empty";
+  meta.materials = survey.materials;
+  meta.spawn = {survey.spawn.x + 0.5, static_cast<double>(survey.spawn.y), survey.spawn.z + 0.5};
+  draw_identity(meta);
+  auto store = create_world(folder, meta);
+  if (!store) return failure(store.error().message());
+  BaseWriter base(**store);
+  LuantiImportSink sink;
+  sink.materials = [](const MaterialTable&) {};
+  sink.chunk = [&](const ChunkKey& key, RunChunk&& voxels) { return base.add(key, std::move(voxels)); };
+  const auto report = import_luanti(request.luanti, {request.edge, request.keep_all}, sink);
+  if (!base.error().empty()) return failure(base.error());
+  if (!report) return failure(report.error().message());
+  if (!base.flush()) return failure(base.error());
+  if (report->materials != survey.materials || report->chunks != survey.chunks) {
+    return failure(request.luanti + ": changed while it was read");
+  }
+  return {};
+}
+
+void print(const LuantiImportReport& report, const ImportRequest& request, std::ostream& out) {
+  out << request.world << ": " << report.blocks << " blocks became " << report.chunks << " chunks of edge "
+      << request.edge << " with " << report.runs << " runs and " << report.materials.size() << " materials, "
+      << report.damaged.size() << " damaged blocks left empty\n";
+  for (std::size_t i = 0; i < report.damaged.size() && i < kDamagedListed; ++i) {
+    const DamagedBlock& block = report.damaged[i];
+    out << "damaged block " << block.block.x << "," << block.block.y << "," << block.block.z << " (pos "
+        << block.pos << "): " << block.error.what << "\n";
+  }
+}
+
+}  // namespace
+
+Result<void, std::string> import_world(const ImportRequest& request, std::ostream& out) {
+  namespace fs = std::filesystem;
+  if (sodium_init() < 0) return failure("libsodium cannot start");
+  if (request.edge != 16 && request.edge != 32 && request.edge != 64 && request.edge != 128) {
+    return failure("--edge " + std::to_string(request.edge) + ": chunks have an edge of 16, 32, 64 or 128");
+  }
+  std::error_code error;
+  if (fs::exists(request.world, error) && !fs::is_empty(request.world, error)) {
+    return failure(request.world + ": exists and is not empty");
+  }
+  LuantiImportSink survey_sink;
+  survey_sink.materials = [](const MaterialTable&) {};
+  survey_sink.chunk = [](const ChunkKey&, RunChunk&&) { return true; };
+  const auto survey = import_luanti(request.luanti, {request.edge, request.keep_all}, survey_sink);
+  if (!survey) return failure(survey.error().message());
+
+  const std::string unfinished = request.world + ".importing";
+  fs::remove_all(unfinished, error);  // of an import that was broken off
+  if (const auto filled = fill(request, *survey, unfinished); !filled) {
+    fs::remove_all(unfinished, error);
+    return failure(filled.error());
+  }
+  fs::remove(request.world, error);  // only an empty folder can be here
+  fs::rename(unfinished, request.world, error);
+  if (error) return failure(request.world + ": " + error.message());
+  print(*survey, request, out);
+  return {};
+}
+
+}  // namespace runstone

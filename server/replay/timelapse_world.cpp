@@ -1,0 +1,169 @@
+#include "server/replay/timelapse_world.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "common/core/assert.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr int kSurfaceDepth = 8;  // chunks below the surface of a column that are looked at, at most
+constexpr int kSamples = 5;       // places a side of a column where its surface is looked at
+
+VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
+  if (a.empty()) return b;
+  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
+}
+
+bool is_empty(const RunChunk& chunk) { return chunk.is_uniform() && material_at(chunk, {0, 0, 0}) == kEmpty; }
+
+}  // namespace
+
+StoreResult<TimelapseWorld> TimelapseWorld::open(Store& reader, const Generator& generator, Sequence from,
+                                                 Sequence to, std::uint32_t radius,
+                                                 std::span<const ChunkCoord> eyes) {
+  RUNSTONE_ASSERT(from <= to);
+  auto start = WorldAt::open(reader, generator, from);
+  if (!start) return Unexpected<StoreError>{start.error()};
+  TimelapseWorld world(reader, generator, *std::move(start));
+  world.at_ = from;
+  if (const auto found = world.find_edits(to); !found) return Unexpected<StoreError>{found.error()};
+  if (const auto set = world.set_stage(radius, eyes); !set) return Unexpected<StoreError>{set.error()};
+  return world;
+}
+
+StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
+  const auto take = [this](const EditRecord& record) {
+    edited_ = joined(edited_, bounding_box(record.edit));
+    for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) edited_chunks_.insert({0, at});
+    return true;
+  };
+  if (const auto read = reader_->read_log(at_ + 1, to, take); !read) return read;
+  if (!edited_chunks_.empty()) return {};
+  // Nothing moves: then what moved before is what is to be seen.
+  for (const ChunkKey& key : start_.edited()) {
+    edited_chunks_.insert(key);
+    edited_ = joined(edited_, box_of(key.at, edge_));
+  }
+  return {};
+}
+
+StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius, std::span<const ChunkCoord> eyes) {
+  const auto r = static_cast<std::int32_t>(radius);
+  std::set<Column> columns;
+  const auto add_columns = [&](ChunkCoord around) {
+    for (std::int32_t x = around.x - r; x <= around.x + r; ++x) {
+      for (std::int32_t z = around.z - r; z <= around.z + r; ++z) columns.insert({x, z});
+    }
+  };
+  std::int32_t y_min = 0, y_max = 0;
+  for (const ChunkKey& key : edited_chunks_) {
+    put_around(key.at);
+    add_columns(key.at);
+    y_min = key == *edited_chunks_.begin() ? key.at.y : std::min(y_min, key.at.y);
+    y_max = key == *edited_chunks_.begin() ? key.at.y : std::max(y_max, key.at.y);
+    if (columns.size() > kChunksMax) return too_large();
+  }
+  for (const ChunkCoord& eye : eyes) add_columns(eye);
+  if (columns.size() > kChunksMax) return too_large();
+  for (const Column& column : columns) add_surface(column);
+  // What was built before stands above the ground, or below it.
+  for (const ChunkKey& key : start_.edited()) {
+    if (columns.contains({key.at.x, key.at.z})) put_around(key.at);
+  }
+  // An imported world's ground is where it is: it has to be looked for, above and below the edits.
+  const auto has_base = reader_->has_base();
+  if (!has_base) return Unexpected<StoreError>{has_base.error()};
+  for (const auto& [x, z] : columns) {
+    for (std::int32_t y = y_min - r; *has_base && y <= y_max + r; ++y) put_on_stage({x, y, z});
+  }
+  if (stage_.size() > kChunksMax) return too_large();
+  return {};
+}
+
+/// What edits of a chunk lay bare belongs to the chunks beside it, too.
+void TimelapseWorld::put_around(ChunkCoord at) {
+  for (int i = 0; i < 27; ++i) put_on_stage({at.x + i % 3 - 1, at.y + i / 3 % 3 - 1, at.z + i / 9 - 1});
+}
+
+void TimelapseWorld::put_on_stage(ChunkCoord at) {
+  const std::int32_t reach = kWorldLimit / edge_;
+  const auto inside = [reach](std::int32_t c) { return c >= -reach && c < reach; };
+  if (inside(at.x) && inside(at.y) && inside(at.z)) stage_.insert({0, at});
+}
+
+/// The chunks of a column that show untouched ground: from its highest voxel down to a chunk that hides all
+/// that is below.
+void TimelapseWorld::add_surface(const Column& column) {
+  const auto [x, z] = column;
+  std::int32_t highest = generator_->y_min();
+  for (std::int32_t i = 0; i < kSamples * kSamples; ++i) {
+    const std::int32_t dx = (i % kSamples) * (edge_ - 1) / (kSamples - 1);
+    const std::int32_t dz = (i / kSamples) * (edge_ - 1) / (kSamples - 1);
+    highest = std::max(highest, generator_->surface_y(x * edge_ + dx, z * edge_ + dz));
+  }
+  const std::int32_t top = floor_div(highest - 1, edge_);
+  for (std::int32_t y = top; y > top - kSurfaceDepth && (y + 1) * edge_ > generator_->y_min(); --y) {
+    put_on_stage({x, y, z});
+    const RunChunk chunk =
+        generator_->generate(origin_of({x, y, z}, edge_), Extent::cube(static_cast<unsigned>(edge_)));
+    if (!chunk.is_uniform()) continue;
+    const Material all = material_at(chunk, {0, 0, 0});
+    if (reader_->meta().materials[all].visibility == Visibility::opaque) return;
+  }
+}
+
+Unexpected<StoreError> TimelapseWorld::too_large() const {
+  return {
+      {StoreError::Kind::bad_request, reader_->file(), "",
+       "the edits and the ground around them are more than " + std::to_string(kChunksMax) +
+           " chunks: too many for a picture; choose a smaller --radius, or fewer edits by --from and --at"}};
+}
+
+VoxelBox TimelapseWorld::stage() const {
+  VoxelBox box;
+  for (const ChunkKey& key : stage_) box = joined(box, box_of(key.at, edge_));
+  return box;
+}
+
+StoreResult<void> TimelapseWorld::begin(const Each& each) {
+  for (const ChunkKey& key : stage_) {
+    auto chunk = start_.chunk(key);
+    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!is_empty(chunk->voxels) && !each(key, chunk->voxels)) return {};
+    if (edited_chunks_.contains(key))
+      moving_.emplace(key, FollowedChunk(*std::move(chunk), origin_of(key.at, edge_)));
+  }
+  return {};
+}
+
+StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
+  std::set<ChunkKey> touched;
+  Sequence read_to = at_;
+  const auto read = reader_->read_log(at_ + 1, seq, [&](const EditRecord& record) {
+    for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) {
+      const ChunkKey key{0, at};
+      moving_.at(key).add(record.edit, record.version, scratch_);
+      touched.insert(key);
+    }
+    read_to = record.version.seq;
+    return true;
+  });
+  if (!read) return read;
+  if (read_to != seq) {
+    return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader_->file(), "edit_log",
+                                   "was compacted while it was read; begin again"}};
+  }
+  at_ = seq;
+  for (const ChunkKey& key : touched) {
+    FollowedChunk& moving = moving_.at(key);
+    moving.settle(scratch_);
+    if (moving.take_changed() && !each(key, moving.chunk().voxels)) return {};
+  }
+  return {};
+}
+
+}  // namespace runstone

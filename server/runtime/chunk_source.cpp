@@ -1,0 +1,53 @@
+#include "server/runtime/chunk_source.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "common/runs/reorder.hpp"
+#include "server/history/base_chunk.hpp"
+
+namespace runstone {
+
+StoreResult<std::unique_ptr<Store>> ChunkSource::borrow() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      auto reader = std::move(idle_.back());
+      idle_.pop_back();
+      return reader;
+    }
+  }
+  return open_world(folder_, StoreAccess::read_only);
+}
+
+void ChunkSource::give_back(std::unique_ptr<Store> reader) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(reader));
+}
+
+StoreResult<void> ChunkSource::with_reader(const std::function<void(Store&)>& use) {
+  auto reader = borrow();
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  use(**reader);
+  give_back(*std::move(reader));
+  return {};
+}
+
+StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
+  auto reader = borrow();
+  if (!reader) return Unexpected<StoreError>{reader.error()};
+  auto chunk = load(**reader, key);
+  give_back(*std::move(reader));
+  return chunk;
+}
+
+StoreResult<Chunk> ChunkSource::load(Store& reader, const ChunkKey& key) const {
+  auto stored = reader.load_snapshot(key);
+  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored->has_value()) return base_chunk(reader, generator_, key);
+  Chunk chunk = **std::move(stored);
+  chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
+  return chunk;
+}
+
+}  // namespace runstone

@@ -1,0 +1,106 @@
+#include "server/runtime/keyframe_thread.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/runtime/logging.hpp"
+
+namespace runstone {
+
+namespace {
+
+// Edits are looked at in portions, so that a commit of one edit does not wake a reader.
+constexpr Sequence kPortionEdits = 1024;
+
+/// How a slice that the writer was given went. Shared with the writer, which may answer when nobody waits any more.
+struct Answer {
+  std::mutex mutex;
+  std::condition_variable come;
+  std::optional<StoreResult<void>> result;
+};
+
+}  // namespace
+
+KeyframeThread::KeyframeThread(std::string folder, const Generator& generator, const KeyframePolicy& policy,
+                               LogWriter& writer)
+    : folder_(std::move(folder)), generator_(generator), policy_(policy), writer_(writer), thread_([this] {
+        run();
+      }) {}
+
+KeyframeThread::~KeyframeThread() { stop(); }
+
+void KeyframeThread::durable(Sequence seq) {
+  {
+    const std::lock_guard guard(mutex_);
+    durable_ = seq;
+  }
+  work_.notify_one();
+}
+
+void KeyframeThread::stop() {
+  {
+    const std::lock_guard guard(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool KeyframeThread::is_stopping() const {
+  const std::lock_guard guard(mutex_);
+  return stopping_;
+}
+
+bool KeyframeThread::wait_for_work(Sequence seen) {
+  std::unique_lock lock(mutex_);
+  work_.wait(lock, [&] {
+    return stopping_ || durable_ >= seen + std::min<Sequence>(kPortionEdits, policy_.edits_min);
+  });
+  return !stopping_;
+}
+
+StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
+                                       const std::optional<Keyframe>& keyframe) {
+  auto answer = std::make_shared<Answer>();
+  const bool taken = writer_.save_keyframe(std::move(chunks), keyframe, [answer](StoreResult<void> result) {
+    const std::lock_guard guard(answer->mutex);
+    answer->result = std::move(result);
+    answer->come.notify_one();
+  });
+  if (!taken)
+    return Unexpected<StoreError>{
+        {StoreError::Kind::cancelled, folder_, "keyframe", "the log writer has ended"}};
+  std::unique_lock lock(answer->mutex);
+  answer->come.wait(lock, [&] { return answer->result.has_value(); });
+  return *answer->result;
+}
+
+void KeyframeThread::run() {
+  const auto failed = [](const StoreError& error) {
+    if (error.kind == StoreError::Kind::cancelled) return;
+    logger("store").error("no more keyframes until the next start: {}", error.message());
+  };
+  auto reader = open_world(folder_, StoreAccess::read_only);
+  if (!reader) return failed(reader.error());
+  KeyframeMaker maker(**reader, generator_, policy_);
+  for (;;) {
+    const auto last = (*reader)->last_sequence();
+    if (!last) return failed(last.error());
+    const std::uint64_t before = maker.made();
+    const auto made = maker.make_due(
+        [this](KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe) {
+          return save(std::move(chunks), keyframe);
+        },
+        [this](Sequence, Sequence) {
+          std::this_thread::yield();  // players' work goes first
+          return !is_stopping();
+        });
+    if (!made) return failed(made.error());
+    if (maker.made() > before) logger("store").info("keyframes made={} seq={}", maker.made() - before, *last);
+    if (!wait_for_work(*last)) return;
+  }
+}
+
+}  // namespace runstone

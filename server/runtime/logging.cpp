@@ -1,0 +1,35 @@
+#include "server/runtime/logging.hpp"
+
+#include <spdlog/async.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include "common/core/assert.hpp"
+
+namespace runstone {
+
+void start_logging(const std::string& level) {
+  // Logging must never hold up the world strand: lines wait in a bounded queue, and the oldest give way when
+  // whoever reads stderr is too slow.
+  constexpr std::size_t kQueuedLinesMax = 8192;
+  if (spdlog::thread_pool() == nullptr) spdlog::init_thread_pool(kQueuedLinesMax, 1);
+  const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  for (const char* module : {"world", "net", "store", "app"}) {
+    auto found = spdlog::get(module);
+    if (found == nullptr) {
+      found = std::make_shared<spdlog::async_logger>(module, sink, spdlog::thread_pool(),
+                                                     spdlog::async_overflow_policy::overrun_oldest);
+      found->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
+      spdlog::register_logger(found);
+    }
+    found->set_level(spdlog::level::from_str(level));
+    found->flush_on(spdlog::level::info);
+  }
+}
+
+spdlog::logger& logger(const char* module) {
+  const auto found = spdlog::get(module);
+  RUNSTONE_ASSERT(found != nullptr);
+  return *found;  // the registry keeps it
+}
+
+}  // namespace runstone

@@ -1,0 +1,97 @@
+#include "server/store/world_folder.hpp"
+
+#include <sodium.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace runstone {
+namespace {
+
+Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
+  if (creation.edge != 16 && creation.edge != 32 && creation.edge != 64 && creation.edge != 128) {
+    return failure("--edge " + std::to_string(creation.edge) + ": chunks have an edge of 16, 32, 64 or 128");
+  }
+  auto materials = read_materials(creation.materials_file);
+  if (!materials) return failure(materials.error());
+  WorldMeta meta;
+  meta.chunk_edge = creation.edge;
+  meta.generator.name = creation.generator;
+  meta.generator.seed = creation.seed;
+  meta.generator.parameters = creation.generator_parameters;
+  meta.materials = *std::move(materials);
+  const auto generator = make_generator(meta.generator, meta.materials);
+  if (!generator) return failure("--generator " + meta.generator.name + ": " + generator.error().what);
+  meta.spawn = {0.5, static_cast<double>((*generator)->surface_y(0, 0)) + 2.0, 0.5};
+  draw_identity(meta);
+  return meta;
+}
+
+}  // namespace
+
+bool has_world(const std::string& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::path(folder) / "world.sqlite", ignored);
+}
+
+Result<MaterialTable, std::string> read_materials(const std::string& file) {
+  if (file.empty()) return default_material_table();
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return failure(file + ": cannot be read");
+  const std::string toml((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  auto table = parse_material_table(toml, file);
+  if (!table) return failure(table.error().message());
+  return *std::move(table);
+}
+
+void draw_identity(WorldMeta& meta) {
+  randombytes_buf(meta.world_id.data(), meta.world_id.size());
+  randombytes_buf(meta.server_key_seed.data(), meta.server_key_seed.size());
+}
+
+Result<std::unique_ptr<Generator>, std::string> generator_of(const Store& store) {
+  const WorldMeta& meta = store.meta();
+  auto generator = make_generator(meta.generator, meta.materials);
+  if (!generator) {
+    return failure(store.file() + ": meta generator=" + meta.generator.name +
+                   " version=" + std::to_string(meta.generator.version) + ": " + generator.error().what);
+  }
+  return *std::move(generator);
+}
+
+Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
+                                                      const WorldCreation& creation) {
+  OpenedWorld opened;
+  opened.is_new = !has_world(folder);
+  const auto file = std::filesystem::path(folder) / "world.sqlite";
+  std::error_code ignored;
+  if (!opened.is_new && std::filesystem::file_size(file, ignored) == 0) {
+    return failure(file.string() +
+                   ": is empty, as a creation that was cut short leaves it: delete it to begin anew");
+  }
+  if (opened.is_new) {
+    const auto meta = new_meta(creation);
+    if (!meta) return failure(meta.error());
+    auto store = create_world(folder, *meta);
+    if (!store) return failure(store.error().message());
+    opened.store = *std::move(store);
+  } else {
+    auto store = open_world(folder, StoreAccess::read_write);
+    if (!store) return failure(store.error().message());
+    opened.store = *std::move(store);
+  }
+  using std::filesystem::perms;
+  const perms others = perms::group_read | perms::others_read;
+  const auto status = std::filesystem::status(file, ignored);
+  opened.is_readable_by_others = (status.permissions() & others) != perms::none;
+  auto generator = generator_of(*opened.store);
+  if (!generator) return failure(generator.error());
+  opened.generator = *std::move(generator);
+  return opened;
+}
+
+}  // namespace runstone

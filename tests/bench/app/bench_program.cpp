@@ -1,0 +1,149 @@
+#include "tests/bench/app/bench_program.hpp"
+
+#include <fmt/ostream.h>
+
+#include <fstream>
+#include <functional>
+
+#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/wire/bytes_bench.hpp"
+#include "tests/bench/meshing/chunk_edge.hpp"
+#include "tests/bench/edits/edit_bench.hpp"
+#include "tests/bench/frames/frames_bench.hpp"
+#include "tests/bench/edits/log_bench.hpp"
+#include "tests/bench/meshing/mesh_bench.hpp"
+#include "tests/bench/meshing/mesh_once.hpp"
+#include "tests/bench/network/net_bench.hpp"
+#include "tests/bench/report/report.hpp"
+#include "tests/bench/storage/storage_bench.hpp"
+
+namespace runstone::bench {
+namespace {
+
+/// Nothing if `file` is empty. Returns whether all went well.
+bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write, std::ostream& err) {
+  if (file.empty()) return true;
+  std::ofstream out(file);
+  write(out);
+  out.flush();
+  if (out) return true;
+  fmt::print(err, "runstone-bench: cannot write {}\n", file);
+  return false;
+}
+
+/// Prints a result and writes its CSV, where it has one, and its JSON, to the files that the options name; or says
+/// why there is none. Returns the exit code.
+template <class T, class Options, class Print>
+int finish(const Result<T, std::string>& result, const Options& options, std::ostream& err, Print&& print) {
+  if (!result) {
+    fmt::print(err, "runstone-bench: {}\n", result.error());
+    return 1;
+  }
+  print(*result);
+  bool done = true;
+  if constexpr (requires(std::ostream& to) { write_csv(*result, to); }) {
+    done = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
+  }
+  return write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err) && done ? 0 : 1;
+}
+
+int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_mesh_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    fmt::print(out, "{} repetitions of each mesher in each cell, shuffled\n", result.repetitions);
+    write_tables(result, out);
+    for (const std::string& cell : result.skipped) fmt::print(out, "\nskipped: {}", cell);
+    fmt::print(out, "\n\n");
+    write_overview(result, out);
+    fmt::print(out, "\n");
+    write_bars(result.bars, out);
+  });
+}
+
+int chunk_edge(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_chunk_edge(options, err), options, err, [&](const auto& rows) {
+    write_machine(this_machine(), out);
+    write_table(rows, out);
+  });
+}
+
+int edits(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_edit_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
+int log(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_log_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(this_machine(), out);
+    write_table(result, out);
+  });
+}
+
+int net(const NetOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_net_bench(options, err), options, err,
+                [&](const auto& result) { write_tables(result, out); });
+}
+
+int bytes(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_bytes_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_table(result, out);
+  });
+}
+
+int frames(const FramesOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_frames_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    write_tables(result, out);
+  });
+}
+
+int storage(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  return finish(run_storage_bench(options, err), options, err, [&](const auto& result) {
+    write_machine(result.machine, out);
+    fmt::print(out, "{} repetitions of each store on each volume, shuffled; Morton codes by {}\n",
+               result.repetitions, result.morton_code);
+    write_tables(result, out);
+    for (const std::string& cell : result.skipped) fmt::print(out, "\nskipped: {}\n", cell);
+  });
+}
+
+int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err) {
+  const auto done = run_mesh_once(options, out);
+  if (!done) fmt::print(err, "runstone-bench: {}\n", done.error());
+  return done ? 0 : 1;
+}
+
+}  // namespace
+
+int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  const ParsedBenchOptions parsed = parse_bench_options(argc, argv, out, err);
+  if (!parsed.options) return parsed.exit_code;
+  switch (parsed.options->command) {
+    case BenchOptions::Command::mesh:
+      return mesh(*parsed.options, out, err);
+    case BenchOptions::Command::mesh_once:
+      return mesh_once(*parsed.options, out, err);
+    case BenchOptions::Command::storage:
+      return storage(*parsed.options, out, err);
+    case BenchOptions::Command::chunk_edge:
+      return chunk_edge(*parsed.options, out, err);
+    case BenchOptions::Command::bytes:
+      return bytes(*parsed.options, out, err);
+    case BenchOptions::Command::log:
+      return log(*parsed.options, out, err);
+    case BenchOptions::Command::edits:
+      return edits(*parsed.options, out, err);
+    case BenchOptions::Command::report:
+      return run_report(parsed.options->report, out, err);
+    case BenchOptions::Command::net:
+      return net(parsed.options->net, out, err);
+    case BenchOptions::Command::frames:
+      return frames(parsed.options->frames, out, err);
+  }
+  return 2;
+}
+
+}  // namespace runstone::bench

@@ -1,0 +1,36 @@
+// `runstone-bench edits`: what edits cost. Each case is timed on one core, many times; the medians are set
+// against the bars.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "tests/bench/harness/bar.hpp"
+#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/machine.hpp"
+
+namespace runstone::bench {
+
+struct EditRow {
+  std::string what;
+  std::size_t chunks = 0, edits = 0;  // touched; applied in one repetition
+  double median_us = 0, p90_us = 0;   // of one repetition
+};
+
+struct EditBenchResult {
+  Machine machine;
+  std::vector<EditRow> rows;
+  std::vector<Bar> bars;
+};
+
+/// Fails if the temporary world of the replay cannot be written.
+Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options, std::ostream& progress);
+
+void write_table(const EditBenchResult& result, std::ostream& out);
+void write_csv(const EditBenchResult& result, std::ostream& out);
+void write_json(const EditBenchResult& result, std::ostream& out);
+
+}  // namespace runstone::bench

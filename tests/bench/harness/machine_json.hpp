@@ -1,0 +1,11 @@
+// The machine as every report in JSON has it.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/bench/harness/machine.hpp"
+
+namespace runstone::bench {
+
+nlohmann::ordered_json json_of(const Machine& machine);
+
+}  // namespace runstone::bench

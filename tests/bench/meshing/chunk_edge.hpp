@@ -1,0 +1,36 @@
+// `runstone-bench chunk-edge`: what the edge of world chunks costs and saves, over the same voxels of each
+// landscape cut into chunks of each edge. The table that decides the default.
+#pragma once
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "tests/bench/app/bench_options.hpp"
+
+namespace runstone::bench {
+
+/// Per voxel means of all voxels of the region, uniform chunks included.
+struct ChunkEdgeRow {
+  std::string world;
+  unsigned edge = 0;
+  std::size_t chunks = 0, uniform = 0, runs = 0, quads = 0;
+  std::size_t voxels = 0;
+  std::size_t run_bytes = 0;     // runs alone
+  std::size_t mixed_bytes = 0;   // runs of the chunks that are not uniform
+  std::size_t memory_bytes = 0;  // runs with their spare capacity and the chunk around them
+  std::size_t packed_bytes = 0;  // on the wire
+  double mesh_ns = 0;            // all chunks once: median over passes
+  double edit_ns = 0;            // splice and remesh after one voxel, neighbours included: median
+  double edit_full_mesh_ns = 0;  // a full mesh of the edited chunks: median
+};
+
+Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions& options,
+                                                              std::ostream& progress);
+
+void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out);
+void write_csv(const std::vector<ChunkEdgeRow>& rows, std::ostream& out);
+void write_json(const std::vector<ChunkEdgeRow>& rows, std::ostream& out);
+
+}  // namespace runstone::bench

@@ -1,0 +1,51 @@
+// MeshResult: everything that `runstone-bench mesh` measured, a row for each mesher in each cell, as CSV,
+// JSON and tables of Markdown.
+#pragma once
+#include <cstddef>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/bench/harness/bar.hpp"
+#include "tests/bench/meshing/cell.hpp"
+#include "tests/bench/harness/machine.hpp"
+
+namespace runstone::bench {
+
+struct MeshRow {
+  std::string world;
+  std::string part;  // which volume of the world
+  unsigned edge = 0;
+  std::string order;  // axes, fastest first
+  std::string rank;   // "best", "worst": fewest and most runs of the six orders; "between"
+  std::string mesher;
+  std::size_t runs = 0;
+  Timing timing;
+  /// Median of decode_binary, grid_binary in the same cell divided by ours: above 1 is faster.
+  std::optional<double> against_decode, against_grid;
+
+  double ns_per_run() const { return timing.median_ns / static_cast<double>(runs); }
+  std::string cell() const;  // world, part, edge and order in words
+};
+
+struct MeshResult {
+  Machine machine;
+  unsigned repetitions = 0;
+  std::vector<MeshRow> rows;
+  std::vector<std::string> skipped;  // cells that were not measured, each with the reason
+  std::vector<Bar> bars;
+};
+
+/// One line of names, then one a row. Times in ns.
+void write_csv(const MeshResult& result, std::ostream& out);
+void write_json(const MeshResult& result, std::ostream& out);
+
+/// A table for each world, edge and rank of order: means over its volumes, ratios as geometric mean and as
+/// ratio of sums.
+void write_tables(const MeshResult& result, std::ostream& out);
+
+/// The product alone, a line for each of those tables.
+void write_overview(const MeshResult& result, std::ostream& out);
+
+}  // namespace runstone::bench

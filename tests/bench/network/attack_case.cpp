@@ -1,0 +1,224 @@
+#include "tests/bench/network/attack_case.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "tests/bench/network/attack.hpp"
+#include "tests/bench/network/crowd.hpp"
+#include "tests/bench/network/join_probe.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr double kLook = 0.02;
+enum Phase : std::uint8_t { before, during, after };
+constexpr std::array<const char*, 3> kPhases = {"before", "during", "after"};
+
+struct AttackResult {
+  std::string name;
+  std::array<CrowdSight, 3> seen;  // by phase
+  JoinProbe::Joins joins;
+  AttackOutcome outcome;
+  std::map<std::string, std::uint64_t>
+      logged;  // reasons that the server's log gives, as far as it is not too many lines
+  std::array<double, 3> resident_mb{};  // at the end of the phase; during: the peak
+  std::array<double, 3> server_cores{};
+  double attacker_cores = 0;
+};
+
+/// The reasons of the lines by which a server says whom it sent away: "timed_out: no message for too long".
+std::map<std::string, std::uint64_t> reasons_in(const std::string& log) {
+  const auto quoted = [](const std::string& line, std::string_view name) {
+    const std::size_t at = line.find(name);
+    if (at == std::string::npos) return std::string();
+    const std::size_t begin = at + name.size();
+    return line.substr(begin, line.find('"', begin) - begin);
+  };
+  std::map<std::string, std::uint64_t> out;
+  std::ifstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t reason = line.find(" reason=");
+    const std::size_t open = line.find('(', reason);
+    if (reason == std::string::npos || open == std::string::npos) continue;
+    const std::string text = quoted(line, " text=\""), error = quoted(line, " error=\"");
+    ++out[alike(line.substr(open + 1, line.find(')', open) - open - 1) + ": " +
+                (text.empty() ? error : text))];
+  }
+  return out;
+}
+
+class AttackRun {
+ public:
+  AttackRun(Lab& lab, LabLink& link, const Attack& attack) : lab_(lab), link_(link), attack_(attack) {}
+
+  Result<AttackResult, std::string> run() {
+    // A peer that says nothing is sent away within the attack, not a minute after it.
+    constexpr const char* kIdleSeconds = "5";
+    auto server = lab_.start_server(link_, lab_.fresh("world"),
+                                    {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
+    if (!server) return Unexpected<std::string>{server.error()};
+    server_ = *std::move(server);
+    AttackResult out;
+    out.name = attack_.name;
+    for (const Phase phase : {before, during, after}) {
+      if (const auto done = play(phase, out); !done) return Unexpected<std::string>{done.error()};
+    }
+    if (const auto ended = lab_.stop_server(server_); !ended) return Unexpected<std::string>{ended.error()};
+    out.logged = reasons_in(server_.program->log());
+    return out;
+  }
+
+ private:
+  Done play(Phase phase, AttackResult& out) {
+    const double seconds = lab_.options().attack_seconds;
+    // Bots without a replica verify all that comes.
+    auto crowd =
+        Crowd::join(lab_, link_, server_.address, lab_.options().attack_bots, seconds, {"--replicas", "0"});
+    if (!crowd) return Unexpected<std::string>{crowd.error()};
+    const double cores_before = server_.program->core_seconds();
+    std::optional<RunningAttack> attack;
+    std::optional<JoinProbe> probe;
+    if (phase == during) {
+      attack.emplace(attack_, server_.port, lab_.options().attackers, seconds, lab_.options().seed);
+      probe.emplace(server_.port);
+    }
+    double& resident_mb = out.resident_mb[phase];
+    for (double waited = 0; waited < seconds; waited += kLook) {
+      const double now_mb = static_cast<double>(server_.program->resident_bytes()) / 1e6;
+      resident_mb = phase == during ? std::max(resident_mb, now_mb) : now_mb;
+      if (!pause_for(kLook)) return Unexpected<std::string>{"interrupted"};
+    }
+    out.server_cores[phase] = (server_.program->core_seconds() - cores_before) / seconds;
+    if (phase == during) {
+      out.joins = probe->finish();
+      out.outcome = attack->finish();
+      out.attacker_cores = out.outcome.core_seconds / seconds;
+    }
+    const auto seen = crowd->finish(lab_);
+    if (!seen) return Unexpected<std::string>{seen.error()};
+    out.seen[phase] = *seen;
+    return {};
+  }
+
+  Lab& lab_;
+  LabLink& link_;
+  const Attack& attack_;
+  LabServer server_;
+};
+
+void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
+  const auto add = [&](std::string name, double value) {
+    figures.push_back({"attack", "loopback", "loopback", result.name, std::move(name), value});
+  };
+  for (const Phase phase : {before, during, after}) {
+    const CrowdSight& seen = result.seen[phase];
+    const std::string when = kPhases[phase];
+    add(when + "_p50_ms", seen.p50_ms);
+    add(when + "_p99_ms", seen.p99_ms);
+    add(when + "_max_ms", seen.max_ms);
+    add(when + "_samples", seen.samples);
+    add(when + "_never", seen.never);
+    add(when + "_disconnects", seen.disconnects);
+    add(when + "_violations", seen.violations);
+    add(when + "_server_resident_mb", result.resident_mb[phase]);
+    add(when + "_server_cores", result.server_cores[phase]);
+  }
+  add("joins_tried", result.joins.tried);
+  add("joins_open", result.joins.open);
+  add("joins_slowest_ms", result.joins.slowest_ms);
+  add("attacker_cores", result.attacker_cores);
+  add("attacker_connections", static_cast<double>(result.outcome.connections));
+  add("attacker_sent_mb", static_cast<double>(result.outcome.bytes_sent) / 1e6);
+  add("attacker_received_mb", static_cast<double>(result.outcome.bytes_received) / 1e6);
+  const auto add_reasons = [&](const char* where, const std::map<std::string, std::uint64_t>& reasons) {
+    std::map<std::string, std::uint64_t> sums;  // by reason, without the text behind it
+    for (const auto& [reason, count] : reasons) sums[reason.substr(0, reason.find(':'))] += count;
+    for (const auto& [reason, count] : sums) {
+      add(fmt::format("{} {}", where, reason), static_cast<double>(count));
+    }
+  };
+  add_reasons("told", result.outcome.endings);
+  add_reasons("logged", result.logged);
+}
+
+std::string list_of(const std::map<std::string, std::uint64_t>& reasons) {
+  std::string out;
+  for (const auto& [reason, count] : reasons) {
+    fmt::format_to(std::back_inserter(out), "{}{} × {}", out.empty() ? "" : "; ", count, reason);
+  }
+  return out.empty() ? "–" : out;
+}
+
+void write_rows(const AttackResult& result, std::string& latencies, std::string& answers) {
+  const auto& seen = result.seen;
+  const auto times = [](const CrowdSight& of) {
+    return fmt::format("{}, {}, {}", number_text(of.p50_ms), number_text(of.p99_ms), number_text(of.max_ms));
+  };
+  double samples = 0, never = 0, disconnects = 0, violations = 0;
+  for (const CrowdSight& phase : seen) {
+    samples += phase.samples;
+    never += phase.never;
+    disconnects += phase.disconnects;
+    violations += phase.violations;
+  }
+  fmt::format_to(std::back_inserter(latencies),
+                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, {:.0f}, "
+                 "{:.0f} | {:.2f}, "
+                 "{:.2f} | {:.2f} |\n",
+                 result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples, never,
+                 disconnects, violations, result.joins.open, result.joins.tried,
+                 number_text(result.joins.slowest_ms), result.resident_mb[before], result.resident_mb[during],
+                 result.resident_mb[after], result.server_cores[before], result.server_cores[during],
+                 result.attacker_cores);
+  fmt::format_to(std::back_inserter(answers), "| {} | {} | {}, {} | {} | {} |\n", result.name,
+                 result.outcome.connections,
+                 number_text(static_cast<double>(result.outcome.bytes_sent) / 1e6),
+                 number_text(static_cast<double>(result.outcome.bytes_received) / 1e6),
+                 list_of(result.outcome.endings), list_of(result.logged));
+}
+
+}  // namespace
+
+Done measure_attacks(Lab& lab, LabFindings& findings) {
+  auto link = lab.make_link(test::link_profiles().front());
+  if (!link) return Unexpected<std::string>{link.error()};
+  std::string latencies, answers;
+  for (const Attack& attack : all_attacks()) {
+    const auto& asked = lab.options().attacks;
+    if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end()) continue;
+    const auto result = AttackRun(lab, **link, attack).run();
+    if (!result) return Unexpected<std::string>{fmt::format("attack {}: {}", attack.name, result.error())};
+    add_figures(*result, findings.figures);
+    write_rows(*result, latencies, answers);
+    fmt::print(lab.progress(), "attack {}\n", attack.name);
+    lab.progress().flush();
+  }
+  findings.tables += fmt::format(
+      "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, during and "
+      "after an attack of "
+      "{} clients; a server for each attack. Latency from when an edit was due until each bot that sees it "
+      "had received and "
+      "verified it.\n\n"
+      "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, rules "
+      "broken | newcomers let in, "
+      "slowest ms | server MB before, peak, after | server cores before, during | attackers' cores "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n{}"
+      "\n| attack | connections | MB sent, received | what attackers were told | what the server logged "
+      "|\n|---|---|---|---|---|\n{}",
+      lab.options().attack_bots, kCrowdEditsPerSecond, lab.options().attack_seconds, lab.options().attackers,
+      latencies, answers);
+  findings.tables += "\n";
+  for (const Attack& attack : all_attacks()) {
+    findings.tables += fmt::format("- {}: {}\n", attack.name, attack.what);
+  }
+  return {};
+}
+
+}  // namespace runstone::bench

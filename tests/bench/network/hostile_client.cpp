@@ -1,0 +1,151 @@
+#include "tests/bench/network/hostile_client.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <variant>
+
+#include "protocol/codec/handshake.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
+  sockaddr_in out{};
+  out.sin_family = AF_INET;
+  out.sin_port = htons(port);
+  out.sin_addr.s_addr = htonl(address);
+  return out;
+}
+
+bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINPROGRESS; }
+
+void set_option(int socket, int level, int name, int value) {
+  // A socket without the option still attacks.
+  (void)::setsockopt(socket, level, name, &value, sizeof value);
+}
+
+KeyPair key_of(std::uint64_t identity) {
+  KeySeed seed{};
+  for (std::size_t i = 0; i < sizeof identity; ++i) seed[i] = static_cast<std::uint8_t>(identity >> (8 * i));
+  return key_pair_of(seed);
+}
+
+}  // namespace
+
+HostileClient::HostileClient(std::uint16_t port, std::uint32_t from, int receive_bytes)
+    : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+  if (!socket_) return;
+  if (receive_bytes > 0) set_option(socket_.get(), SOL_SOCKET, SO_RCVBUF, receive_bytes);
+  // Its port counts only together with the server's address, and is free again at once: there are thousands of sockets.
+  set_option(socket_.get(), IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, 1);
+  const linger no_wait{1, 0};
+  (void)::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &no_wait, sizeof no_wait);
+  const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
+  // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
+  if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) return;
+  is_open_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
+             would_block(errno);
+  // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
+}
+
+bool HostileClient::open_session(std::uint64_t identity, int wait_ms) {
+  const KeyPair keys = key_of(identity);
+  Hello hello;
+  hello.key = keys.public_key;
+  hello.instance = identity | 1;
+  hello.name = "mallory";
+  hello.features = kFeatureCommands;
+  queue(hello);
+  bool is_proven = false;
+  const auto end = Clock::now() + std::chrono::milliseconds(wait_ms);
+  while (is_open() && !has_session_ && Clock::now() < end) {
+    flush();
+    wait(1, true);
+    read();
+    if (!came_ || is_proven) continue;
+    is_proven = true;
+    welcome_ = *came_;
+    queue(Proof{sign(keys, client_transcript(hello, welcome_))});
+  }
+  return is_open() && has_session_;
+}
+
+void HostileClient::queue_bytes(ByteView bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+
+void HostileClient::flush() {
+  while (is_open_ && queued() > 0) {
+    const ssize_t count = ::send(socket_.get(), out_.data() + sent_, queued(), MSG_NOSIGNAL);
+    if (count < 0) {
+      if (would_block(errno) || errno == ENOTCONN) return;
+      // What the server said before it closed may still be there.
+      read();
+      is_open_ = false;
+      return;
+    }
+    sent_ += static_cast<std::size_t>(count);
+    bytes_sent_ += static_cast<std::uint64_t>(count);
+  }
+  out_.clear();
+  sent_ = 0;
+}
+
+void HostileClient::read(std::size_t bytes_max) {
+  std::array<std::uint8_t, 16 * 1024> buffer;
+  for (std::size_t got = 0; is_open_ && got < bytes_max;) {
+    const ssize_t count = ::recv(socket_.get(), buffer.data(), std::min(buffer.size(), bytes_max - got), 0);
+    if (count < 0 && (would_block(errno) || errno == ENOTCONN)) return;
+    if (count <= 0) {
+      is_open_ = false;
+      return;
+    }
+    got += static_cast<std::size_t>(count);
+    bytes_received_ += static_cast<std::uint64_t>(count);
+    const auto fed =
+        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(count)),
+                     [this](FrameClass frame_class, ByteView body) { return take(frame_class, body); });
+    if (!fed) is_open_ = false;
+  }
+}
+
+void HostileClient::wait(int wait_ms, bool reads) {
+  pollfd wanted{socket_.get(), 0, 0};
+  if (reads) wanted.events |= POLLIN;
+  if (queued() > 0) wanted.events |= POLLOUT;
+  (void)::poll(&wanted, 1, wait_ms);
+}
+
+void HostileClient::shutdown_send() { ::shutdown(socket_.get(), SHUT_WR); }
+
+std::string HostileClient::ending() const {
+  if (!goodbye_) return is_open_ ? "still connected" : "closed without a word";
+  return std::string(to_string(goodbye_->reason)) + ": " + goodbye_->text;
+}
+
+// Terrain and commits are only counted: to decode them would slow the attack down.
+Result<void> HostileClient::take(FrameClass frame_class, ByteView body) {
+  if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_)) return {};
+  auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
+  if (!message) return Unexpected<Error>{message.error()};
+  if (auto* welcome = std::get_if<Welcome>(&*message)) {
+    chunk_edge_ = welcome->chunk_edge;
+    came_ = std::move(*welcome);
+  } else if (std::holds_alternative<Ready>(*message)) {
+    has_session_ = true;
+  } else if (auto* goodbye = std::get_if<Goodbye>(&*message)) {
+    goodbye_ = std::move(*goodbye);
+  }
+  return {};
+}
+
+}  // namespace runstone::bench

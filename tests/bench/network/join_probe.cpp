@@ -1,0 +1,46 @@
+#include "tests/bench/network/join_probe.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "common/core/hash.hpp"
+#include "tests/bench/network/child.hpp"
+#include "tests/bench/network/hostile_client.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr std::uint32_t kAddress = 0x7F020202;  // 127.2.2.2: nobody else's
+constexpr int kJoinMsMax = 5'000;
+constexpr double kPauseSeconds = 0.1;
+
+}  // namespace
+
+JoinProbe::JoinProbe(std::uint16_t port) : thread_([this, port] { run(port); }) {}
+
+JoinProbe::~JoinProbe() {
+  is_over_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+JoinProbe::Joins JoinProbe::finish() {
+  is_over_ = true;
+  thread_.join();
+  return joins_;
+}
+
+void JoinProbe::run(std::uint16_t port) {
+  for (std::uint64_t who = 0; !is_over_ && !interrupted(); ++who) {
+    const auto began = std::chrono::steady_clock::now();
+    HostileClient newcomer(port, kAddress);
+    ++joins_.tried;
+    if (newcomer.open_session(mix64(~who), kJoinMsMax)) {
+      ++joins_.open;
+      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+      joins_.slowest_ms = std::max(joins_.slowest_ms, took.count());
+    }
+    pause_for(kPauseSeconds);
+  }
+}
+
+}  // namespace runstone::bench

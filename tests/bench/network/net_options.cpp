@@ -1,0 +1,79 @@
+#include "tests/bench/network/net_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <set>
+
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/network/attack.hpp"
+
+namespace runstone::bench {
+
+CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
+  CLI::App* net = app.add_subcommand("net",
+                                     "the network lab: edits, joins, transfers and crowds over links with "
+                                     "delay, jitter, rate and loss, and memory");
+  std::set<std::string> profiles;
+  for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
+  net->add_option("--experiments", options.experiments, "which; all by default")
+      ->delimiter(',')
+      ->check(
+          CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack", "memory"}));
+  net->add_option("--profiles", options.profiles, "links; all by default")
+      ->delimiter(',')
+      ->check(CLI::IsMember(profiles));
+  net->add_option("--link", options.link, "what makes them; auto: namespaces where that is allowed")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::set<std::string>{"auto", "namespaces", "shaper"}));
+  net->add_option("--worlds", options.worlds, "worlds to transfer; all by default")
+      ->delimiter(',')
+      ->check(CLI::IsMember(measured_world_names()));
+  net->add_option("--luanti", options.luanti, "folder of a Luanti world")
+      ->capture_default_str()
+      ->check(CLI::ExistingDirectory);
+  net->add_option("--edits", options.edits, "edits of each of the two clients of a latency case, 50 a second")
+      ->capture_default_str()
+      ->check(CLI::Range(10, 1'000'000));
+  net->add_option("--min-runs", options.repetitions, "joins and transfers of each sort")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  net->add_option("--clients", options.clients, "sizes of crowds")
+      ->capture_default_str()
+      ->delimiter(',')
+      ->check(CLI::Range(1, 10'000));
+  net->add_option("--crowd-seconds", options.crowd_seconds, "for which a crowd edits")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 3600.0));
+  std::set<std::string> attacks;
+  for (const Attack& attack : all_attacks()) attacks.emplace(attack.name);
+  net->add_option("--attacks", options.attacks, "which; all by default")
+      ->delimiter(',')
+      ->check(CLI::IsMember(attacks));
+  net->add_option("--attack-seconds", options.attack_seconds, "of each attack, and before and after it")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 600.0));
+  net->add_option("--attackers", options.attackers, "hostile clients, or threads that make many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 200));
+  net->add_option("--seed", options.seed, "draws losses, jitter, places of edits and what attackers do")
+      ->capture_default_str();
+  net->add_option("--csv", options.csv, "write all figures to this file");
+  net->add_option("--json", options.json, "write all figures and bars to this file");
+  net->add_flag("--quick", options.quick,
+                "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, attacks of 2, unless "
+                "said otherwise");
+  return net;
+}
+
+void finish_net_options(const CLI::App& command, NetOptions& options) {
+  if (!options.quick) return;
+  if (command.count("--edits") == 0) options.edits = 100;
+  if (command.count("--min-runs") == 0) options.repetitions = 1;
+  if (command.count("--clients") == 0) options.clients = {1, 20};
+  if (command.count("--crowd-seconds") == 0) options.crowd_seconds = 3;
+  if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
+}
+
+}  // namespace runstone::bench

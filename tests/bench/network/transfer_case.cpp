@@ -1,0 +1,325 @@
+#include "tests/bench/network/transfer_case.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <array>
+#include <asio/buffer.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/write.hpp>
+#include <iterator>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "common/generate/scenarios/scenario_model.hpp"
+#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/network/picture.hpp"
+#include "tests/bench/harness/statistics.hpp"
+#include "tests/support/scenario_scene.hpp"
+
+namespace runstone::bench {
+namespace {
+
+using asio::ip::tcp;
+
+constexpr unsigned kEdge = 32;
+constexpr std::int32_t kSide = 4;        // chunks of a world's scene along each axis
+constexpr double kSecondsPerCell = 3;    // repetitions end when they took so long
+constexpr double kWinningMargin = 1.02;  // less is a draw
+
+/// Median times of one scene, form and link; ms.
+struct Cell {
+  std::string profile, link, scene;
+  Transfer transfer = Transfer::dense;
+  std::size_t bytes = 0, chunks = 0, quads = 0;
+  unsigned repetitions = 0;
+  double transfer_ms = 0, unpack_ms = 0, mesh_ms = 0, complete_ms = 0;
+};
+
+PictureScene scenario_of(unsigned number) {
+  PictureScene out;
+  out.name = fmt::format("scenario {}", number);
+  out.edge = kEdge;
+  out.visibility = std::make_shared<const VisibilityTable>(test::scenario_visibility());
+  const auto world = test::scenario_generator(number, kEdge);
+  for (std::int32_t x = -1; x <= 1; ++x) {
+    for (std::int32_t y = -1; y <= 1; ++y) {
+      for (std::int32_t z = -1; z <= 1; ++z) {
+        out.chunks[{x, y, z}] = test::scenario_scene(*world, {x, y, z}, kEdge, true).chunk;
+      }
+    }
+  }
+  return out;
+}
+
+/// The chunks around the origin, or in the middle of a world with bounds.
+PictureScene scene_of(const VoxelWorld& world) {
+  PictureScene out;
+  out.name = world.name;
+  out.edge = kEdge;
+  out.visibility = world.visibility;
+  VoxelPos middle{};
+  if (world.bounds) {
+    const VoxelBox& box = *world.bounds;
+    middle = {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2};
+  }
+  const ChunkCoord at = chunk_of(middle, kEdge);
+  for (std::int32_t x = at.x - kSide / 2; x < at.x + kSide / 2; ++x) {
+    for (std::int32_t y = at.y - kSide / 2; y < at.y + kSide / 2; ++y) {
+      for (std::int32_t z = at.z - kSide / 2; z < at.z + kSide / 2; ++z) {
+        out.chunks[{x, y, z}] = chunk_of_world(world, origin_of({x, y, z}, kEdge), kEdge);
+      }
+    }
+  }
+  return out;
+}
+
+/// Where a sender of ours listens, and by which port the receiver finds it.
+struct Source {
+  asio::io_context io;
+  std::optional<tcp::acceptor> acceptor;
+  std::uint16_t entrance = 0;
+};
+
+Done listen(LabLink& link, Source& source) {
+  link.server_side().run([&] {
+    source.acceptor.emplace(source.io, tcp::endpoint(asio::ip::make_address(link.server_address()), 0));
+  });
+  const auto port = link.entrance(source.acceptor->local_endpoint().port());
+  if (!port) return Unexpected<std::string>{port.error()};
+  source.entrance = *port;
+  return {};
+}
+
+/// Waits for a connection and for a byte on it, and sends all.
+void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
+  asio::error_code error;
+  tcp::socket socket = acceptor.accept(error);
+  if (error) return;
+  socket.set_option(tcp::no_delay(true), error);
+  std::uint8_t asked = 0;
+  socket.read_some(asio::buffer(&asked, 1), error);
+  if (!error) asio::write(socket, asio::buffer(bytes), error);
+  if (!error)
+    socket.read_some(asio::buffer(&asked, 1), error);  // until the receiver has all of it, and closes
+}
+
+struct Received {
+  double transfer_ms = 0, complete_ms = 0;  // last byte read, last chunk meshed, since it was asked for
+  PictureTimes times;
+};
+
+Result<Received, std::string> receive_once(LabLink& link, Source& source, const PictureScene& scene,
+                                           Transfer transfer, const Bytes& bytes) {
+  asio::error_code error;
+  tcp::socket socket(source.io);
+  link.client_side().run([&] { socket.open(tcp::v4(), error); });
+  if (!error) socket.connect({asio::ip::make_address(link.server_address()), source.entrance}, error);
+  if (!error) socket.set_option(tcp::no_delay(true), error);
+  if (error) return Unexpected<std::string>{"cannot connect: " + error.message()};
+  std::thread sender([&] { serve_once(*source.acceptor, bytes); });
+  PictureReceiver receiver(scene, transfer);
+  Received out;
+  Done fed;
+  const std::uint64_t start = now_ns();
+  const auto since_ms = [start] { return static_cast<double>(now_ns() - start) / 1e6; };
+  asio::write(socket, asio::buffer("?", 1), error);
+  std::array<std::uint8_t, 65536> buffer;
+  for (std::size_t left = bytes.size(); left != 0 && !error && fed;) {
+    const std::size_t got = socket.read_some(asio::buffer(buffer), error);
+    left -= got;
+    if (left == 0) out.transfer_ms = since_ms();
+    fed = receiver.feed(ByteView(buffer.data(), got));
+  }
+  out.complete_ms = since_ms();
+  out.times = receiver.times();
+  asio::error_code ignored;
+  socket.close(ignored);
+  sender.join();
+  if (error) return Unexpected<std::string>{"a transfer broke off: " + error.message()};
+  if (!fed) return Unexpected<std::string>{fed.error()};
+  if (!receiver.complete()) return Unexpected<std::string>{scene.name + " did not become a whole picture"};
+  return out;
+}
+
+/// One scene in one form through one link, until there are enough repetitions or they took long enough.
+Result<Cell, std::string> measure_cell(Lab& lab, LabLink& link, const PictureScene& scene, Transfer transfer,
+                                       std::uint64_t& faces) {
+  const Bytes bytes = encode_picture(scene, transfer);
+  Source source;
+  if (const auto listens = listen(link, source); !listens) return Unexpected<std::string>{listens.error()};
+  std::array<std::vector<double>, 4> samples;
+  Cell out;
+  const std::uint64_t start = now_ns();
+  while (out.repetitions < lab.options().repetitions &&
+         (out.repetitions == 0 || static_cast<double>(now_ns() - start) < kSecondsPerCell * 1e9)) {
+    const auto once = receive_once(link, source, scene, transfer, bytes);
+    if (!once) return Unexpected<std::string>{once.error()};
+    if (interrupted()) return Unexpected<std::string>{"interrupted"};
+    if (faces == 0) faces = once->times.faces;
+    if (once->times.faces != faces) {
+      return Unexpected<std::string>{
+          fmt::format("{} as {} is another picture", scene.name, name_of(transfer))};
+    }
+    ++out.repetitions;
+    out.quads = once->times.quads;
+    samples[0].push_back(once->transfer_ms);
+    samples[1].push_back(static_cast<double>(once->times.unpack_ns) / 1e6);
+    samples[2].push_back(static_cast<double>(once->times.mesh_ns) / 1e6);
+    samples[3].push_back(once->complete_ms);
+  }
+  out.scene = scene.name;
+  out.transfer = transfer;
+  out.bytes = bytes.size();
+  out.chunks = scene.chunks.size();
+  out.transfer_ms = median(samples[0]);
+  out.unpack_ms = median(samples[1]);
+  out.mesh_ms = median(samples[2]);
+  out.complete_ms = median(samples[3]);
+  return out;
+}
+
+Result<std::vector<PictureScene>, std::string> scenes_of(const NetOptions& options) {
+  std::vector<PictureScene> out;
+  const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
+  if (!worlds) return Unexpected<std::string>{worlds.error()};
+  for (std::size_t w = 0; w < worlds->size(); ++w) {
+    if (const VoxelWorld* world = worlds->voxels(w)) {
+      out.push_back(scene_of(*world));
+      continue;
+    }
+    constexpr unsigned kQuickStep = 6;  // every sixth
+    for (unsigned number = 1; number <= kScenarioCount; number += options.quick ? kQuickStep : 1) {
+      out.push_back(scenario_of(number));
+    }
+  }
+  return out;
+}
+
+/// The four forms of one scene over one link.
+using Four = std::array<const Cell*, kTransfers.size()>;
+
+const Cell& of(const Four& four, Transfer transfer) { return *four[static_cast<std::size_t>(transfer)]; }
+bool is_scenario(const Four& four) { return four[0]->scene.starts_with("scenario"); }
+double ratio(const Four& four, Transfer against) {
+  return of(four, against).complete_ms / of(four, Transfer::packed).complete_ms;
+}
+
+std::string millis(const std::vector<Four>& rows, Transfer transfer, double Cell::* time) {
+  std::vector<double> samples;
+  for (const Four& four : rows) samples.push_back(of(four, transfer).*time);
+  return number_text(median(samples));
+}
+
+/// A row a link, world and form; of the scenarios medians.
+void write_rows(const std::vector<Four>& all, std::string& out) {
+  const auto into = std::back_inserter(out);
+  fmt::format_to(
+      into,
+      "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture complete ms | packed + RDM "
+      "is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < all.size();) {
+    std::vector<Four> rows = {all[i++]};
+    while (is_scenario(rows[0]) && i < all.size() && is_scenario(all[i]) &&
+           all[i][0]->profile == rows[0][0]->profile) {
+      rows.push_back(all[i++]);
+    }
+    for (const Transfer transfer : kTransfers) {
+      std::vector<double> kb, faster;
+      for (const Four& four : rows) {
+        kb.push_back(static_cast<double>(of(four, transfer).bytes) / 1000);
+        faster.push_back(ratio(four, transfer));
+      }
+      const Cell& first = *rows[0][0];
+      fmt::format_to(into, "| {} ({}) | {} | {} | {} | {} | {} | {} | {} | {:.2f}x |\n", first.profile,
+                     first.link, rows.size() == 1 ? first.scene : fmt::format("{} scenarios", rows.size()),
+                     name_of(transfer), number_text(median(kb)), millis(rows, transfer, &Cell::transfer_ms),
+                     millis(rows, transfer, &Cell::unpack_ms), millis(rows, transfer, &Cell::mesh_ms),
+                     millis(rows, transfer, &Cell::complete_ms), geometric_mean(faster));
+    }
+  }
+}
+
+/// When packed runs with RDM have the picture first, by how much, and when not.
+void write_answer(const std::vector<Four>& all, std::string& out) {
+  const auto into = std::back_inserter(out);
+  fmt::format_to(
+      into,
+      "\nTime to the complete picture against packed runs and RDM, all scenes alike (geometric mean; lowest, "
+      "highest; how often packed is first, draws within 2 % apart):\n\n| link | dense | dense_zstd | raw "
+      "|\n|---|---|---|---|\n");
+  for (std::size_t i = 0; i < all.size();) {
+    const std::string& profile = all[i][0]->profile;
+    std::vector<Four> rows;
+    for (; i < all.size() && all[i][0]->profile == profile; ++i) rows.push_back(all[i]);
+    fmt::format_to(into, "| {} |", profile);
+    for (const Transfer against : {Transfer::dense, Transfer::dense_zstd, Transfer::raw}) {
+      std::vector<double> ratios;
+      for (const Four& four : rows) ratios.push_back(ratio(four, against));
+      const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
+      const auto wins =
+          std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > kWinningMargin; });
+      const auto losses =
+          std::count_if(ratios.begin(), ratios.end(), [](double r) { return r < 1 / kWinningMargin; });
+      fmt::format_to(into, " {:.2f}x; {:.2f} to {:.2f}; first in {} of {}, last in {} |",
+                     geometric_mean(ratios), *low, *high, wins, ratios.size(), losses);
+    }
+    fmt::format_to(into, "\n");
+  }
+}
+
+void add_figures(const Cell& cell, std::vector<Figure>& figures) {
+  const auto add = [&](const char* name, double value) {
+    figures.push_back({"transfer", cell.profile, cell.link,
+                       fmt::format("{} {}", cell.scene, name_of(cell.transfer)), name, value});
+  };
+  add("chunks", static_cast<double>(cell.chunks));
+  add("bytes", static_cast<double>(cell.bytes));
+  add("quads", static_cast<double>(cell.quads));
+  add("repetitions", cell.repetitions);
+  add("transfer_ms", cell.transfer_ms);
+  add("unpack_ms", cell.unpack_ms);
+  add("mesh_ms", cell.mesh_ms);
+  add("complete_ms", cell.complete_ms);
+}
+
+}  // namespace
+
+Done measure_transfers(Lab& lab, LabFindings& findings) {
+  const auto scenes = scenes_of(lab.options());
+  if (!scenes) return Unexpected<std::string>{scenes.error()};
+  std::vector<std::array<Cell, kTransfers.size()>> cells;
+  for (const test::LinkProfile& profile : lab.profiles()) {
+    for (const PictureScene& scene : *scenes) {
+      auto link = lab.make_link(profile);
+      if (!link) return Unexpected<std::string>{link.error()};
+      auto& row = cells.emplace_back();
+      std::uint64_t faces = 0;
+      for (const Transfer transfer : kTransfers) {
+        auto cell = measure_cell(lab, **link, scene, transfer, faces);
+        if (!cell)
+          return Unexpected<std::string>{fmt::format("transfer, {}: {}", profile.name, cell.error())};
+        cell->profile = profile.name;
+        cell->link = name_of((*link)->kind());
+        add_figures(*cell, findings.figures);
+        row[static_cast<std::size_t>(transfer)] = *std::move(cell);
+      }
+    }
+    fmt::print(lab.progress(), "transfer {}\n", profile.name);
+    lab.progress().flush();
+  }
+  std::vector<Four> all;
+  for (const auto& row : cells) all.push_back({&row[0], &row[1], &row[2], &row[3]});
+  findings.tables += fmt::format(
+      "\n### Transfers\n\nMedians of up to {} repetitions. Dense forms are meshed by binary greedy "
+      "meshing, runs by RDM.\n\n",
+      lab.options().repetitions);
+  write_rows(all, findings.tables);
+  write_answer(all, findings.tables);
+  return {};
+}
+
+}  // namespace runstone::bench

@@ -1,0 +1,50 @@
+// TunLink: two network namespaces joined by a link of ours: what leaves one through its TUN device passes a LinkModel
+// and enters the other when it is due. Every TCP connection has an access link of its own, both ways, as clients in
+// different homes do: connections share no queue. Loss and drops hit real packets, and real TCP answers them.
+// Nothing of it has a name, and nothing outlives the process (Place). Needs CAP_NET_ADMIN and /dev/net/tun.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/core/result.hpp"
+#include "tests/bench/network/place.hpp"
+#include "tests/support/link_model.hpp"
+
+namespace runstone::bench {
+
+struct TunCounts {
+  test::LinkCounts to_client, to_server;
+  std::uint64_t refused = 0;  // packets that the kernel did not take
+  double late_us_p99 = 0;     // by how much packets were handed over after they were due
+  double late_us_max = 0;
+  double busy = 0;         // share of a core that the forwarder used
+  bool real_time = false;  // it ran ahead of all ordinary threads
+};
+
+class TunLink {
+ public:
+  static constexpr const char* kServerAddress = "10.77.0.1";
+  static constexpr const char* kClientAddress = "10.77.0.2";
+  static constexpr int kMtu = 1500;  // bytes, as everywhere on the internet
+
+  /// The error says what failed.
+  static Result<std::unique_ptr<TunLink>, std::string> make(const test::LinkProfile& profile,
+                                                            std::uint64_t seed);
+  ~TunLink();
+  TunLink(const TunLink&) = delete;
+  TunLink& operator=(const TunLink&) = delete;
+
+  Place& server_side();
+  Place& client_side();
+  /// Ends the forwarding and says what passed. Later calls say the same.
+  TunCounts stop();
+
+ private:
+  struct Forwarder;
+  explicit TunLink(std::unique_ptr<Forwarder> forwarder);
+  std::unique_ptr<Forwarder> forwarder_;
+};
+
+}  // namespace runstone::bench

@@ -1,0 +1,42 @@
+// `runstone-bench bytes`: what the same voxels cost in each form to send: bytes, and time in both directions.
+#pragma once
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "common/core/result.hpp"
+#include "tests/bench/harness/bar.hpp"
+#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/machine.hpp"
+
+namespace runstone::bench {
+
+/// Means over chunks of edge 32. A chunk's time is its median over the repetitions.
+struct BytesRow {
+  std::string world, form;
+  bool mixed = false;  // only the chunks of more than one material
+  std::size_t chunks = 0;
+  double bytes = 0;
+  double of_luanti = 0;       // ratio of sums against luanti_light
+  double of_luanti_mean = 0;  // geometric mean of the chunks' ratios
+  double of_minecraft = 0;    // ratio of sums
+  double encode_us = 0, decode_us = 0;
+};
+
+struct BytesBench {
+  Machine machine;
+  unsigned repetitions = 0;
+  std::vector<BytesRow> rows;
+  std::vector<Bar> bars;
+};
+
+/// Every form is decoded once for each chunk and held to its voxels and light: a difference ends the program.
+/// Single-threaded. Fails if the Luanti world is asked for and cannot be read.
+Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options, std::ostream& progress);
+
+void write_table(const BytesBench& bench, std::ostream& out);
+void write_csv(const BytesBench& bench, std::ostream& out);
+void write_json(const BytesBench& bench, std::ostream& out);
+
+}  // namespace runstone::bench

@@ -1,0 +1,32 @@
+// Seeded worlds: the landscapes and the adversaries that meshers are measured on, as formulas over columns.
+// Endless, with the ground near y = 0. Same voxels on every machine: fixed hashes and + - * only.
+//   hills         a height map in grass, dirt and stone
+//   hills_plain   the same height map in stone alone
+//   terrain       a rougher height map, with sand and water below y = 0
+//   overhangs     3-D noise that thins out upwards: cliffs, arches, floating rock, in three materials
+//   caves         winding tunnels in rock with pockets of ore
+//   town          streets, houses with windows and roofs, gardens and trees (town.hpp)
+//   noise         half of all voxels, at random
+//   noise_mixed   the same in five materials, two of them transparent
+//   sparse        one voxel in twenty
+//   checkerboard  every other voxel
+//   uniform       stone everywhere;  empty  nothing anywhere
+#pragma once
+#include <vector>
+
+#include "common/materials/material_table.hpp"
+#include "tests/bench/worlds/voxel_world.hpp"
+
+namespace runstone::bench {
+
+/// Materials of seeded worlds.
+enum class Block : Material { air, stone, dirt, grass, sand, water, glass, wood, brick, leaves, ore, tiles };
+constexpr Material id_of(Block block) { return static_cast<Material>(block); }
+
+/// Water and glass are transparent, the rest is opaque.
+const MaterialTable& seeded_materials();
+
+/// All of them, in the order above.
+std::vector<VoxelWorld> seeded_worlds();
+
+}  // namespace runstone::bench

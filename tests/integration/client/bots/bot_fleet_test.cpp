@@ -1,0 +1,166 @@
+// Fleets of bots against a real server on loopback.
+#include "client/fleet/bot_fleet.hpp"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <thread>
+
+#include "tests/integration/server/app/server_bench.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+volatile std::sig_atomic_t never = 0;
+
+/// A flat world, open to crowds, as long as it is in scope.
+struct FlatServer {
+  TempFolder folder;
+  std::unique_ptr<Server> server = [&] {
+    ServerConfig config = quiet_config(folder.path());
+    config.handshakes_per_address = 1'000;
+    return start_server(config, flat_creation());
+  }();
+};
+
+BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
+  BotOptions options;
+  options.port = server.port();
+  options.count = options.sites = count;
+  options.roles = {role};
+  options.rate = 200;
+  options.edits = 100;
+  options.seconds = 60;
+  options.view_radius = options.view_radius_v = 3;  // chunks of edge 16
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing", "[bots]") {
+  const FlatServer flat;
+  const FleetReport report = BotFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
+  INFO(report.failure);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.due == 500);
+  CHECK(report.counts.submitted == 500);
+  CHECK(report.counts.confirmed == 500);
+  CHECK(report.counts.durable == 500);
+  CHECK(report.counts.rejected == 0);
+  CHECK(report.traffic.sent[kind_of(*encode_message(Ping{1}).bytes)].messages >= 5);
+  CHECK(of_class(report.traffic.sent, FrameClass::edits).messages == 500);
+  for (const auto& [way, bytes] : {std::pair(report.traffic.received, report.bytes_received),
+                                   std::pair(report.traffic.sent, report.bytes_sent)}) {
+    std::uint64_t sum = 0;
+    for (const KindTraffic& kind : way) sum += kind.bytes + kind.frames * kFrameHeaderBytes;
+    CHECK(sum <= bytes + 64 * 1024);  // read or written, but not counted yet
+    CHECK(bytes <= sum + 64 * 1024);  // a message under way
+  }
+  CHECK(report.standing.held > 400);
+  CHECK(report.standing.intact == report.standing.held);
+  CHECK(report.drifted == 0);
+  CHECK(flat.server->stop().digests.seq == 500);
+}
+
+TEST_CASE("edits that are due soon after the start are made when they are due, not with the next ping",
+          "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 4);
+  options.replicas = 0;   // those with one are stepped more often
+  options.join_rate = 8;  // so that the first ones have nothing to do any more but to ping
+  options.rate = 4;
+  options.seconds = 0.4;  // the first ones are due within the first quarter of a second
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.due >= 4);
+}
+
+TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
+  const FlatServer flat;
+  for (const BotRole role : {BotRole::brush, BotRole::grief}) {
+    const FleetReport report = BotFleet(options_for(*flat.server, role, 2)).run(never);
+    CHECK(report.failure.empty());
+    CHECK(report.counts.confirmed > 50);
+    CHECK(report.counts.confirmed == report.counts.submitted);
+  }
+  BotOptions options = options_for(*flat.server, BotRole::walk, 2);
+  options.seconds = 0.3;
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.empty());
+  CHECK(report.counts.submitted == 0);
+  CHECK(report.counts.not_ready > 0);
+}
+
+TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 1);
+  flat.server->stop();
+  options.load_seconds = 0.5;
+  const FleetReport report = BotFleet(options).run(never);
+  CHECK(report.failure.find("bot does not see the world around it: cannot connect") == 0);
+  CHECK(report.counts.due == 0);
+}
+
+TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 2);
+  options.edits.reset();
+  static volatile std::sig_atomic_t stop = 0;
+  std::thread stopper([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    stop = 1;
+  });
+  const FleetReport report = BotFleet(options).run(stop);
+  stopper.join();
+  CHECK(report.failure.empty());
+  CHECK(report.counts.submitted > 20);
+  CHECK(report.counts.durable == report.counts.submitted);
+  CHECK(report.seconds < 30);
+  CHECK(report.counts.rejected == 0);
+}
+
+TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]") {
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::build, 50);
+  options.sites = 1;
+  options.replicas = 5;
+  options.join_rate = 500;
+  options.rate = 10;
+  options.edits = 10;
+  const FleetReport report = BotFleet(options).run(never);
+  INFO(to_table(report));
+  CHECK(report.failure.empty());
+  CHECK(report.is_sound());
+  CHECK(report.replicas == 5);
+  CHECK(report.counts.confirmed == 500);
+  CHECK(report.counts.durable == 500);
+  CHECK(report.counts.own_us.count() == 500);
+  // 45 without a replica get each edit once, its author included.
+  CHECK(report.commit_edits == 45 * 500);
+  CHECK(report.seen_us.count() >= 45 * 500);
+  CHECK(report.seen_us.infinite() == 0);
+  CHECK(report.unattributed == 0);
+  CHECK(report.versions.followed > 0);
+  CHECK(report.versions.snapshots > 45);
+  CHECK(report.losses.empty());
+  CHECK(report.counts.joins == 50);
+}
+
+TEST_CASE("a join storm comes and goes, and runners see the world go by", "[bots]") {
+  const FlatServer flat;
+  BotOptions options = options_for(*flat.server, BotRole::join_storm, 8);
+  options.roles = {BotRole::join_storm, BotRole::run_away};
+  options.replicas = 2;
+  options.edits = 5;
+  options.rate = 20;
+  options.view_radius = options.view_radius_v = 1;
+  const FleetReport report = BotFleet(options).run(never);
+  INFO(to_table(report));
+  CHECK(report.failure.empty());
+  CHECK(report.is_sound());
+  CHECK(report.losses.empty());
+  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last return may be under way
+  CHECK(report.counts.submitted == 0);
+}

@@ -1,0 +1,155 @@
+// A recorded log, played on a live server on loopback.
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <thread>
+
+#include "client/fleet/bot_fleet.hpp"
+#include "client/fleet/play_fleet.hpp"
+#include "client/fleet/recorded_file.hpp"
+#include "server/replay/rlog_file.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+volatile std::sig_atomic_t never = 0;
+
+/// A world that three builders have worked on, each on a site of its own. Its digest.
+Digest build_world(const std::string& folder) {
+  auto server = start_server(quiet_config(folder), flat_creation());
+  BotOptions options;
+  options.port = server->port();
+  options.count = options.sites = 3;
+  options.rate = 300;
+  options.edits = 150;
+  options.seconds = 60;
+  options.view_radius = options.view_radius_v = 3;
+  const FleetReport report = BotFleet(options).run(never);
+  REQUIRE(report.counts.confirmed == 450);
+  const StopReport stopped = server->stop();
+  REQUIRE(stopped.is_clean);
+  return stopped.world_digest;
+}
+
+std::string exported(const std::string& folder, const std::string& file) {
+  auto store = open_world(folder, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  REQUIRE(export_rlog(**store, file, kSequenceMax).has_value());
+  return file;
+}
+
+PlayReport play(std::uint16_t port, const RecordedLog& log, double speed, double patience = 60) {
+  BotOptions options;
+  options.port = port;
+  options.play = "log";
+  options.speed = speed;
+  options.load_seconds = patience;
+  return PlayFleet(options, log).run(never);
+}
+
+}  // namespace
+
+TEST_CASE("a log played on a fresh server of the same generator gives the same world", "[bots][play]") {
+  const TempFolder recorded;
+  const Digest digest = build_world(recorded.path());
+  const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
+  REQUIRE(log.has_value());
+  REQUIRE(log->authors.size() == 3);
+  for (const double speed : {1.0, 0.0}) {
+    const TempFolder live;
+    auto server = start_server(quiet_config(live.path()), flat_creation());
+    const PlayReport report = play(server->port(), *log, speed);
+    INFO(to_table(report) << report.failure);
+    CHECK(report.is_complete());
+    CHECK(report.counts.due == 450);
+    CHECK(report.counts.submitted == 450);
+    CHECK(report.counts.own_us.count() == 450);
+    const StopReport stopped = server->stop();
+    CHECK(stopped.world_digest == digest);
+    CHECK(stopped.digests.seq == 450);
+  }
+}
+
+TEST_CASE("what a rate limit pushes back is offered again until all of it stands", "[bots][play]") {
+  const TempFolder recorded, live;
+  build_world(recorded.path());
+  const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
+  REQUIRE(log.has_value());
+  ServerConfig config = quiet_config(live.path());
+  config.edits_per_second = 200;
+  config.edit_burst = 50;
+  auto server = start_server(config, flat_creation());
+  const PlayReport report = play(server->port(), *log, 0);
+  INFO(to_table(report) << report.failure);
+  CHECK(report.is_complete());
+  CHECK(report.counts.again > 0);
+  CHECK(report.counts.submitted == 450 + report.counts.again);
+  CHECK(server->stop().digests.seq == 450);
+}
+
+TEST_CASE("a play that the world refuses in part is not complete, and says why", "[bots][play]") {
+  const TempFolder recorded, live;
+  build_world(recorded.path());
+  const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
+  REQUIRE(log.has_value());
+  ServerConfig config = quiet_config(live.path());
+  config.reach_max = 30;  // the sites lie around the spawn; most of them farther away
+  auto server = start_server(config, flat_creation());
+  const PlayReport report = play(server->port(), *log, 0);
+  CHECK(report.failure.empty());
+  CHECK_FALSE(report.is_complete());
+  CHECK(report.counts.rejected.at("out_of_reach") + report.counts.confirmed == 450);
+}
+
+TEST_CASE("a world with other materials gets no edit", "[bots][play]") {
+  const TempFolder recorded, live;
+  build_world(recorded.path());
+  auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
+  REQUIRE(log.has_value());
+  MaterialTable other;
+  for (const MaterialInfo& row : log->materials.rows().subspan(1)) {
+    MaterialInfo renamed = row;
+    renamed.name += " of old";
+    REQUIRE(other.add(renamed).has_value());
+  }
+  log->materials = other;
+  auto server = start_server(quiet_config(live.path()), flat_creation());
+  const PlayReport report = play(server->port(), *log, 0);
+  CHECK_FALSE(report.started);
+  CHECK(report.failure.find("log: material ") == 0);
+  CHECK(server->stop().digests.seq == 0);
+}
+
+TEST_CASE("a play that finds no server, or loses it, says so and ends", "[bots][play]") {
+  const TempFolder recorded, live;
+  build_world(recorded.path());
+  const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
+  REQUIRE(log.has_value());
+  auto server = start_server(quiet_config(live.path()), flat_creation());
+  const std::uint16_t port = server->port();
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    server->stop();
+  });
+  const PlayReport lost = play(port, *log, 0.01, 2);
+  stopper.join();
+  CHECK(lost.started);
+  CHECK_FALSE(lost.is_complete());
+  CHECK(lost.failure.find(" has no connection: ") != std::string::npos);
+  const PlayReport none = play(port, *log, 1, 0.3);
+  CHECK_FALSE(none.started);
+  CHECK(none.failure.find("cannot connect") != std::string::npos);
+}
+
+TEST_CASE("a file that is missing is named", "[bots][play]") {
+  const auto log = read_recorded_file("/nowhere/at-all.rlog");
+  REQUIRE_FALSE(log.has_value());
+  CHECK(log.error().find("/nowhere/at-all.rlog: cannot be read: ") == 0);
+  const TempFolder folder;
+  const auto no_file = read_recorded_file(folder.path());
+  REQUIRE_FALSE(no_file.has_value());
+  CHECK(no_file.error().find(folder.path() + ": ") == 0);
+  CHECK(no_file.error().find("cannot be read") != std::string::npos);
+}

@@ -1,0 +1,195 @@
+// The client as people meet it: a window on an X server, a mouse and a keyboard; the real programs. What is
+// seen is read from the display itself, what happened from another client's commits.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+#include "tests/integration/client/window/child_process.hpp"
+#include "tests/integration/client/window/virtual_display.hpp"
+
+namespace runstone {
+namespace {
+
+using test::changed_share;
+using test::ChildProcess;
+using test::find_program;
+using test::flat_creation;
+using test::Grab;
+using test::quiet_config;
+using test::RawClient;
+using test::start_server;
+using test::TempFolder;
+using test::VirtualDisplay;
+using test::wait_for;
+
+constexpr int kWidth = 480, kHeight = 360;
+constexpr double kChanged = 0.5;  // of the middle; a picked voxel's outline and the cross hair are less
+constexpr std::chrono::seconds kLong{60};  // for a step on a machine that has much else to do
+
+/// Programs the test cannot do without and this machine lacks.
+std::string missing_programs() {
+  std::string missing;
+  for (const char* program : {"Xvfb", "xdotool"}) {
+    if (!find_program(program)) missing += std::string(" ") + program;
+  }
+  return missing;
+}
+
+/// The middle of a window of this size at the corner of the display: less than the voxel that is aimed at.
+Grab centre(const VirtualDisplay& display, int width, int height) {
+  return display.grab(width / 2 - 20, height / 2 - 14, 40, 28);
+}
+
+/// The middle once it has stopped changing.
+Grab settled_centre(const VirtualDisplay& display, int width = kWidth, int height = kHeight) {
+  Grab last = centre(display, width, height);
+  int same = 0;
+  REQUIRE(wait_for(kLong, [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    Grab now = centre(display, width, height);
+    same = now == last ? same + 1 : 0;
+    last = std::move(now);
+    return same >= 3;
+  }));
+  return last;
+}
+
+bool shows_ground(const Grab& grab) {
+  const auto mean = grab.mean();
+  return mean[0] + mean[1] + mean[2] > 60 && mean[1] > mean[2] + 10;  // grass: neither black nor sky
+}
+
+/// The edit that the server orders next.
+EditDescriptor next_edit(RawClient& watcher) {
+  std::optional<EditDescriptor> edit;
+  wait_for(kLong, [&] {
+    const auto message = watcher.next(1'000);
+    if (!message) return !watcher.is_open();
+    const auto* const commit = std::get_if<Commit>(&*message);
+    if (commit == nullptr) return false;
+    REQUIRE(commit->edits.size() == 1);
+    edit = commit->edits[0].edit;
+    return true;
+  });
+  REQUIRE(edit.has_value());
+  return *edit;
+}
+
+std::vector<std::string> pictures_in(const std::string& folder) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".png") out.push_back(entry.path().string());
+  }
+  return out;
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a display that goes away ends the client with the code of a missing one", "[integration]") {
+  if (const std::string missing = missing_programs(); !missing.empty()) {
+    WARN("skipped: not installed:" << missing);
+    return;
+  }
+  const TempFolder folder;
+  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
+  VirtualDisplay display(folder / ".", 800, 600);
+  const std::string log = folder / "client.log";
+  ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
+                       "--size", "320x240", "--view", "1", "--no-cache"},
+                      log, display.environment());
+  const bool opened = wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; });
+  INFO(text_of(log));
+  REQUIRE(opened);
+  display.end();
+  const auto code = client.wait(kLong);
+  INFO(text_of(log));
+  REQUIRE(code.has_value());
+  CHECK(*code == 2);
+  CHECK(server->stop().is_clean);
+}
+
+TEST_CASE("in a window a left click digs, a right click places, and it can be resized, pictured and left",
+          "[integration]") {
+  if (const std::string missing = missing_programs(); !missing.empty()) {
+    WARN("skipped: not installed:" << missing);
+    return;
+  }
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  config.idle_s = 3'600;  // the watcher says nothing
+  const auto server = start_server(config, flat_creation());
+  RawClient watcher(server->port());
+  REQUIRE(watcher.join(1).has_value());
+  watcher.send(View{{0, 0, 0}, 2, 2});
+  watcher.send(Move{{{0.5, 60.0, -60.0}, 0, 0}});  // out of the picture
+
+  VirtualDisplay display(folder / ".", 800, 600);
+  const std::string log = folder / "client.log";
+  ChildProcess client(
+      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()), "--name", "hands",
+       "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight), "--view", "2", "--no-cache",
+       "--screenshot-dir", folder / ".", "--report", folder / "report.json"},
+      log, display.environment());
+  const std::vector<std::string> window = {"search", "--onlyvisible", "--name", "^Runstone"};
+  const auto with_window = [&window](std::vector<std::string> words) {
+    words.insert(words.begin(), window.begin(), window.end());
+    return words;
+  };
+  const bool has_window = wait_for(kLong, [&] { return display.hand(window); });
+  INFO(text_of(log));
+  REQUIRE(has_window);
+  REQUIRE(wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; }));
+
+  // The first click takes the mouse; then it looks down at the ground some voxels ahead.
+  REQUIRE(display.hand(with_window({"windowfocus", "mousemove", "240", "180", "click", "1"})));
+  for (int step = 0; step < 4; ++step) REQUIRE(display.hand({"mousemove_relative", "--", "0", "80"}));
+  REQUIRE(wait_for(kLong, [&] { return shows_ground(centre(display, kWidth, kHeight)); }));
+  const Grab before = settled_centre(display);
+
+  REQUIRE(display.hand({"click", "1"}));
+  const EditDescriptor dug = next_edit(watcher);
+  CHECK(dug.material == kEmpty);
+  REQUIRE(std::holds_alternative<SetVoxel>(dug.shape));
+  REQUIRE(
+      wait_for(kLong, [&] { return changed_share(before, centre(display, kWidth, kHeight)) > kChanged; }));
+  const Grab hole = settled_centre(display);
+  CHECK(changed_share(before, hole) > kChanged);
+
+  REQUIRE(display.hand({"click", "3"}));
+  const EditDescriptor placed = next_edit(watcher);
+  CHECK(placed.material == 1);
+  REQUIRE(std::holds_alternative<SetVoxel>(placed.shape));
+  CHECK(std::get<SetVoxel>(placed.shape).at == std::get<SetVoxel>(dug.shape).at);  // back into the hole
+  REQUIRE(wait_for(kLong, [&] { return changed_share(hole, centre(display, kWidth, kHeight)) > kChanged; }));
+
+  // A smaller window shows a smaller picture, filled to its edge, and F2 takes one of that size.
+  REQUIRE(display.hand(with_window({"windowsize", "320", "240"})));
+  REQUIRE(wait_for(kLong, [&] { return shows_ground(display.grab(290, 210, 20, 20)); }));
+  static_cast<void>(settled_centre(display, 320, 240));
+  REQUIRE(display.hand({"key", "F2"}));
+  REQUIRE(wait_for(kLong, [&] {
+    const auto pictures = pictures_in(folder / ".");
+    return !pictures.empty() && text_of(pictures[0]).find("IEND") != std::string::npos;
+  }));
+  const std::string png = text_of(pictures_in(folder / ".")[0]);
+  CHECK(png.substr(16, 8) == std::string("\0\0\1\100\0\0\0\360", 8));  // width and height, big-endian
+
+  REQUIRE(display.hand({"key", "Escape"}));  // frees the mouse
+  REQUIRE(display.hand({"key", "Escape"}));
+  const auto code = client.wait(kLong);
+  INFO(text_of(log));
+  REQUIRE(code.has_value());
+  CHECK(*code == 0);
+  CHECK(text_of(folder / "report.json").find("\"renderer\": \"GLFW\"") != std::string::npos);
+  CHECK(server->stop().is_clean);
+}
+
+}  // namespace runstone

@@ -1,0 +1,136 @@
+// kill -9: what was said to be durable is there, what was not is offered again, and nothing happens twice.
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr ClientSequence kEdits = 4'000;
+constexpr ClientInstance kInstance = 33;
+constexpr int kStartMs = 60'000;
+
+/// Each edit has a voxel of its own in the chunk at the origin, well above and below ground alike.
+VoxelPos place_of(ClientSequence seq) {
+  const auto n = static_cast<std::int32_t>(seq);
+  return {n % 16, n / 16 % 16, n / 256 % 16};
+}
+Material material_of(ClientSequence seq) { return static_cast<Material>(1 + seq % 5); }
+EditRequest edit(ClientSequence seq) { return {seq, 0, {SetVoxel{place_of(seq)}, {}, material_of(seq)}}; }
+
+ServerConfig crash_config(const std::string& world) {
+  ServerConfig config = quiet_config(world);
+  config.edits_per_second = 0;
+  return config;
+}
+
+/// A server in a process of its own, which can be killed. Requires that this one has no second thread yet: a
+/// lock that one holds at the fork stays locked in the child. So the child alone starts to log.
+class ServerProcess {
+ public:
+  explicit ServerProcess(const std::string& world) {
+    int ends[2];
+    REQUIRE(::pipe(ends) == 0);
+    child_ = ::fork();
+    REQUIRE(child_ >= 0);
+    if (child_ == 0) {
+      ::close(ends[0]);
+      auto server = Server::start(crash_config(world), flat_creation());
+      const std::uint16_t port = server ? (*server)->port() : 0;
+      if (::write(ends[1], &port, sizeof port) != sizeof port) ::_exit(1);
+      for (;;) ::pause();
+    }
+    ::close(ends[1]);  // so that the end of the child ends the wait for its port
+    pollfd port_is_known{ends[0], POLLIN, 0};
+    const bool is_told = ::poll(&port_is_known, 1, kStartMs) > 0 &&
+                         ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
+    ::close(ends[0]);
+    if (!is_told || port_ == 0) kill();
+    REQUIRE(is_told);
+    REQUIRE(port_ != 0);
+  }
+  ~ServerProcess() { kill(); }
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  void kill() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+    child_ = -1;
+  }
+
+ private:
+  pid_t child_ = -1;
+  std::uint16_t port_ = 0;
+};
+
+TEST_CASE("after kill -9 the durable edits are there and the others, offered again, happen once",
+          "[integration]") {
+  const TempFolder folder;
+  Sequence durable = 0;
+  {
+    ServerProcess process(folder / "world");
+    RawClient client(process.port());
+    REQUIRE(client.join(1, kInstance).has_value());
+    for (ClientSequence seq = 1; seq <= kEdits; ++seq) client.send(edit(seq));
+    while (durable < 100) {
+      const auto message = client.next_of<Durable>();
+      REQUIRE(message.has_value());
+      durable = message->seq;
+    }
+    process.kill();
+  }
+  const auto server = start_server(crash_config(folder / "world"), flat_creation());
+  RawClient client(server->port());
+  const auto ready = client.join(1, kInstance);
+  REQUIRE(ready.has_value());
+  CHECK(ready->decided >= durable);
+  CHECK(ready->decided == client.welcome.durable);  // one client made the whole log
+  CHECK(client.welcome.epoch == 2);
+
+  // Offers again what it does not know to be durable: from before the watermark to the end.
+  std::thread sender([&] {
+    for (ClientSequence seq = durable - 50; seq <= kEdits; ++seq) client.send(edit(seq));
+  });
+  ClientSequence answered = durable - 51;
+  Sequence last = client.welcome.durable;
+  while (answered < kEdits) {
+    const auto message = client.next();
+    REQUIRE(message.has_value());
+    if (const auto* reject = std::get_if<Reject>(&*message)) {
+      CHECK(reject->client_seq == ++answered);
+      CHECK(reject->reason == RejectReason::already_decided);
+      CHECK(answered <= ready->decided);
+    } else if (const auto* commit = std::get_if<Commit>(&*message)) {
+      for (const OrderedEdit& e : commit->edits) {
+        CHECK(e.op.seq == ++answered);
+        CHECK(answered > ready->decided);
+        ++last;
+      }
+    }
+  }
+  sender.join();
+  CHECK(last == kEdits);
+
+  client.send(View{{0, 0, 0}, 0, 0});
+  const auto snapshot = client.next_of<ChunkSnapshot>();
+  REQUIRE(snapshot.has_value());
+  CHECK(snapshot->chunk.version.seq == kEdits);
+  for (ClientSequence seq = 1; seq <= kEdits; ++seq) {
+    const VoxelPos at = place_of(seq);
+    REQUIRE(material_at(snapshot->chunk.voxels, local_of(at, 16)) == material_of(seq));
+  }
+  CHECK(server->stop().is_clean);
+}
+
+}  // namespace
+}  // namespace runstone::test

@@ -1,0 +1,37 @@
+// ServerBench: a real server on a free loopback port over a world folder of its own, for integration tests.
+#pragma once
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+
+#include "server/runtime/logging.hpp"
+#include "server/app/server.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace runstone::test {
+
+inline ServerConfig quiet_config(const std::string& world) {
+  start_logging("error");
+  ServerConfig config;
+  config.world = world;
+  config.listen = "127.0.0.1:0";
+  config.log_level = "error";
+  return config;
+}
+
+inline WorldCreation flat_creation() {
+  WorldCreation creation;
+  creation.generator = "flat";
+  creation.edge = 16;
+  return creation;
+}
+
+/// Requires the start to succeed.
+inline std::unique_ptr<Server> start_server(const ServerConfig& config, const WorldCreation& creation) {
+  auto server = Server::start(config, creation);
+  INFO((server ? std::string() : server.error()));
+  REQUIRE(server.has_value());
+  return *std::move(server);
+}
+
+}  // namespace runstone::test

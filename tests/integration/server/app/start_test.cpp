@@ -1,0 +1,223 @@
+// What a server does when it cannot start, or meets damage: one clear line, and nothing overwritten.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
+#include "tests/support/compact_by_hand.hpp"
+#include "tests/support/raw_sql.hpp"
+
+namespace runstone::test {
+namespace {
+
+std::string start_error(const ServerConfig& config, const WorldCreation& creation) {
+  const auto server = Server::start(config, creation);
+  REQUIRE_FALSE(server.has_value());
+  CHECK(server.error().find('\n') == std::string::npos);
+  return server.error();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Changes at least one row of a closed world.
+void run_sql(const std::string& file, const std::string& sql) {
+  const std::string changes = raw_sql(file, sql + "; SELECT changes()");
+  INFO(changes);
+  REQUIRE(std::atoi(changes.c_str()) > 0);
+}
+
+TEST_CASE("a busy port is named, and the world keeps its epoch", "[integration]") {
+  const TempFolder folder;
+  const auto first = start_server(quiet_config(folder / "first"), flat_creation());
+  ServerConfig config = quiet_config(folder / "second");
+  {
+    CHECK(start_server(config, flat_creation())->stop().is_clean);
+  }
+  config.listen = "127.0.0.1:" + std::to_string(first->port());
+  CHECK(contains(start_error(config, flat_creation()), config.listen));
+  config.listen = "127.0.0.1:0";
+  const auto server = start_server(config, flat_creation());
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  CHECK(client.welcome.epoch == 2);
+}
+
+TEST_CASE("an address that is none is named, and no world is made for it", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  for (const char* address : {"localhost", "127.0.0.1:", "127.0.0.1:70000", "127.0.0.1:x"}) {
+    config.listen = address;
+    CHECK(contains(start_error(config, flat_creation()), address));
+  }
+  CHECK(::access((folder / "world").c_str(), F_OK) != 0);
+}
+
+TEST_CASE("an empty world file is named and left alone", "[integration]") {
+  const TempFolder folder;
+  {
+    std::ofstream file(folder / "world.sqlite");
+  }
+  const auto self = folder / ".";
+  CHECK(contains(start_error(quiet_config(self), flat_creation()), "world.sqlite: is empty"));
+  CHECK(std::ifstream(folder / "world.sqlite").good());
+}
+
+TEST_CASE("an unknown generator, edge or materials file makes no world", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  WorldCreation creation = flat_creation();
+  SECTION("generator") {
+    creation.generator = "volcano";
+    CHECK(contains(start_error(config, creation), "volcano"));
+  }
+  SECTION("edge") {
+    creation.edge = 33;
+    CHECK(contains(start_error(config, creation), "33"));
+  }
+  SECTION("missing materials") {
+    creation.materials_file = folder / "none.toml";
+    CHECK(contains(start_error(config, creation), "none.toml"));
+  }
+  SECTION("broken materials") {
+    creation.materials_file = folder / "broken.toml";
+    std::ofstream(creation.materials_file) << "[[material]]\nname = \n";
+    CHECK(contains(start_error(config, creation), "broken.toml:2"));
+  }
+  CHECK_FALSE(has_world(config.world));
+}
+
+TEST_CASE("a second server on the same world is refused", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  const auto first = start_server(config, flat_creation());
+  CHECK(contains(start_error(config, flat_creation()), "world"));
+  RawClient client(first->port());
+  CHECK(client.join(1).has_value());
+}
+
+TEST_CASE("a file that is no world is refused and left as it is", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  std::filesystem::create_directories(config.world);
+  const std::string file = config.world + "/world.sqlite";
+  const std::string content = "this is a text, not a database, and somebody may still need it";
+  std::ofstream(file) << content;
+  CHECK(contains(start_error(config, flat_creation()), "world.sqlite"));
+  std::ifstream in(file);
+  CHECK(std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>()) == content);
+}
+
+TEST_CASE("a folder that cannot be written is named", "[integration]") {
+  if (::geteuid() == 0) {
+    WARN("root may write everywhere: a file in place of the folder stands in");
+  }
+  const TempFolder folder;
+  std::ofstream(folder / "file") << "x";
+  const ServerConfig config = quiet_config(folder / "file/world");
+  CHECK(contains(start_error(config, flat_creation()), "file"));
+}
+
+/// A world with edits in three chunks, stopped cleanly.
+void make_edited_world(const ServerConfig& config) {
+  const auto server = start_server(config, flat_creation());
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  for (ClientSequence seq = 1; seq <= 3; ++seq) {
+    const auto x = static_cast<std::int32_t>(seq - 1) * 16;
+    client.send(EditRequest{seq, 0, {SetVoxel{{x, 1, 1}}, {}, 2}});
+  }
+  REQUIRE(client.sees_durable(3));
+  REQUIRE(server->stop().is_clean);
+}
+
+TEST_CASE("a damaged snapshot is quarantined: not sent, not made anew, its edits still ordered",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1");
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(View{{0, 0, 0}, 2, 0});
+    std::set<ChunkKey> got;
+    for (int i = 0; i < 12; ++i) {
+      const auto snapshot = client.next_of<ChunkSnapshot>();
+      REQUIRE(snapshot.has_value());
+      got.insert(snapshot->key);
+    }
+    CHECK(got.size() == 12);
+    CHECK_FALSE(got.contains({0, {1, 0, 0}}));
+    client.send(EditRequest{4, 0, {SetVoxel{{17, 1, 1}}, {}, 3}});
+    const auto commit = client.next_of<Commit>();
+    REQUIRE(commit.has_value());
+    CHECK(commit->first == 4);
+    CHECK(commit->edits.at(0).previous == std::vector<Sequence>{2});
+    const StopReport report = server->stop();
+    CHECK(report.is_clean);
+    CHECK(contains(report.error, "chunk=1,0,0"));
+  }
+  // The damaged row is as it was: nothing replaced it.
+  run_sql(config.world + "/world.sqlite",
+          "UPDATE snapshot SET data = data WHERE x = 1 AND data = zeroblob(40)");
+}
+
+TEST_CASE("a damaged log row above the checkpoint stops the start and is named", "[integration]") {
+  const TempFolder folder;
+  ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  const std::string file = config.world + "/world.sqlite";
+  run_sql(file, "UPDATE edit_log SET checksum = checksum + 1 WHERE seq = 3");
+  CHECK(contains(start_error(config, flat_creation()), "seq=3"));
+}
+
+TEST_CASE("a world whose log was compacted to its end goes on at its sequence and never before its time",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  constexpr TimeUs kFuture = 9'000'000'000'000'000;  // the wall clock was set back since
+  compact_by_hand(config.world + "/world.sqlite", {{1, 3}, kFuture}, {});
+  {
+    const auto server = start_server(config, flat_creation());
+    RawClient client(server->port());
+    REQUIRE(client.join(1).has_value());
+    client.send(EditRequest{4, 0, {SetVoxel{{1, 1, 1}}, {}, 3}});
+    REQUIRE(client.sees_durable(4));
+    CHECK(server->stop().is_clean);
+  }
+  const auto store = open_world(config.world, StoreAccess::read_only);
+  REQUIRE(store.has_value());
+  CHECK(*(*store)->log_range() == LogRange{4, {{2, 4}, kFuture}});
+}
+
+TEST_CASE("a damaged last log row stops the start even if nothing waits above the checkpoint",
+          "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite", "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 3");
+  CHECK(contains(start_error(config, flat_creation()), "edit_log seq=3"));
+}
+
+TEST_CASE("a world of a newer version is refused", "[integration]") {
+  const TempFolder folder;
+  const ServerConfig config = quiet_config(folder / "world");
+  make_edited_world(config);
+  run_sql(config.world + "/world.sqlite",
+          "CREATE TABLE t(x); INSERT INTO t VALUES(1); PRAGMA user_version = 99");
+  const std::string error = start_error(config, flat_creation());
+  CHECK(contains(error, "world.sqlite"));
+}
+
+}  // namespace
+}  // namespace runstone::test

@@ -1,0 +1,65 @@
+// runstone-replay --bench, as people run it. What it measures is not tested, but of what.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "server/store/world_folder.hpp"
+#include "tests/support/run_replay.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+void make_world(const std::string& folder, std::size_t edits) {
+  auto store = *create_world(folder, sample_meta());
+  SplitMix64 rng(3);
+  REQUIRE(store->raise_epoch().has_value());
+  const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
+  REQUIRE(store->append(players, sample_records(rng, 1, 1, edits)).has_value());
+}
+
+nlohmann::json read_json(const std::string& file) {
+  std::ifstream in(file);
+  return nlohmann::json::parse(in);
+}
+
+}  // namespace
+
+TEST_CASE("the bench rebuilds what a replay rebuilds, as often as it is told", "[store][replay]") {
+  const TempFolder folder;
+  make_world(folder / "w", 300);
+  const std::string world = folder / "w", bench = folder / "bench.json", replay = folder / "replay.json";
+  for (const std::string at : {"300", "120"}) {
+    CAPTURE(at);
+    const auto timed =
+        run_replay({"--world", world, "--at", at, "--bench", "--rounds", "3", "--json", bench});
+    INFO(timed.out << timed.err);
+    REQUIRE(timed.code == 0);
+    REQUIRE(run_replay({"--world", world, "--at", at, "--json", replay}).code == 0);
+    const auto mine = read_json(bench), report = read_json(replay).at("report");
+    CHECK(mine.at("seq") == std::stoi(at));
+    for (const char* same : {"edits", "chunks", "voxels_changed", "stack_depths", "world_digest"}) {
+      CAPTURE(same);
+      CHECK(mine.at(same) == report.at(same));
+    }
+    for (const char* part : {"read", "rebuild"}) {
+      CAPTURE(part);
+      auto seconds = mine.at(part).at("seconds").get<std::vector<double>>();
+      REQUIRE(seconds.size() == 3);
+      std::sort(seconds.begin(), seconds.end());
+      CHECK(mine.at(part).at("median_seconds") == seconds[1]);
+      CHECK(mine.at(part).at("edits_per_second") == Approx(std::stoi(at) / seconds[1]));
+    }
+  }
+}
+
+TEST_CASE("a world that cannot be read is not timed", "[store][replay]") {
+  const TempFolder folder;
+  const auto none = run_replay({"--world", folder / "none", "--bench"});
+  CHECK(none.code == 2);
+  CHECK(none.out.empty());
+}

@@ -1,0 +1,253 @@
+// A world's log to an .rlog and back: by the program, as people run it, and damaged on the way.
+#include "server/replay/rlog_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "server/replay/replay_program.hpp"
+#include "tests/support/compact_by_hand.hpp"
+#include "tests/support/rlog_bytes.hpp"
+#include "tests/support/run_replay.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+/// The line of the table that a replay prints about the world's digest.
+std::string digest_of_world(const std::string& folder) {
+  const ReplayOutcome replay = run_replay({"--world", folder, "--verify"});
+  INFO(replay.out << replay.err);
+  REQUIRE(replay.code == 0);
+  const std::size_t at = replay.out.find("digest ");
+  return replay.out.substr(at, replay.out.find('\n', at) - at);
+}
+
+std::unique_ptr<Store> opened(const std::string& folder, StoreAccess access = StoreAccess::read_only) {
+  auto store = open_world(folder, access);
+  if (!store) FAIL(store.error().message());
+  return *std::move(store);
+}
+
+/// Two starts of a server on generated terrain, `count` edits each.
+void make_world(const std::string& folder, std::size_t count) {
+  WorldMeta meta = sample_meta();
+  meta.generator = {"terrain", 1, 77, ""};
+  auto store = *create_world(folder, meta);
+  SplitMix64 rng(count);
+  const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
+  REQUIRE(store->raise_epoch().has_value());
+  REQUIRE(store->append(players, sample_records(rng, 1, 1, count)).has_value());
+  REQUIRE(store->raise_epoch().has_value());
+  REQUIRE(store->append({}, sample_records(rng, 2, count + 1, count)).has_value());
+}
+
+std::vector<EditRecord> log_of(const std::string& folder) {
+  std::vector<EditRecord> records;
+  auto store = opened(folder);
+  REQUIRE(store
+              ->read_log(1, kSequenceMax,
+                         [&](const EditRecord& record) {
+                           records.push_back(record);
+                           return true;
+                         })
+              .has_value());
+  return records;
+}
+
+Bytes bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_bytes(const std::string& file, const Bytes& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void export_small_blocks(const std::string& folder, const std::string& file) {
+  auto store = opened(folder);
+  REQUIRE(export_rlog(*store, file, kSequenceMax, {3, 16}).has_value());
+}
+
+}  // namespace
+
+TEST_CASE("a world made from its exported log is the same world", "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
+  make_world(world, 60);
+  const ReplayOutcome written = run_replay({"--world", world, "--export", file});
+  INFO(written.out << written.err);
+  REQUIRE(written.code == 0);
+  CHECK(written.out.find("edits       120, sequences 1 to 120") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(file + ".exporting"));
+
+  const ReplayOutcome made = run_replay({"--world", copy, "--import", file});
+  INFO(made.out << made.err);
+  REQUIRE(made.code == 0);
+  CHECK(made.out.find("edits       120 added, 0 known, 0 compacted") != std::string::npos);
+  CHECK(log_of(copy) == log_of(world));
+  CHECK(digest_of_world(copy) == digest_of_world(world));
+  auto a = opened(world), b = opened(copy);
+  CHECK(a->meta().world_id == b->meta().world_id);
+  CHECK(a->meta().server_key_seed != b->meta().server_key_seed);  // a secret does not travel
+  CHECK(a->epoch() == b->epoch());
+  CHECK(*a->log_range() == *b->log_range());
+  const auto players = *b->players();
+  REQUIRE(players.size() == 2);
+  CHECK((players[1].key == sample_player(2).key && players[1].name == "builder 2"));
+  const auto marks = *a->high_waters(), marks_again = *b->high_waters();
+  REQUIRE(marks.size() == marks_again.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) CHECK(marks[i].decided == marks_again[i].decided);
+  b.reset();
+
+  const ReplayOutcome again = run_replay({"--world", copy, "--import", file});
+  CHECK(again.code == 0);
+  CHECK(again.out.find("edits       0 added, 120 known, 0 compacted") != std::string::npos);
+  const std::string second = folder / "second.rlog";
+  REQUIRE(run_replay({"--world", copy, "--export", second}).code == 0);
+  CHECK(bytes_of(second) == bytes_of(file));
+}
+
+TEST_CASE("a log exported up to a sequence gives the world of that moment, and goes on later",
+          "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
+  make_world(world, 40);
+  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "30"}).code == 0);
+  REQUIRE(run_replay({"--world", copy, "--import", file}).code == 0);
+  CHECK(log_of(copy).size() == 30);
+  CHECK(opened(copy)->epoch() == 1);
+  REQUIRE(run_replay({"--world", world, "--export", file}).code == 0);
+  const ReplayOutcome rest = run_replay({"--world", copy, "--import", file});
+  CHECK(rest.out.find("edits       50 added, 30 known") != std::string::npos);
+  CHECK(digest_of_world(copy) == digest_of_world(world));
+}
+
+TEST_CASE("an imported log stops at the first bad block: named, and what stands before is in the world",
+          "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "log.rlog";
+  make_world(world, 40);
+  export_small_blocks(world, file);
+  const Bytes sound = bytes_of(file);
+  const auto begins = blocks_of(sound);  // world, players, five times 16 edits, end
+  REQUIRE(begins.size() == 9);
+  const auto log = log_of(world);
+  struct Damage {
+    const char* what;
+    std::function<void(Bytes&)> make;
+    std::size_t edits, block;
+  };
+  const std::vector<Damage> damages = {
+      {"checksum of the block is wrong", [&](Bytes& b) { b[begins[4] + kRlogHeaderBytes + 3] ^= 8; }, 32, 4},
+      {"checksum of the block header is wrong", [&](Bytes& b) { b[begins[5] + 20] ^= 1; }, 48, 5},
+      {"file ends inside a block", [&](Bytes& b) { b.resize(begins[4] - 5); }, 16, 3},
+      {"file ends inside a block header", [&](Bytes& b) { b.resize(begins[6] + 9); }, 64, 6},
+      {"file ends without its end block", [&](Bytes& b) { b.resize(begins[7]); }, 80, 7},
+      {"checksum of the block header is wrong",
+       [&](Bytes& b) {
+         b.erase(b.begin() + static_cast<std::ptrdiff_t>(begins[3]),
+                 b.begin() + static_cast<std::ptrdiff_t>(begins[4]));
+       },
+       16, 3},
+  };
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    const Damage& damage = damages[i];
+    const std::string copy = folder / ("copy" + std::to_string(i)), torn = folder / "torn.rlog";
+    Bytes bytes = sound;
+    damage.make(bytes);
+    write_bytes(torn, bytes);
+    const ReplayOutcome imported = run_replay({"--world", copy, "--import", torn});
+    CAPTURE(i, imported.out);
+    CHECK(imported.code == 2);
+    CHECK(imported.err == "runstone-replay: " + torn + ": edit " + std::to_string(damage.edits + 1) +
+                              " at byte " + std::to_string(begins[damage.block]) + ": " + damage.what + "\n");
+    const auto stands = log_of(copy);
+    CHECK(stands ==
+          std::vector<EditRecord>(log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
+    // The sound file mends it.
+    CHECK(run_replay({"--world", copy, "--import", file}).code == 0);
+    CHECK(log_of(copy) == log);
+  }
+}
+
+TEST_CASE("a log is not imported into another world or another history of it", "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "log.rlog";
+  make_world(world, 20);
+  export_small_blocks(world, file);
+  const auto refused = [&](const std::string& into) {
+    const auto before = log_of(into);
+    const ReplayOutcome imported = run_replay({"--world", into, "--import", file});
+    CHECK(imported.code == 2);
+    CHECK(log_of(into) == before);
+    return imported.err;
+  };
+  WorldMeta other = sample_meta();
+  other.world_id[0] ^= 1;
+  REQUIRE(create_world(folder / "other", other).has_value());
+  CHECK(refused(folder / "other").find("is of another world") != std::string::npos);
+
+  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "25"}).code == 0);
+  REQUIRE(run_replay({"--world", folder / "fork", "--import", file}).code == 0);
+  {
+    auto fork = opened(folder / "fork", StoreAccess::read_write);
+    REQUIRE(fork->raise_epoch().has_value());
+    SplitMix64 rng(5);
+    REQUIRE(fork->append({}, sample_records(rng, fork->epoch(), 26, 30)).has_value());
+  }
+  export_small_blocks(world, file);
+  CHECK(refused(folder / "fork").find("edit 26 is another one than in") != std::string::npos);
+
+  auto writer = opened(world, StoreAccess::read_write);
+  CHECK(run_replay({"--world", world, "--import", file}).code == 2);  // a server holds it
+}
+
+TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", "[store][rlog]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = folder / "log.rlog";
+  SplitMix64 rng(8);
+  std::vector<EditRecord> records;
+  {
+    auto store = *create_world(world, sample_meta());
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{{0, {0, 0, 0}}, sample_chunk(rng, {})}};
+    REQUIRE(store->save_base(base).has_value());
+    REQUIRE(store->raise_epoch().has_value());
+    records = sample_records(rng, 1, 1, 40);
+    REQUIRE(store->append({}, std::span(records).first(10)).has_value());
+  }
+  std::filesystem::copy(world, folder / "copy");
+  REQUIRE(opened(world, StoreAccess::read_write)->append({}, std::span(records).subspan(10)).has_value());
+  export_small_blocks(world, file);
+  const ReplayOutcome alone = run_replay({"--world", folder / "new", "--import", file});
+  CHECK(alone.code == 2);
+  CHECK(alone.err.find("holds not all of its world") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "new"));
+  const ReplayOutcome onto = run_replay({"--world", folder / "copy", "--import", file});
+  CHECK(onto.out.find("edits       30 added, 10 known") != std::string::npos);
+  CHECK(digest_of_world(folder / "copy") == digest_of_world(world));
+
+  // Compacted, the log begins later, and goes onto copies that reach as far.
+  compact_by_hand(world + "/world.sqlite", {records[19].version, records[19].time_us}, {});
+  export_small_blocks(world, file);
+  CHECK(read_rlog(bytes_of(file)).records.size() == 20);
+  CHECK(run_replay({"--world", folder / "copy", "--import", file}).code == 0);
+}
+
+TEST_CASE("files that cannot be had are named", "[store][rlog]") {
+  const TempFolder folder;
+  make_world(folder / "world", 3);
+  CHECK(run_replay({"--world", folder / "new", "--import", folder / "none.rlog"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--import", "b"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--verify"}).code == 2);
+  write_bytes(folder / "text", {'n', 'o'});
+  CHECK(run_replay({"--world", folder / "new", "--import", folder / "text"}).err ==
+        "runstone-replay: " + folder / "text" + ": edit 1 at byte 0: is not an .rlog file\n");
+}

@@ -1,0 +1,83 @@
+// The walk over a commit against the decoder that makes a struct of it: one verdict on every input.
+#include "protocol/codec/commit_walk.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "tests/support/random_message.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr std::size_t kCommitKind = 8;
+
+/// Walks the bytes and puts the edits together again.
+Result<Message> walked(ByteView bytes) {
+  CommitWalk walk;
+  Commit commit;
+  const auto is_commit = walk.read(bytes, kMessageEdge, [&](const WalkedEdit& edit) -> Result<void> {
+    if (commit.edits.empty()) {
+      commit.epoch = edit.version.epoch;
+      commit.first = edit.version.seq;
+    }
+    CHECK(edit.version == Version{commit.epoch, commit.first + commit.edits.size()});
+    CHECK(std::vector<ChunkCoord>(edit.chunks.begin(), edit.chunks.end()) ==
+          touched_chunks(edit.ordered.edit, kMessageEdge));
+    commit.edits.push_back(edit.ordered);
+    return {};
+  });
+  if (!is_commit) return Unexpected<Error>{is_commit.error()};
+  REQUIRE(*is_commit);
+  return Message{std::move(commit)};
+}
+
+}  // namespace
+
+TEST_CASE("a walk hands out the edits that the decoder finds", "[protocol][property]") {
+  SplitMix64 rng{Catch::rngSeed() + 20};
+  for (int step = 0; step < 100; ++step) {
+    CAPTURE(Catch::rngSeed(), step);
+    const Message message = random_message(rng, kCommitKind);
+    const auto got = walked(*encode_message(message).bytes);
+    REQUIRE(got.has_value());
+    CHECK(*got == message);
+  }
+}
+
+TEST_CASE("a walk refuses what the decoder refuses", "[protocol][property]") {
+  SplitMix64 rng{Catch::rngSeed() + 21};
+  int refused = 0;
+  for (int step = 0; step < 3'000; ++step) {
+    CAPTURE(Catch::rngSeed(), step);
+    Bytes bytes = *encode_message(random_message(rng, kCommitKind)).bytes;
+    const std::uint32_t flips = 1 + rng.below(3);
+    for (std::uint32_t i = 0; i < flips; ++i) {
+      bytes[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^=
+          static_cast<std::uint8_t>(1 + rng.below(255));
+    }
+    const auto decoded = decode_message(Sender::server, FrameClass::edits, bytes, kMessageEdge);
+    if (decoded && !std::holds_alternative<Commit>(*decoded)) continue;
+    const auto got = walked(bytes);
+    REQUIRE(got.has_value() == decoded.has_value());
+    if (decoded) CHECK(*got == *decoded);
+    if (!decoded) {
+      CHECK(std::string_view(got.error().what) == decoded.error().what);
+      ++refused;
+    }
+  }
+  CHECK(refused > 100);
+}
+
+TEST_CASE("a walk leaves other messages alone, and passes on an error of who walks", "[protocol]") {
+  CommitWalk walk;
+  const auto none = [](const WalkedEdit&) -> Result<void> { return fail(ErrorCode::bad_value, "enough"); };
+  const auto left = walk.read(*encode_message(Durable{1, 2}).bytes, kMessageEdge, none);
+  REQUIRE(left.has_value());
+  CHECK_FALSE(*left);
+  SplitMix64 rng{Catch::rngSeed() + 22};
+  const auto stopped = walk.read(*encode_message(random_message(rng, kCommitKind)).bytes, kMessageEdge, none);
+  REQUIRE_FALSE(stopped.has_value());
+  CHECK(std::string_view(stopped.error().what) == "enough");
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,31 @@
+// The culled mesher (thesis 4.2.4): a quad for each exposed face, nothing merged. From a grid, and as Voxel
+// Plugin's cubic mesher runs it (thesis 6.3.1): samples of the chunk and the voxel around it, 34 x 34 x 34
+// for its chunks of 32, are read from an octree right before meshing.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/mesh/quad.hpp"
+#include "tests/reference/dense_grid.hpp"
+#include "tests/reference/material_octree.hpp"
+#include "common/mesh/visibility.hpp"
+
+namespace runstone::reference {
+
+/// Replaces `out` by the exposed faces of `grid`, voxel by voxel. O(volume).
+void mesh_culled(const DenseGrid& grid, const VisibilityTable& visibility, std::vector<Quad>& out);
+
+/// Time spent in the phases of one mesh, in the clock's units.
+struct CulledPhases {
+  std::uint64_t octree = 0;   // reading the samples
+  std::uint64_t meshing = 0;  // culling, and writing the quads
+};
+/// A clock that only ascends: code in common/ has none of its own.
+using Clock = std::uint64_t (*)();
+
+/// The chunk of `extent` at `first`, sampled from `octree` into `grid` (scratch). Calls `now` three times.
+CulledPhases mesh_culled(const MaterialOctree& octree, VoxelPos first, Extent extent,
+                         const VisibilityTable& visibility, Clock now, DenseGrid& grid,
+                         std::vector<Quad>& out);
+
+}  // namespace runstone::reference

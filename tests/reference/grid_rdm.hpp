@@ -1,0 +1,31 @@
+// Grid RDM (thesis 7.2): Run Directional Meshing over a dense grid. Each direction is traversed along its own
+// run axis; exposed faces that follow each other become a run strip, and a second, greedy phase (7.2.2) looks
+// back from every strip to the row before it and joins strips that are alike. Faces are culled across chunk
+// borders.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/mesh/quad.hpp"
+#include "tests/reference/dense_grid.hpp"
+#include "common/mesh/visibility.hpp"
+
+namespace runstone::reference {
+
+/// Buffers reused between calls. Belongs to one thread.
+struct GridRdmScratch {
+  struct Strip {
+    std::uint8_t layer, row_first, row_end, begin, end;  // rows and faces along the run: half-open
+    Material material;
+  };
+  std::vector<Strip> strips;                   // of one direction, by layer, row and run
+  std::vector<std::uint32_t> row, row_before;  // strips that end in a row, by their begin
+};
+
+/// Replaces `out` by the mesh of `grid`. Run and row axis of a direction are the thesis' (in our axes: x
+/// faces run along z in rows of y, y faces along z in rows of x, z faces along x in rows of y). O(volume +
+/// strips * strips of a row).
+void mesh_grid_rdm(const DenseGrid& grid, const VisibilityTable& visibility, GridRdmScratch& scratch,
+                   std::vector<Quad>& out);
+
+}  // namespace runstone::reference

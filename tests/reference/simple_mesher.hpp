@@ -1,0 +1,15 @@
+// The simple mesher (thesis 4.2.3): six quads for each voxel that is drawn at all, hidden or not.
+#pragma once
+#include <vector>
+
+#include "common/mesh/quad.hpp"
+#include "tests/reference/dense_grid.hpp"
+#include "common/mesh/visibility.hpp"
+
+namespace runstone::reference {
+
+/// Replaces `out` by six quads a drawn voxel, 48 bytes each; none is culled, the border is not read.
+/// O(volume).
+void mesh_simple(const DenseGrid& grid, const VisibilityTable& visibility, std::vector<Quad>& out);
+
+}  // namespace runstone::reference

@@ -1,0 +1,160 @@
+// SimClient: a ClientSession that connects, edits, looks around and loses its connection, in virtual time.
+#pragma once
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "client/cache/chunk_cache.hpp"
+#include "client/replica/client_session.hpp"
+#include "tests/simulation/client/session/sim_server.hpp"
+
+namespace runstone::test {
+
+class SimClient {
+ public:
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number)
+      : time_(time), rng_(rng), server_(server), faults_(faults), number_(number), session_(config(number)) {
+    pump();
+  }
+  /// One that keeps chunks in this folder, and only looks: what it edits would be forgotten with restart().
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number,
+            const std::string& cache_folder)
+      : SimClient(time, rng, server, faults, number) {
+    auto cache = ChunkCache::open(cache_folder, std::uint64_t{1} << 20);
+    if (!cache) throw SimFault(cache.error());
+    cache_ = *std::move(cache);
+    session_ = ClientSession(config(number));
+  }
+
+  /// The process is killed, and comes back with what its cache has.
+  void restart() {
+    const View view = session_.view();
+    if (connection_) connection_->cut();
+    connection_.reset();
+    ++link_;
+    ++life_;
+    session_ = ClientSession(config(number_ + 1000 * life_));
+    session_.set_view(view);
+    retry_at_ = time_.now() + rng_.between(1'000, 300'000);
+  }
+  const ChunkCache* cache() const { return cache_.get(); }
+
+  ClientSession& session() { return session_; }
+  Replica& replica() { return session_.replica(); }
+
+  /// Submits one random edit; keeps it for the final reckoning.
+  void edit(const EditDescriptor& edit) {
+    const auto seq = session_.submit(edit, time_.now(), time_.now());
+    if (seq) submitted_[*seq] = edit;
+    refused_ += replica().opened() && !seq ? 1 : 0;
+  }
+  void look(const View& view) { session_.set_view(view); }
+  void cut() {
+    if (connection_) connection_->cut();
+  }
+
+  ClientInstance instance() const { return instance_; }
+  const std::map<ClientSequence, EditDescriptor>& submitted() const { return submitted_; }
+  const std::map<ClientSequence, RejectReason>& rejected() const { return rejected_; }
+  std::uint64_t refused() const { return refused_; }
+  const std::set<ClientSequence>& durable() const { return durable_; }
+  const std::set<ClientSequence>& unseen() const { return unseen_; }
+  bool settled() {
+    return session_.is_open() && session_.loaded() && replica().own_edits().all().empty() &&
+           replica().awaiting_count() == 0;
+  }
+
+ private:
+  SessionConfig config(unsigned number) {
+    SessionConfig c;
+    KeySeed seed{};
+    seed[0] = static_cast<std::uint8_t>(number_);
+    c.has_cache = cache_ != nullptr;
+    c.keys = key_pair_of(seed);
+    c.name = "replica " + std::to_string(number);
+    instance_ = c.instance = 1000 + number;
+    c.encodings = number % 2 == 0 ? 1 : 2;
+    c.view = {{0, 0, 0}, 2, 1};
+    return c;
+  }
+
+  /// Every few milliseconds: connect if needed, tick, send what waits, take the news.
+  void pump() {
+    time_.after(rng_.between(1000, 8000), [this] {
+      if (!connection_ && server_.running() && time_.now() >= retry_at_) connect();
+      if (connection_) {
+        session_.tick(time_.now());
+        if (cache_) step_cache();
+        for (const Message& message : session_.take_outgoing())
+          connection_->send_from_client(encode_message(message));
+        if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
+      }
+      for (const RejectNews& r : take_news().rejects) rejected_[r.seq] = r.reason;
+      pump();
+    });
+  }
+  /// Answers come after a while, some of them later than a view waits.
+  void step_cache() {
+    while (auto question = session_.take_question()) {
+      time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(question)] {
+        if (life == life_) session_.answer(cache_->find(q.world, q.keys), time_.now());
+      });
+    }
+    const auto world = session_.cached_world();
+    if (world && rng_.below(50) == 0) cache_->keep(*world, session_.replica().take_unkept(40));
+  }
+  ReplicaNews take_news() {
+    ReplicaNews news = replica().take_news();
+    durable_.insert(news.durable.begin(), news.durable.end());
+    unseen_.insert(news.unseen.begin(), news.unseen.end());
+    return news;
+  }
+
+  void connect() {
+    ++link_;
+    SimEnd end;
+    end.on_message = [this](FrameClass c, ByteView bytes) -> Result<void> {
+      const std::uint16_t edge =
+          session_.welcome() && session_.state() != SessionState::greeting ? kSimEdge : 0;
+      auto message = decode_message(Sender::server, c, bytes, edge);
+      if (!message) throw SimFault(std::string("client cannot decode: ") + message.error().what);
+      session_.receive(std::move(*message), {time_.now(), time_.now(), time_.now()});
+      return {};
+    };
+    end.on_bad_stream = [](const Error& error) {
+      throw SimFault(std::string("client got a bad stream: ") + error.what);
+    };
+    end.on_drained = [] {};
+    end.on_closed = [this, link = link_] {
+      if (link != link_ || !connection_) return;
+      connection_.reset();
+      session_.disconnected();
+      retry_at_ = time_.now() + rng_.between(20'000, 500'000);
+    };
+    connection_ = server_.accept(faults_, std::move(end));
+    Nonce nonce{};
+    for (auto& b : nonce) b = static_cast<std::uint8_t>(rng_.next());
+    session_.connected(nonce, time_.now());
+  }
+
+  VirtualTime& time_;
+  SplitMix64& rng_;
+  SimServer& server_;
+  const LinkFaults& faults_;
+  const unsigned number_;
+  std::unique_ptr<ChunkCache> cache_;
+  unsigned life_ = 0;
+  ClientInstance instance_ = 0;
+  ClientSession session_;
+  std::shared_ptr<SimConnection> connection_;
+  std::uint64_t link_ = 0;
+  TimeUs retry_at_ = 0;
+  std::map<ClientSequence, EditDescriptor> submitted_;
+  std::map<ClientSequence, RejectReason> rejected_;
+  std::uint64_t refused_ = 0;  // by the client itself
+  std::set<ClientSequence> durable_, unseen_;
+};
+
+}  // namespace runstone::test

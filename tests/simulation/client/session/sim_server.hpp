@@ -1,0 +1,281 @@
+// SimServer: a WorldServer with virtual threads: a log writer and workers that answer after a while, sessions
+// over simulated connections, and crashes that lose everything but the disk.
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/runs/run_builder.hpp"
+#include "server/history/missing_edits.hpp"
+#include "server/store/store.hpp"
+#include "server/world/world_server.hpp"
+#include "tests/simulation/client/session/sim_network.hpp"
+
+namespace runstone::test {
+
+inline constexpr std::uint16_t kSimEdge = 16;
+
+/// Something happened that must not: ends the simulation, and the test unless it expects a fault.
+struct SimFault : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The base of the simulated world: stone below y = 0, sand in a checkered crust at y = 0, air above.
+inline Material sim_base_material(VoxelPos at) {
+  if (at.y < 0) return 4;
+  return at.y == 0 && ((at.x >> 2) + (at.z >> 2)) % 2 == 0 ? Material{2} : kEmpty;
+}
+
+inline RunChunk sim_base_chunk(ChunkCoord at) {
+  const Extent extent = Extent::cube(kSimEdge);
+  RunBuilder builder(extent, AxisOrder::xzy);
+  const VoxelPos o = origin_of(at, kSimEdge);
+  for (VoxelIndex i = 0; i < extent.volume(); ++i) {
+    const LocalPos p = pos_of(i, extent, AxisOrder::xzy);
+    builder.append(1, sim_base_material({o.x + p.x, o.y + p.y, o.z + p.z}));
+  }
+  return builder.finish();
+}
+
+class SimServer final : public WorldPorts {
+ public:
+  /// `open` opens the world's store; called at each start.
+  SimServer(VirtualTime& time, SplitMix64& rng, WorldConfig config,
+            std::function<std::unique_ptr<Store>()> open)
+      : time_(time), rng_(rng), config_(std::move(config)), open_(std::move(open)) {}
+
+  bool running() const { return world_ != nullptr; }
+  WorldServer& world() { return *world_; }
+  Store& store() { return *store_; }
+
+  void start() {
+    store_ = open_();
+    WorldStart start;
+    start.log.epoch = value(store_->raise_epoch());
+    const LogEnd last = value(store_->log_range()).last;
+    start.log.last = last.version.seq;
+    start.log.last_time_us = last.time_us;
+    start.checkpoint = value(store_->checkpoint());
+    start.snapshots = value(store_->snapshot_keys());
+    start.players = value(store_->players());
+    start.decided = value(store_->high_waters());
+    std::vector<EditRecord> tail;
+    if (start.log.last > start.checkpoint) {
+      done(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
+        tail.push_back(r);
+        return true;
+      }));
+    }
+    world_ = std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
+      for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
+    });
+    for (const EditRecord& r : tail) world_->restack(r);
+    ++life_;
+    tick_later();
+  }
+
+  /// Power is gone: memory, queues and connections vanish; the disk keeps what it keeps.
+  void crash() {
+    ++life_;
+    world_.reset();
+    store_.reset();
+    batches_.clear();
+    for (auto& [id, session] : sessions_) session.connection->server_died();
+    sessions_.clear();
+  }
+
+  /// A new session; the returned connection carries it.
+  std::shared_ptr<SimConnection> accept(const LinkFaults& faults, SimEnd client) {
+    const SessionId id = next_session_++;
+    SimEnd end;
+    end.on_message = [this, id, life = life_](FrameClass c, ByteView bytes) -> Result<void> {
+      if (life != life_ || !sessions_.contains(id)) return {};
+      auto message = decode_message(Sender::client, c, bytes, kSimEdge);
+      if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
+      world_->received(id, std::move(*message), now());
+      turn_later();
+      return {};
+    };
+    end.on_bad_stream = [](const Error& error) {
+      throw SimFault(std::string("server got a bad stream: ") + error.what);
+    };
+    end.on_closed = [this, id, life = life_] {
+      if (life != life_) return;
+      if (sessions_.erase(id) != 0) world_->disconnected(id);
+    };
+    end.on_drained = [this, id, life = life_] {
+      if (life == life_ && sessions_.contains(id)) world_->drained(id, now());
+    };
+    auto connection = std::make_shared<SimConnection>(time_, rng_, faults, server_queue_bytes, std::move(end),
+                                                      std::move(client));
+    sessions_[id].connection = connection;
+    world_->connected(id, now());
+    return connection;
+  }
+
+  Now now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
+
+  // Faults, in occurrences per 1000.
+  std::uint32_t drop_commits = 0;  // a send that says "queued" and loses a commit: a bug no queue would have
+  std::size_t server_queue_bytes = 200'000;
+  bool log_full = false;
+  std::uint64_t dropped = 0;
+  std::uint64_t updates = 0;  // sent as edits
+
+ private:
+  struct Session {
+    std::shared_ptr<SimConnection> connection;
+    ChunkEncoding encoding = ChunkEncoding::raw;
+    std::size_t encoding_now = 0;  // snapshots on a worker
+  };
+
+  template <class T>
+  static T value(StoreResult<T> result) {
+    if (!result) throw SimFault(result.error().message());
+    return *std::move(result);
+  }
+
+  static bool is_commit(const EncodedMessage& message) {
+    if (message.frame_class != FrameClass::edits) return false;
+    const auto decoded = decode_message(Sender::server, message.frame_class, *message.bytes, kSimEdge);
+    return decoded && std::holds_alternative<Commit>(*decoded);
+  }
+
+  static void done(const StoreResult<void>& result) {
+    if (!result) throw SimFault(result.error().message());
+  }
+
+  /// Runs `event` after a while, unless the server has died by then.
+  void later(std::int32_t min_us, std::int32_t max_us, std::function<void()> event) {
+    time_.after(rng_.between(min_us, max_us), [this, life = life_, run = std::move(event)] {
+      if (life == life_) run();
+    });
+  }
+  void tick_later() {
+    later(40'000, 60'000, [this] {
+      world_->tick(now());
+      tick_later();
+    });
+  }
+  void turn_later() {
+    if (std::exchange(turn_waits_, true)) return;
+    time_.after(rng_.between(10, 2000), [this, life = life_] {
+      turn_waits_ = false;
+      if (life == life_) world_->commit(now());
+    });
+  }
+
+  // ---- WorldPorts
+  // ------------------------------------------------------------------------------------------
+  bool send(SessionId id, const EncodedMessage& message) override {
+    const auto it = sessions_.find(id);
+    if (it == sessions_.end()) return false;
+    if (is_commit(message) && rng_.below(1000) < drop_commits) {
+      ++dropped;
+      return true;
+    }
+    return it->second.connection->send_from_server(message);
+  }
+  void set_encoding(SessionId id, ChunkEncoding encoding) override {
+    if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encoding = encoding;
+  }
+  bool send_snapshot(SessionId id, const ChunkKey& key, const ChunkPtr& chunk) override {
+    const auto it = sessions_.find(id);
+    if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
+    ++it->second.encoding_now;
+    later(100, 30'000, [this, id, key, chunk] {  // the worker
+      const auto session = sessions_.find(id);
+      if (session == sessions_.end()) return;
+      --session->second.encoding_now;
+      send_encoded(id, encode_snapshot(key, *chunk, session->second.encoding));
+    });
+    return true;
+  }
+  bool send_update(SessionId id, const ChunkKey& key, const ChunkPtr& chunk, Version held) override {
+    const auto it = sessions_.find(id);
+    if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
+    ++it->second.encoding_now;
+    later(100, 30'000, [this, id, key, chunk, held] {  // the worker
+      const auto session = sessions_.find(id);
+      if (session == sessions_.end()) return;
+      --session->second.encoding_now;
+      const ChunkEncoding encoding = session->second.encoding;
+      const auto edits =
+          value(missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
+      updates += edits ? 1 : 0;
+      send_encoded(id, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
+    });
+    return true;
+  }
+  void send_encoded(SessionId id, const EncodedMessage& message) {
+    const auto session = sessions_.find(id);
+    if (session == sessions_.end() || !session->second.connection->open()) return;
+    if (session->second.connection->send_from_server(message)) {
+      world_->drained(id, now());
+    } else {  // the port promised to queue it: try again when there is room
+      later(1000, 5000, [this, id, message] { send_encoded(id, message); });
+    }
+  }
+  void close(SessionId id, GoodbyeReason reason, const std::string& text) override {
+    const auto it = sessions_.find(id);
+    if (it == sessions_.end()) return;
+    it->second.connection->send_from_server(encode_message(Goodbye{reason, text}));
+    later(100'000, 200'000, [this, id] {
+      if (const auto session = sessions_.find(id); session != sessions_.end())
+        session->second.connection->cut();
+    });
+  }
+  bool log_has_room(std::size_t) const override { return !log_full; }
+  void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override {
+    batches_.emplace_back(std::move(players), std::move(records));
+    if (batches_.size() == 1) write_later();
+  }
+  void write_later() {
+    later(500, 20'000, [this] {
+      auto& [players, records] = batches_.front();
+      done(store_->append(players, records));
+      const Sequence last = records.empty() ? 0 : records.back().version.seq;
+      batches_.erase(batches_.begin());
+      if (last != 0) world_->durable(last, now());
+      if (!batches_.empty()) write_later();
+    });
+  }
+  void load_chunk(const ChunkKey& key) override {
+    later(100, 50'000, [this, key] {
+      auto snapshot = value(store_->load_snapshot(key));
+      if (snapshot) return world_->chunk_loaded(key, std::move(*snapshot), now());
+      Chunk chunk{sim_base_chunk(key.at), {}, {}};
+      chunk.digest = digest_of(chunk.voxels);
+      world_->chunk_loaded(key, std::move(chunk), now());
+    });
+  }
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override {
+    later(500, 30'000, [this, saved = std::move(chunks), checkpoint] {
+      done(store_->save_snapshots(saved, checkpoint));
+      world_->snapshots_saved(now());
+    });
+  }
+  void log(WorldLogLevel level, const std::string& line) override {
+    if (level == WorldLogLevel::error) throw SimFault("server logs an error: " + line);
+  }
+
+  VirtualTime& time_;
+  SplitMix64& rng_;
+  WorldConfig config_;
+  std::function<std::unique_ptr<Store>()> open_;
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<WorldServer> world_;
+  std::uint64_t life_ = 0;  // events of an earlier life do nothing
+  SessionId next_session_ = 1;
+  std::map<SessionId, Session> sessions_;
+  std::vector<std::pair<std::vector<PlayerRow>, std::vector<EditRecord>>> batches_;
+  bool turn_waits_ = false;
+};
+
+}  // namespace runstone::test

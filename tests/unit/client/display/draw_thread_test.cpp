@@ -1,0 +1,164 @@
+#include "client/display/draw_thread.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "client/net/wake_up.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tests/unit/client/display/fake_screen.hpp"
+
+using namespace runstone;
+using test::fake_screen_on;
+using test::FakeScreenBook;
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+ChunkKey chunk(std::int32_t x) { return {0, {x, 0, 0}}; }
+
+ChunkUpload mesh_of(std::uint64_t serial, std::size_t quads) {
+  ChunkUpload upload;
+  upload.serial = serial;
+  upload.edge = 16;
+  ChunkMesh mesh;
+  mesh.opaque.quads.resize(quads);
+  upload.mesh = std::make_shared<const ChunkMesh>(std::move(mesh));
+  return upload;
+}
+
+FrameOrder small_frame() {
+  FrameOrder order;
+  order.width = 4;
+  order.height = 2;
+  return order;
+}
+
+/// A draw thread over a fake screen, and what it did so far.
+struct Bench {
+  Bench() = default;
+  ~Bench() { book.release(); }  // a check that failed leaves no frame held
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  FakeScreenBook book;
+  WakeUp wake;
+  std::vector<DrawDone> done;
+  DrawThread thread{fake_screen_on(book), DrawPriority::normal, [this] { wake.notify(); }};
+
+  /// Until this many frames are done.
+  void take_frames(std::size_t count) {
+    while (frames() < count) {
+      wake.wait(std::chrono::seconds(1));
+      for (DrawDone& one : thread.take_done()) done.push_back(std::move(one));
+    }
+  }
+  std::size_t frames() const {
+    std::size_t count = 0;
+    for (const DrawDone& one : done) count += std::holds_alternative<FrameDone>(one) ? 1 : 0;
+    return count;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what changes during a frame waits for its end, and only the newest of each chunk",
+          "[client_app]") {
+  Bench bench;
+  CHECK(bench.thread.screen_name() == "fake");
+  bench.book.hold();
+  bench.thread.draw(small_frame());
+  bench.book.wait_until_drawing();
+  bench.thread.upload(chunk(1), mesh_of(10, 1));
+  bench.thread.upload(chunk(2), mesh_of(11, 2));
+  bench.thread.upload(chunk(1), mesh_of(12, 3));
+  bench.thread.remove(chunk(2));
+  bench.thread.remove(chunk(3));
+  bench.thread.upload(chunk(3), mesh_of(13, 4));
+  CHECK(bench.thread.waiting() == 3);
+  CHECK(bench.book.lines() == Lines{"draw"});
+  bench.book.release();
+  bench.take_frames(1);
+  bench.thread.draw(small_frame());
+  bench.take_frames(2);
+  CHECK(bench.thread.waiting() == 0);
+  CHECK(bench.book.lines() == Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
+}
+
+TEST_CASE("what is reported comes in the order of the draw thread: uploads, then the frame that shows them",
+          "[client_app]") {
+  Bench bench;
+  bench.book.hold();
+  bench.thread.upload(chunk(1), mesh_of(10, 1));
+  bench.thread.draw(small_frame());
+  bench.book.wait_until_drawing();
+  bench.thread.upload(chunk(1), mesh_of(11, 1));
+  bench.book.release();
+  bench.take_frames(1);
+  bench.thread.draw(small_frame());
+  bench.take_frames(2);
+  REQUIRE(bench.done.size() == 4);
+  const auto& first = std::get<UploadDone>(bench.done[0]);
+  const auto& frame = std::get<FrameDone>(bench.done[1]);
+  const auto& second = std::get<UploadDone>(bench.done[2]);
+  const auto& last = std::get<FrameDone>(bench.done[3]);
+  CHECK(first.serial == 10);
+  CHECK(second.serial == 11);
+  CHECK(first.at_us <= frame.started_us);
+  CHECK(frame.started_us <= frame.presented_us);
+  CHECK(frame.presented_us <= second.at_us);
+  CHECK(second.at_us <= last.started_us);
+}
+
+TEST_CASE("materials reach the screen before the frame that needs them", "[client_app]") {
+  Bench bench;
+  bench.thread.set_materials(MaterialTable{});
+  bench.thread.draw(small_frame());
+  bench.take_frames(1);
+  CHECK(bench.book.lines() == Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
+}
+
+TEST_CASE("a screenshot is written from its frame, and one that cannot be is named", "[client_app]") {
+  const test::TempFolder folder;
+  Bench bench;
+  FrameOrder order = small_frame();
+  order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png"};
+  bench.thread.draw(order);
+  bench.take_frames(1);
+  CHECK(std::get<FrameDone>(bench.done.back()).unwritten == Lines{folder / "no-such-folder/picture.png"});
+  CHECK(std::filesystem::file_size(folder / "picture.png") > 0);
+}
+
+TEST_CASE("a screen that cannot be made fails the start with its words", "[client_app]") {
+  const auto none = []() -> std::unique_ptr<Screen> { throw std::runtime_error("no OpenGL here"); };
+  const auto odd = []() -> std::unique_ptr<Screen> { throw 7; };
+  CHECK_THROWS_WITH(DrawThread(none, DrawPriority::normal, nullptr), "no OpenGL here");
+  CHECK_THROWS_AS(DrawThread(odd, DrawPriority::normal, nullptr), std::runtime_error);
+}
+
+TEST_CASE("a frame that fails is an error on the main thread, every time it asks", "[client_app]") {
+  Bench bench;
+  bench.book.fail_next();
+  bench.thread.draw(small_frame());
+  const auto take_until_failed = [&bench] { bench.take_frames(1); };
+  CHECK_THROWS_WITH(take_until_failed(), "the cable is out");
+  bench.thread.upload(chunk(1), mesh_of(1, 1));  // still taken, never done
+  CHECK_THROWS_WITH(bench.thread.take_done(), "the cable is out");
+}
+
+TEST_CASE("ending lets the frame under way end and drops what waits; the screen goes on its thread",
+          "[client_app]") {
+  FakeScreenBook book;
+  {
+    DrawThread thread(fake_screen_on(book), DrawPriority::background, nullptr);
+    book.hold();
+    thread.draw(small_frame());
+    book.wait_until_drawing();
+    thread.upload(chunk(1), mesh_of(1, 1));
+    const std::jthread later([&book] { book.release(); });
+  }
+  // Released before the end was asked for or after: then the upload may have been done.
+  Lines lines = book.lines();
+  std::erase(lines, "upload 1 quads 1");
+  CHECK(lines == Lines{"draw", "gone"});
+}

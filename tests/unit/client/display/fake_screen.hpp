@@ -1,0 +1,102 @@
+// FakeScreen: a screen without OpenGL that writes down what it is told, and draws only when a test lets it.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/display/screen.hpp"
+
+namespace runstone::test {
+
+/// What a test and its screen share. Any thread.
+class FakeScreenBook {
+ public:
+  void write(std::string line) {
+    const std::lock_guard lock(mutex_);
+    lines_.push_back(std::move(line));
+  }
+  std::vector<std::string> lines() const {
+    const std::lock_guard lock(mutex_);
+    return lines_;
+  }
+  /// From now on a frame that has begun ends only with release().
+  void hold() {
+    const std::lock_guard lock(mutex_);
+    held_ = true;
+  }
+  void release() {
+    {
+      const std::lock_guard lock(mutex_);
+      held_ = false;
+    }
+    changed_.notify_all();
+  }
+  void wait_until_drawing() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return drawing_; });
+  }
+  /// The next frame throws.
+  void fail_next() {
+    const std::lock_guard lock(mutex_);
+    fails_ = true;
+  }
+
+  void draw() {
+    std::unique_lock lock(mutex_);
+    lines_.emplace_back("draw");
+    drawing_ = true;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !held_; });
+    drawing_ = false;
+    if (fails_) throw std::runtime_error("the cable is out");
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> lines_;
+  bool held_ = false, drawing_ = false, fails_ = false;
+};
+
+class FakeScreen final : public Screen {
+ public:
+  explicit FakeScreen(FakeScreenBook& book) : book_(book) {}
+  ~FakeScreen() override { book_.write("gone"); }
+
+  const char* name() const override { return "fake"; }
+  void set_materials(const MaterialTable& materials) override {
+    book_.write("materials " + std::to_string(materials.size()));
+  }
+  void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh) override {
+    book_.write("upload " + std::to_string(key.at.x) + " quads " + std::to_string(mesh.quad_count()));
+  }
+  void remove(const ChunkKey& key) override { book_.write("remove " + std::to_string(key.at.x)); }
+  RenderStats draw(const Camera& /*camera*/, int width, int height,
+                   std::span<const Marker> /*markers*/) override {
+    width_ = width;
+    height_ = height;
+    book_.draw();
+    return {};
+  }
+  Image read_image() override {
+    return {
+        width_, height_,
+        std::vector<std::uint8_t>(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 3)};
+  }
+
+ private:
+  FakeScreenBook& book_;
+  int width_ = 0, height_ = 0;
+};
+
+inline std::function<std::unique_ptr<Screen>()> fake_screen_on(FakeScreenBook& book) {
+  return [&book] { return std::make_unique<FakeScreen>(book); };
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,170 @@
+// What a planner says has to be meshed again: the layers that changed, or the whole chunk.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "client/schedule/mesh_planner.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/unit/client/schedule/planner_bench.hpp"
+
+using namespace runstone;
+using test::kBenchEdge;
+using test::layers_of;
+using test::PlannerBench;
+
+namespace {
+
+const ChunkKey kHere{0, {0, 0, 0}}, kRight{0, {1, 0, 0}};
+constexpr auto kFromLeft = static_cast<std::size_t>(Direction::neg_x);
+
+}  // namespace
+
+TEST_CASE_METHOD(PlannerBench, "the first mesh is of the whole chunk, and an edit's of its layers",
+                 "[schedule]") {
+  load_all();
+  while (auto job = planner.next()) {
+    CHECK(job->before == nullptr);
+    CHECK(finish(*job));
+  }
+  const MeshPtr loaded = meshes[{0, 0, 0}];
+  commit({5, 6, 7}, 2);
+  commit({5, 6, 9}, 2);
+  const MeshJob job = only();
+  CHECK(job.before == loaded);
+  CHECK(job.changed.dirty == layers_of({{5, 6, 7}, {5, 6, 9}}));
+  CHECK(job.changed.beyond == PictureLayers{}.beyond);
+  commit({1, 1, 1}, 2);
+  CHECK(only().changed.dirty == layers_of({{1, 1, 1}}));  // no longer what the mesh before holds
+}
+
+TEST_CASE_METHOD(PlannerBench, "at the border the neighbour gets the layers of the edit, wherever it lies",
+                 "[schedule]") {
+  load_all();
+  drain();
+  commit({15, 6, 7}, 2);
+  commit({3, 3, 3}, 2);  // not at the border: the neighbour does not look at it
+  const MeshPtr before = meshes[kRight.at];
+  REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+  CHECK(last.before == before);
+  CHECK_FALSE(last.changed.dirty.any());
+  PictureLayers expected;
+  expected.beyond[kFromLeft] = layers_of({{15, 6, 7}});
+  CHECK(last.changed == expected);
+}
+
+TEST_CASE_METHOD(PlannerBench, "a prediction taken back dirties what it had changed, meshed or not",
+                 "[schedule]") {
+  load_all();
+  drain();
+  const bool meshed = GENERATE(false, true);
+  const auto seq = replica.submit({SetVoxel{{15, 6, 7}}, {}, 2}, 0, 0);
+  REQUIRE(seq);
+  tell();
+  if (meshed) drain();
+  replica.receive(Reject{*seq, RejectReason::rate_limited, "", 0}, 0);
+  tell();
+  REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+  CHECK(last.before != nullptr);
+  CHECK(last.changed.beyond[kFromLeft] == layers_of({{15, 6, 7}}));
+}
+
+TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk dirties what it changes", "[schedule]") {
+  load_all();
+  drain();
+  static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{4, 5, 6}}, {}, 2}));  // never arrives
+  load(kHere.at);
+  const MeshJob job = only();
+  CHECK(job.before != nullptr);
+  CHECK(job.changed.dirty == layers_of({{4, 5, 6}}));
+}
+
+TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a whole", "[schedule]") {
+  load_all();
+  drain();
+  const Material material = GENERATE(Material{2}, kEmpty);  // kEmpty: no voxel differs, and nothing is told
+  static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{4, 5, 6}}, {}, material}));
+  ChunkSnapshot turned = world.snapshot(kHere.at);
+  const bool was_zyx = turned.chunk.voxels.order == AxisOrder::zyx;
+  turned.chunk.voxels = reorder(turned.chunk.voxels, was_zyx ? AxisOrder::xyz : AxisOrder::zyx);
+  replica.receive(std::move(turned), {});
+  tell();
+  CHECK(planner.dirty_count() == (material == kEmpty ? 0 : 5));  // which layers differ is not known
+  commit({1, 1, 1}, 2);
+  drain();
+  CHECK(made[kHere.at].before == nullptr);
+  CHECK(made[kHere.at].chunk->order != made[kRight.at].chunk->order);
+  commit({1, 1, 2}, 2);
+  CHECK(only().before != nullptr);
+}
+
+TEST_CASE_METHOD(PlannerBench, "a chunk whose neighbour came, went or came back is meshed as a whole",
+                 "[schedule]") {
+  load_all();
+  drain();
+  SECTION("went: the server cannot send it any more") {
+    static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
+    replica.receive(ChunkUnavailable{{kRight}, UnavailableReason::damaged});
+    tell();
+    CHECK(only().before == nullptr);
+    CHECK(last.key == kHere);
+    load(kRight.at);  // came
+    REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+    CHECK(last.before == nullptr);
+  }
+  SECTION("came back, with other voxels at the border") {
+    const bool told_between = GENERATE(false, true);
+    replica.set_view({{-1, 0, 0}, 1, 0});
+    if (told_between) tell();
+    CHECK(planner.next() == std::nullopt);
+    static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{16, 5, 6}}, {}, 2}));
+    replica.set_view({{0, 0, 0}, 1, 0});
+    for (const ChunkCoord at : {kRight.at, ChunkCoord{0, 0, 1}, {0, 0, -1}}) {
+      replica.receive(world.snapshot(at), {});
+    }
+    tell();
+    const auto order = drain();
+    CHECK(std::set<ChunkCoord>(order.begin(), order.end()) ==
+          std::set<ChunkCoord>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, -1}});
+    for (const ChunkCoord at : order) CHECK(made[at].before == nullptr);
+  }
+}
+
+TEST_CASE_METHOD(PlannerBench, "where news were not taken yet the chunk is meshed as a whole", "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);
+  REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{{6, 6, 6}}, {}, 2}), {}).has_value());
+  CHECK(only().before == nullptr);
+  tell();
+  CHECK(only().before != nullptr);
+}
+
+TEST_CASE_METHOD(PlannerBench, "when meshes are forgotten all is meshed again, and no job out counts",
+                 "[schedule]") {
+  load_all();
+  const auto out = planner.next();
+  REQUIRE(out);
+  drain();
+  planner.forget_meshes();
+  CHECK_FALSE(finish(*out));
+  CHECK(planner.kept_bytes() == 0);
+  CHECK(planner.dirty_count() == 5);
+  while (auto job = planner.next()) {
+    CHECK(job->before == nullptr);
+    CHECK(finish(*job));
+  }
+  CHECK(meshes.size() == 5);
+}
+
+TEST_CASE_METHOD(PlannerBench, "kept meshes cost eight bytes a quad and what tells the layers",
+                 "[schedule]") {
+  load_all();
+  drain();
+  CHECK(planner.kept_bytes() == 0);  // chunks without quads share one
+  commit({5, 5, 5}, 2);
+  const auto job = planner.next();
+  REQUIRE(job);
+  auto mesh = std::make_shared<ChunkMesh>();
+  mesh->opaque.quads.resize(6);
+  REQUIRE(planner.finish(job->key, job->number, std::move(mesh)));
+  CHECK(planner.kept_bytes() == 6 * 8 + sizeof(ChunkMesh));
+}

@@ -1,0 +1,218 @@
+#include "client/schedule/mesh_planner.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "tests/unit/client/schedule/planner_bench.hpp"
+
+using namespace runstone;
+using test::layers_of;
+using test::PlannerBench;
+
+TEST_CASE_METHOD(PlannerBench, "a chunk waits for its neighbours in view and not for those beyond",
+                 "[schedule]") {
+  load({0, 0, 0});
+  CHECK(drain().empty());
+  load({1, 0, 0});
+  // Its one neighbour in view is here; the five beyond the view do not count.
+  CHECK(drain() == std::vector<ChunkCoord>{{1, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::neg_x)] != nullptr);
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  CHECK(drain() == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 1}});
+  load({0, 0, -1});
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {0, 0, -1}});
+  CHECK(planner.dirty_count() == 0);
+}
+
+TEST_CASE_METHOD(PlannerBench,
+                 "an edited chunk does not wait for terrain, and closes its sides as that comes",
+                 "[schedule]") {
+  load({0, 0, 0});
+  CHECK(drain().empty());
+  commit({5, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
+  load({1, 0, 0});
+  CHECK(drain() == std::vector<ChunkCoord>{{1, 0, 0}});  // nothing new to see: it waits for the others
+  commit({6, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] != nullptr);
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  load({0, 0, -1});
+  CHECK(drain().size() == 4);
+  CHECK(made.at({0, 0, 0}).before == nullptr);
+  CHECK(made.at({0, 0, 0}).neighbours[static_cast<std::size_t>(Direction::neg_z)] != nullptr);
+  CHECK(planner.dirty_count() == 0);
+}
+
+TEST_CASE_METHOD(PlannerBench, "a kept mesh that does not lead to the picture of now makes a whole chunk",
+                 "[schedule]") {
+  load_all();
+  drain();
+  replica.set_view({{1, 0, 0}, 1, 0});  // three neighbours of the middle leave
+  tell();
+  planner.view_changed();
+  commit({5, 5, 5}, 2);
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.before == nullptr);
+}
+
+TEST_CASE_METHOD(PlannerBench, "an edit whose mesh terrain made void still does not wait", "[schedule]") {
+  load({0, 0, 0});
+  commit({5, 5, 5}, 2);
+  const auto job = planner.next();
+  REQUIRE(job);
+  load({1, 0, 0});  // the side it had open has a neighbour now
+  CHECK_FALSE(finish(*job));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come before whole chunks",
+                 "[schedule]") {
+  planner.set_eye({1, 0, 0});
+  load({0, 0, 0});
+  load({1, 0, 0});
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain().size() == 3);
+  load({0, 0, -1});       // two whole chunks: it, and the middle
+  commit({5, 5, -5}, 2);  // edited, but nothing is kept of it
+  CHECK_FALSE(planner.next(JobSize::layers));
+  planner.set_eye({0, 0, -1});
+  commit({20, 5, 5}, 2);
+  const auto layers = planner.next(JobSize::layers);
+  REQUIRE(layers);
+  CHECK(layers->key.at == ChunkCoord{1, 0, 0});
+  CHECK(layers->before != nullptr);
+  CHECK_FALSE(planner.next(JobSize::layers));
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, -1}, {0, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
+  load({0, 0, 0});
+  load({-1, 0, 0});
+  load({0, 0, 1});
+  load({0, 0, -1});
+  CHECK(drain().size() == 3);
+  replica.receive(ChunkUnavailable{{{0, {1, 0, 0}}}, UnavailableReason::damaged});
+  tell();
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
+  CHECK(planner.dirty_count() == 0);
+  load({1, 0, 0});  // after all: the side that stood open closes
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "loading a view meshes every chunk once", "[schedule]") {
+  load_all();
+  CHECK(drain().size() == 5);
+  CHECK(planner.jobs() == 5);
+  CHECK(planner.chunks_meshed() == 5);
+}
+
+TEST_CASE_METHOD(PlannerBench, "an edit meshes its chunk again, and the neighbour only at the border",
+                 "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  commit({15, 5, 5}, 2);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "changes are joined and the job holds the newest runs", "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);
+  commit({6, 5, 5}, 3);
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+  CHECK(material_at(*last.chunk, {6, 5, 5}) == Material{3});
+  CHECK(last.serial == replica.shown_serial({0, {0, 0, 0}}));
+}
+
+TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[schedule]") {
+  planner.set_eye({1, 0, 0});
+  load_all();
+  auto order = drain();
+  REQUIRE(order.size() == 5);
+  CHECK(order[0] == ChunkCoord{1, 0, 0});
+  CHECK(order[1] == ChunkCoord{0, 0, 0});
+  CHECK(order[4] == ChunkCoord{-1, 0, 0});
+
+  replica.receive(world.snapshot({0, 0, 0}), {});
+  commit({5, 5, 5}, 2);    // here
+  commit({-10, 5, 5}, 2);  // and far from the eye
+  planner.set_eye({-1, 0, 0});
+  order = drain();
+  CHECK(order == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "a chunk has one job at a time, and what changes meanwhile is for the next",
+                 "[schedule]") {
+  load_all();
+  drain();
+  commit({5, 5, 5}, 2);
+  const auto first = planner.next();
+  REQUIRE(first);
+  commit({6, 6, 6}, 3);
+  commit({7, 6, 6}, 3);
+  CHECK(planner.dirty_count() == 1);
+  CHECK(planner.ready_count() == 0);
+  CHECK_FALSE(planner.next());
+  CHECK(finish(*first));
+  CHECK_FALSE(finish(*first));
+  const MeshJob second = only();
+  CHECK(second.before != nullptr);
+  CHECK(second.changed.dirty == layers_of({{6, 6, 6}, {7, 6, 6}}));
+  CHECK(planner.dirty_count() == 0);
+}
+
+TEST_CASE_METHOD(PlannerBench, "the result of a chunk that left the view is not drawn, even if it came back",
+                 "[schedule]") {
+  load_all();
+  std::map<ChunkCoord, MeshJob> jobs;
+  while (auto job = planner.next()) jobs[job->key.at] = *job;
+  replica.set_view({{3, 0, 0}, 2, 0});
+  tell();
+  CHECK_FALSE(finish(jobs[{0, 0, 0}]));
+  CHECK(finish(jobs[{1, 0, 0}]));
+  replica.set_view({{0, 0, 0}, 1, 0});
+  load({0, 0, 0});
+  CHECK_FALSE(finish(jobs[{0, 0, 0}]));
+}
+
+TEST_CASE_METHOD(PlannerBench,
+                 "when the view moves, chunks at its old edge are meshed again with their new neighbours",
+                 "[schedule]") {
+  load_all();
+  drain();
+  replica.set_view({{1, 0, 0}, 1, 0});
+  tell();
+  planner.view_changed();
+  CHECK(planner.dirty_count() == 0);
+  load({1, 0, 1});
+  load({1, 0, -1});
+  CHECK(planner.dirty_count() == 3);  // both and (1, 0, 0), which had drawn its edges open
+  load({2, 0, 0});
+  const auto order = drain();
+  CHECK(std::set<ChunkCoord>(order.begin(), order.end()) ==
+        std::set<ChunkCoord>{{1, 0, 0}, {1, 0, 1}, {1, 0, -1}, {2, 0, 0}});
+}
+
+TEST_CASE_METHOD(PlannerBench, "a chunk that waited for a neighbour which left the view goes ahead",
+                 "[schedule]") {
+  load({0, 0, 0});
+  load({1, 0, 0});
+  drain();
+  CHECK(planner.dirty_count() == 1);
+  replica.set_view({{0, 0, 0}, 0, 0});
+  tell();
+  planner.view_changed();
+  CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
+}

@@ -1,0 +1,135 @@
+#include "client/schedule/mesh_pool.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <map>
+#include <thread>
+
+#include "common/runs/layer_diff.hpp"
+#include "tests/support/mesh_scene.hpp"
+
+using namespace runstone;
+
+namespace {
+
+constexpr std::int32_t kEdge = 16;
+
+ShownPtr chunk_with(std::initializer_list<LocalPos> stones) {
+  auto chunk = std::make_shared<RunChunk>(uniform_chunk(Extent::cube(kEdge), kEmpty));
+  for (const LocalPos at : stones) fill(*chunk, index_of(at, chunk->extent, chunk->order), 1, test::kStone);
+  return chunk;
+}
+
+MeshJob job_of(std::uint64_t number, ShownPtr chunk) {
+  MeshJob job;
+  job.key = {0, {static_cast<std::int32_t>(number), 0, 0}};
+  job.number = number;
+  job.serial = 100 + number;
+  job.chunk = std::move(chunk);
+  return job;
+}
+
+/// A pool, and what came out of it.
+struct Bench {
+  explicit Bench(unsigned workers)
+      : pool(std::make_unique<MeshPool>(
+            test::mesh_visibility(), workers, [this] { return now += 1000; }, [this] { ++woken; })) {}
+  MeshResult result_of(std::uint64_t number) {
+    while (!results.contains(number)) {
+      for (MeshResult& result : pool->take_results()) results[result.number] = std::move(result);
+      std::this_thread::yield();
+    }
+    return results[number];
+  }
+  std::atomic<std::int64_t> now{0};
+  std::atomic<int> woken{0};
+  std::map<std::uint64_t, MeshResult> results;
+  std::unique_ptr<MeshPool> pool;
+};
+
+}  // namespace
+
+TEST_CASE("workers mesh every job and say when", "[schedule]") {
+  const unsigned workers = GENERATE(0U, 2U);
+  CAPTURE(workers);
+  Bench bench(workers);
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    REQUIRE(bench.pool->push(job_of(i, i == 3 ? chunk_with({{5, 5, 5}}) : chunk_with({}))));
+  }
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    const MeshResult result = bench.result_of(i);
+    CHECK(result.key.at.x == static_cast<std::int32_t>(i));
+    CHECK(result.serial == 100 + i);
+    CHECK(result.edge == kEdge);
+    CHECK(result.mesh_ns >= 1000);
+    CHECK(result.meshed_us > 0);
+    CHECK_FALSE(result.layers_only);
+    CHECK(result.mesh->quad_count() == (i == 3 ? 6 : 0));
+  }
+  CHECK(bench.results[1].mesh == bench.results[2].mesh);  // nothing to keep
+  CHECK(bench.pool->in_flight() == 0);
+  bench.pool.reset();  // the last worker may still be on its way to wake us
+  CHECK(bench.woken == (workers == 0 ? 0 : 5));
+}
+
+TEST_CASE("a job with the mesh before it makes the changed layers anew and leaves that mesh as it was",
+          "[schedule]") {
+  Bench bench(GENERATE(0U, 1U));
+  const ShownPtr old_chunk = chunk_with({{5, 5, 5}, {0, 9, 9}});
+  const ShownPtr old_side = chunk_with({});
+  MeshJob first = job_of(1, old_chunk);
+  first.neighbours[0] = old_side;
+  REQUIRE(bench.pool->push(first));
+  const MeshPtr before = bench.result_of(1).mesh;
+  REQUIRE(before->quad_count() == 12);
+
+  MeshJob second = job_of(2, chunk_with({{5, 5, 5}, {6, 5, 5}, {0, 9, 9}}));
+  second.neighbours[0] = chunk_with({{15, 9, 9}});  // hides a face of the voxel beside it
+  second.before = before;
+  second.changed.dirty = changed_layers(*old_chunk, *second.chunk);
+  second.changed.beyond[0] = changed_layers(*old_side, *second.neighbours[0]);
+  MeshJob whole = second;
+  whole.number = 3;
+  whole.before = nullptr;
+  REQUIRE(bench.pool->push(second));
+  REQUIRE(bench.pool->push(whole));
+  const MeshResult layers = bench.result_of(2);
+  CHECK(layers.layers_only);
+  CHECK(layers.mesh->quad_count() == 11);
+  CHECK(layers.mesh->opaque.quads == bench.result_of(3).mesh->opaque.quads);
+  CHECK(layers.mesh->opaque.first == bench.result_of(3).mesh->opaque.first);
+  CHECK(before->quad_count() == 12);
+
+  // The layers it is told of, and no others.
+  second.number = 4;
+  second.changed.beyond = {};
+  REQUIRE(bench.pool->push(second));
+  CHECK(bench.result_of(4).mesh->quad_count() == 12);
+}
+
+TEST_CASE("a job can be made by who would push it, whatever the workers do", "[schedule]") {
+  Bench bench(1);
+  const MeshResult result = bench.pool->mesh_here(job_of(1, chunk_with({{5, 5, 5}})));
+  CHECK(result.number == 1);
+  CHECK(result.mesh->quad_count() == 6);
+  CHECK(bench.pool->in_flight() == 0);
+  CHECK(bench.pool->take_results().empty());
+}
+
+TEST_CASE("a kept mesh is no larger than its quads, whatever was meshed before it", "[schedule]") {
+  Bench bench(0);
+  std::initializer_list<LocalPos> many = {{1, 1, 1}, {3, 1, 1}, {5, 1, 1}, {7, 1, 1}, {9, 1, 1}, {11, 1, 1}};
+  REQUIRE(bench.pool->push(job_of(1, chunk_with(many))));
+  REQUIRE(bench.pool->push(job_of(2, chunk_with({{1, 1, 1}}))));
+  CHECK(bench.result_of(1).mesh->opaque.quads.capacity() == 36);
+  CHECK(bench.result_of(2).mesh->opaque.quads.capacity() == 6);
+}
+
+TEST_CASE("a pool that is full takes no more jobs until results are taken", "[schedule]") {
+  Bench bench(1);
+  std::uint64_t pushed = 0;
+  while (bench.pool->push(job_of(pushed + 1, chunk_with({})))) ++pushed;
+  CHECK(pushed == bench.pool->capacity());
+  static_cast<void>(bench.result_of(pushed));
+  CHECK(bench.pool->push(job_of(pushed + 1, chunk_with({}))));
+}

@@ -1,0 +1,420 @@
+#include "client/script/script_runner.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "common/edits/clipboard/clipboard_builder.hpp"
+
+using namespace runstone;
+
+namespace {
+
+/// A world of single voxels that answers at once.
+struct FakeHost final : ScriptHost {
+  struct Submitted {
+    EditDescriptor edit;
+    TimeUs due_us, now_us;
+  };
+  bool open = true, is_loaded = true, is_durable = true, draws = true, takes = true;
+  std::optional<bool> picture = true;
+  std::uint64_t pongs = 0;
+  WorldPos at{10, 20, 30};
+  double yaw = 0, pitch = 0;
+  std::map<VoxelPos, Material> voxels;
+  std::optional<RayHit> hit;
+  std::vector<Submitted> edits;
+  mutable std::vector<VoxelBox> copied;
+  std::vector<std::string> files;
+  std::vector<Travel> travels;
+  bool is_travelling = false;
+  std::string refusal;
+
+  bool ready() const override { return open; }
+  WorldPos eye() const override { return at; }
+  void move_to(const WorldPos& eye) override { at = eye; }
+  void look(double y, double p) override { yaw = y, pitch = p; }
+  std::optional<Material> material(std::string_view name) const override {
+    if (name == "air" || name == "0") return kEmpty;
+    if (name == "stone") return Material{5};
+    if (name == "sand") return Material{2};
+    return std::nullopt;
+  }
+  std::optional<Material> shown_at(VoxelPos pos) const override {
+    if (pos.x > 1000) return std::nullopt;
+    const auto it = voxels.find(pos);
+    return it == voxels.end() ? kEmpty : it->second;
+  }
+  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+    copied.push_back(box);
+    if (box.min.x > 1000) return runstone::fail(ErrorCode::not_found, "it is far");
+    const auto side = [](std::int32_t low, std::int32_t high) {
+      return static_cast<std::uint8_t>(high - low);
+    };
+    ClipboardBuilder cells(
+        {side(box.min.x, box.max.x), side(box.min.y, box.max.y), side(box.min.z, box.max.z)});
+    cells.append(1, Material{5});
+    while (cells.filled() < static_cast<std::uint32_t>(box.max.x - box.min.x) *
+                                static_cast<std::uint32_t>(box.max.y - box.min.y) *
+                                static_cast<std::uint32_t>(box.max.z - box.min.z)) {
+      cells.append(1, solid ? std::nullopt : std::optional<Material>(kEmpty));
+    }
+    return cells.finish();
+  }
+  std::optional<RayHit> pick() const override { return hit; }
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t) const override {
+    if (x > 1000) return std::nullopt;
+    return 7;
+  }
+  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+    edits.push_back({edit, due_us, now_us});
+    return takes;
+  }
+  bool loaded() const override { return is_loaded; }
+  bool durable() const override { return is_durable; }
+  std::uint64_t sync_mark() const override { return pongs; }
+  bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
+  void travel(const Travel& travel) override { travels.push_back(travel); }
+  bool travelling() const override { return is_travelling; }
+  std::vector<std::string> commands;
+  bool is_commanding = false, is_command_ok = true;
+  std::string command(const std::string& text) override {
+    commands.push_back(text);
+    return {};
+  }
+  bool commanding() const override { return is_commanding; }
+  bool show_answer() override { return is_command_ok; }
+  std::string travel_refusal() const override { return refusal; }
+  TimeUs utc_now_us() const override { return 5'000'000; }
+  bool screenshot(const std::string& file) override {
+    files.push_back(file);
+    return draws;
+  }
+  std::optional<bool> screenshot_written() const override { return picture; }
+  bool digests(const std::string& file) override {
+    files.push_back(file);
+    return file != "bad";
+  }
+};
+
+struct Fixture {
+  void load(std::string_view text) {
+    auto parsed = parse_script(text, "s.txt");
+    INFO((parsed ? "" : parsed.error().message()));
+    REQUIRE(parsed.has_value());
+    script = *parsed;
+    runner.emplace(script, host);
+  }
+  void run(std::string_view text) {
+    load(text);
+    runner->step(0);
+    REQUIRE(runner->finished());
+  }
+  FakeHost host;
+  Script script;
+  std::optional<ScriptRunner> runner;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from the surface", "[bots]") {
+  run("set 1 2 3 stone\nset ~ ~-1 ~+2 stone\nset -4 ^+1 5 stone\nset -0.5 1.9 2.5 sand");
+  REQUIRE(host.edits.size() == 4);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{1, 2, 3}}, {}, 5});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{10, 19, 32}}, {}, 5});
+  CHECK(host.edits[2].edit == EditDescriptor{SetVoxel{{-4, 8, 5}}, {}, 5});
+  CHECK(host.edits[3].edit == EditDescriptor{SetVoxel{{-1, 1, 2}}, {}, 2});
+  CHECK(runner->failures().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both included", "[bots]") {
+  run("box 5 2 3 1 4 3 stone empty\nsphere 1 2 3 4 air only:sand");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{1, 2, 3}, {6, 5, 4}}}, {MaskKind::only_empty, 0}, 5});
+  CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
+}
+
+TEST_CASE_METHOD(Fixture, "a stroke goes through its places", "[bots]") {
+  run("stroke 2 stone 1 2 3 1.5 9.25 -0.5 solid");
+  REQUIRE(host.edits.size() == 1);
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{FillStroke{{{1, 2, 3}, {1, 9, -1}}, 2}, {MaskKind::only_solid, 0}, 5});
+  run("stroke 2 stone 1 2 3 1.5 2 3");  // one voxel twice
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]") {
+  run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 1 0 0\ncopy a 0 0 0 0 0 0\n"
+      "paste b ~ 7 -2 rotate 1 mirror x rotate -1 only:sand\npaste a 1 2 3\n");
+  CHECK(runner->failures().empty());
+  REQUIRE(host.copied.size() == 3);
+  CHECK(host.copied[0] == VoxelBox{{1, 2, 3}, {6, 5, 31}});
+  REQUIRE(host.edits.size() == 2);
+  const auto b = *host.copy({{0, 0, 0}, {2, 1, 1}}, false);
+  // A mirror along x between a quarter of a turn and back is one along z.
+  CHECK(host.edits[0].edit == EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
+                                             {MaskKind::only_material, 2},
+                                             kEmpty});
+  const auto a = *host.copy({{0, 0, 0}, {1, 1, 1}}, false);  // the newer one of that name
+  CHECK(host.edits[1].edit == EditDescriptor{runstone::Paste{{1, 2, 3}, a, {}}, {}, kEmpty});
+  CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end the script", "[bots]") {
+  run("copy a 1001 0 0 1002 0 0\nset 1 2 3 stone");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:1: cannot copy \"a\": it is far");
+  run("paste a 1 2 3\nset 1 2 3 stone");
+  REQUIRE(runner->failures().size() == 1);
+  CHECK(runner->failures()[0] == "s.txt:1: nothing was copied as \"a\"");
+  CHECK(host.edits.empty());
+}
+
+TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {
+  run("look 90 -45");
+  CHECK(host.yaw == Approx(std::numbers::pi / 2));
+  CHECK(host.pitch == Approx(-std::numbers::pi / 4));
+  run("lookat 20 30 30");  // along +x, 45 degrees up
+  CHECK(host.yaw == Approx(std::numbers::pi / 2));
+  CHECK(host.pitch == Approx(std::numbers::pi / 4));
+}
+
+TEST_CASE_METHOD(Fixture, "walking takes its time and ends where it should", "[bots]") {
+  load("walk 14 20 30 2\nquit");
+  runner->step(1'000'000);
+  CHECK_FALSE(runner->finished());
+  CHECK(runner->due_us().has_value());
+  runner->step(2'000'000);
+  CHECK(host.at.x == Approx(12));
+  runner->step(2'999'999);
+  CHECK_FALSE(runner->finished());
+  runner->step(3'000'001);
+  CHECK(runner->finished());
+  CHECK(host.at == WorldPos{14, 20, 30});
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "roaming goes to and fro while the script goes on, and a burst stays where it began",
+                 "[bots]") {
+  load("roam ~10 ~ ~ 10\nburst 4 1 0 1 stone\nmove 0 0 0\nwait 1");
+  runner->step(1'000'000);
+  CHECK(host.at == WorldPos{10, 20, 30});
+  CHECK(runner->due_us().value() < 1'100'000);
+  runner->step(1'400'000);
+  CHECK(host.at.x == Approx(14));
+  runner->step(2'000'000);
+  CHECK(host.at == WorldPos{20, 20, 30});
+  runner->step(2'300'000);
+  CHECK(host.at.x == Approx(17));
+  runner->step(3'500'000);  // one turn at most a step
+  CHECK(host.at == WorldPos{10, 20, 30});
+  runner->step(4'000'000);
+  REQUIRE(host.edits.size() == 4);
+  for (const auto& edit : host.edits) CHECK(edit.edit == EditDescriptor{SetVoxel{{10, 20, 30}}, {}, 5});
+  CHECK(host.at == WorldPos{0, 0, 0});
+  runner->step(4'500'000);
+  CHECK(host.at == WorldPos{0, 0, 0});
+  runner->step(5'000'000);
+  CHECK(runner->finished());
+}
+
+TEST_CASE_METHOD(Fixture, "digging and placing go through the picked voxel", "[bots]") {
+  host.hit = RayHit{{4, 5, 6}, 3, Direction::pos_y, 2};
+  run("dig\nplace sand");
+  REQUIRE(host.edits.size() == 2);
+  CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{4, 5, 6}}, {}, kEmpty});
+  CHECK(host.edits[1].edit == EditDescriptor{SetVoxel{{4, 6, 6}}, {}, 2});
+  host.hit.reset();
+  run("dig\nplace sand");
+  CHECK(host.edits.size() == 2);
+  CHECK(runner->failures().size() == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then", "[bots]") {
+  load("wait 1.5\nwait loaded\nwait durable\nwait synced");
+  host.is_loaded = host.is_durable = false;
+  runner->step(100);
+  CHECK(runner->due_us() == 1'500'100);
+  runner->step(1'500'100);
+  CHECK_FALSE(runner->finished());
+  host.is_loaded = true;
+  runner->step(1'600'000);
+  host.is_durable = true;
+  runner->step(1'700'000);
+  CHECK_FALSE(runner->finished());
+  host.pongs = 1;
+  runner->step(1'800'000);
+  CHECK_FALSE(runner->finished());
+  host.pongs = 2;
+  runner->step(1'900'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+}
+
+TEST_CASE_METHOD(Fixture, "a state that does not come fails the script and lets it go on", "[bots]") {
+  load("wait loaded 2\nquit");
+  host.is_loaded = false;
+  runner->step(0);
+  runner->step(2'000'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: not loaded in time"});
+}
+
+TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
+  host.open = false;
+  load("set 1 2 3 stone");
+  runner->step(0);
+  CHECK(host.edits.empty());
+  host.open = true;
+  runner->step(1);
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the script goes on", "[bots]") {
+  host.voxels[{1, 2, 3}] = 5;
+  run("expect 1 2 3 stone\nexpect 1 2 4 stone\nexpect 2000 2 3 stone\nset 1 1 1 sand");
+  REQUIRE(runner->failures().size() == 2);
+  CHECK(runner->failures()[0] == "s.txt:2: expected stone at 1 2 4, found material 0");
+  CHECK(runner->failures()[1] == "s.txt:3: expected stone at 2000 2 3, but its chunk is not here");
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]") {
+  run("set 1 2 3 unobtainium\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: the world has no material \"unobtainium\""});
+  run("set 2000 ^ 3 stone\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  run("box 0 0 0 5000 1 1 stone\nset 1 2 3 stone");
+  CHECK(host.edits.empty());
+  CHECK(runner->failures().size() == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empty ones too", "[bots]") {
+  run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 sand\nend\nrepeat "
+      "5\nend");
+  CHECK(host.edits.size() == 9);
+  CHECK(std::count_if(host.edits.begin(), host.edits.end(),
+                      [](const auto& e) { return e.edit.material == 5; }) == 6);
+}
+
+TEST_CASE_METHOD(Fixture, "a long script yields now and then", "[bots]") {
+  load("repeat 1000\nlook 0 0\nend");
+  int turns = 0;
+  for (; !runner->finished(); ++turns) runner->step(turns);
+  CHECK(turns > 5);
+}
+
+TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", "[bots]") {
+  load("burst 5 100 3 42 stone");
+  runner->step(1'000'000);
+  CHECK(host.edits.size() == 1);
+  CHECK(runner->due_us() == 1'010'000);
+  host.takes = false;  // refused edits do not hold it up
+  host.at = {500, 500, 500};
+  runner->step(1'035'000);  // late: three were due meanwhile
+  REQUIRE(host.edits.size() == 4);
+  CHECK(host.edits[1].due_us == 1'010'000);
+  CHECK(host.edits[2].due_us == 1'020'000);
+  CHECK(host.edits[3].due_us == 1'030'000);
+  CHECK(host.edits[3].now_us == 1'035'000);
+  runner->step(1'040'000);
+  CHECK(runner->finished());
+  CHECK(runner->failures().empty());
+  for (const auto& submitted : host.edits) {
+    const VoxelPos at = std::get<SetVoxel>(submitted.edit.shape).at;
+    CHECK(std::abs(at.x - 10) <= 3);
+    CHECK(std::abs(at.y - 20) <= 3);
+    CHECK(std::abs(at.z - 30) <= 3);
+  }
+  const auto first = host.edits;
+  host.edits.clear();
+  host.at = {10, 20, 30};
+  load("burst 5 100 3 42 stone");
+  runner->step(0);
+  runner->step(1'000'000);
+  REQUIRE(host.edits.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) CHECK(host.edits[i].edit == first[i].edit);
+}
+
+TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn", "[bots]") {
+  load("screenshot a.png\nquit");
+  host.picture.reset();
+  runner->step(0);
+  CHECK_FALSE(runner->finished());
+  host.picture = true;
+  runner->step(1);
+  CHECK(runner->finished());
+  CHECK(host.files == std::vector<std::string>{"a.png"});
+  host.draws = false;
+  run("screenshot b.png\ndigests good\ndigests bad");
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
+                                                       "s.txt:3: bad cannot be written"});
+}
+
+TEST_CASE_METHOD(Fixture, "a picture that cannot be written fails the script at its line, and it goes on",
+                 "[bots]") {
+  load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
+  host.picture.reset();
+  runner->step(0);
+  CHECK(runner->failures().empty());
+  host.picture = false;
+  runner->step(1);
+  CHECK(runner->finished());
+  CHECK(runner->failures() == std::vector<std::string>{"s.txt:2: nosuch/a.png cannot be written"});
+  CHECK(host.edits.size() == 1);
+}
+
+TEST_CASE("a command waits for its answer, and a refused one is a failure that the script survives",
+          "[bots]") {
+  const auto script = *parse_script(
+      "command rollback preview author #3  # all\nset 1 2 3 stone\nundo\nset 1 2 3 sand\n", "t");
+  FakeHost host;
+  host.is_commanding = true;
+  ScriptRunner runner(script, host);
+  runner.step(1'000'000);
+  CHECK(host.commands == std::vector<std::string>{"rollback preview author #3  # all"});
+  CHECK(host.edits.empty());
+  host.is_commanding = false;
+  runner.step(1'100'000);
+  CHECK(host.commands.back() == "undo");
+  CHECK(host.edits.size() == 2);
+  CHECK(runner.failures().empty());
+
+  FakeHost refusing;
+  refusing.is_command_ok = false;
+  ScriptRunner again(script, refusing);
+  again.step(1'000'000);
+  CHECK(refusing.edits.size() == 2);
+  REQUIRE(again.failures().size() == 2);
+  CHECK(again.failures()[1] == "t:3: the server refused \"undo\"");
+}
+
+TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[bots]") {
+  CHECK_FALSE(parse_script("command", "t").has_value());
+  CHECK_FALSE(parse_script("command " + std::string(1025, 'a'), "t").has_value());
+  CHECK(parse_script("command " + std::string(1024, 'a'), "t").has_value());
+  CHECK_FALSE(parse_script("undo 2", "t").has_value());
+}
+
+TEST_CASE("a travel waits until its moment is here, and a refused one ends the script", "[bots]") {
+  const auto script = *parse_script("travel -2\nset 1 2 3 stone\ntravel 7\nset 1 2 3 sand\n", "t");
+  FakeHost host;
+  host.is_travelling = true;
+  ScriptRunner runner(script, host);
+  runner.step(1'000'000);
+  REQUIRE(host.travels.size() == 1);
+  CHECK(host.travels[0].to == TravelTo::time);
+  CHECK(host.travels[0].utc_us == 3'000'000);
+  CHECK(host.edits.empty());
+  host.is_travelling = false;
+  host.refusal = "no such edit";
+  runner.step(1'100'000);
+  CHECK(runner.finished());
+  CHECK(host.edits.empty());
+  REQUIRE(runner.failures().size() == 1);
+  CHECK(runner.failures()[0] == "t:1: no such moment: no such edit");
+}

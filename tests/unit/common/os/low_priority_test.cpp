@@ -1,0 +1,29 @@
+#include "common/os/low_priority.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <thread>
+
+using namespace runstone;
+
+namespace {
+
+int nice_of_this_thread() { return ::getpriority(PRIO_PROCESS, static_cast<id_t>(::gettid())); }
+
+}  // namespace
+
+TEST_CASE("a thread of low priority and those it starts give way, and nobody else", "[process]") {
+  const int before = nice_of_this_thread();
+  int own = before, started = before;
+  std::thread([&] {
+    lower_priority();
+    own = nice_of_this_thread();
+    std::thread([&] { started = nice_of_this_thread(); }).join();
+  }).join();
+  CHECK(own >= std::max(before, 10));
+  CHECK(started == own);
+  CHECK(nice_of_this_thread() == before);
+}

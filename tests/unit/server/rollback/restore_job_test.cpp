@@ -1,0 +1,190 @@
+// A job alone: plans come from the test, the log's room and the author's rate are small.
+#include "server/rollback/restore_job.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/edits/clipboard/clipboard_builder.hpp"
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr SessionId kBuilder = 1;
+constexpr ClientInstance kInstance = 77;
+const ChunkKey kHere{0, {0, 0, 0}}, kThere{0, {1, 0, 0}};
+
+std::shared_ptr<const Clipboard> one_cell() {
+  ClipboardBuilder cells({1, 1, 1});
+  cells.append(1, Material{1});
+  return *cells.finish();
+}
+
+struct JobBench {
+  explicit JobBench(AuthorId payer = 0, WorldConfig c = config())
+      : bench(std::move(c)), author(bench.join(kBuilder, 1).author), job(order(payer)) {
+    bench.view(kBuilder, kSmall);
+  }
+  static RestoreOrder order(AuthorId payer) {
+    Selection selection;
+    selection.chunks[kHere] = {1};
+    selection.chunks[kThere] = {1};
+    RestoreOrder order;
+    order.author = payer;
+    order.payer = payer;
+    order.instance = kInstance;
+    order.cause = payer == 0 ? Cause::rollback : Cause::undo;
+    order.selection = std::make_shared<const Selection>(std::move(selection));
+    return order;
+  }
+  /// `count` edits of a voxel each.
+  RestoredChunk planned(const ChunkKey& key, int count) const {
+    RestoredChunk chunk;
+    chunk.key = key;
+    chunk.version = bench.server.chunk_version(key);
+    chunk.voxels = static_cast<std::uint64_t>(count);
+    for (int i = 0; i < count; ++i)
+      chunk.edits.push_back({SetVoxel{{key.at.x * int{kEdge} + i, 2, 2}}, {}, 1});
+    return chunk;
+  }
+  void plan_all(int edits) {
+    REQUIRE(job.next_work(bench.server).has_value());
+    job.computed({planned(kHere, edits), planned(kThere, edits)});
+  }
+  void write_log() {
+    bench.ports.log_written = bench.ports.records.size();
+    if (bench.server.head() > 0) bench.server.durable(bench.server.head(), bench.now());
+  }
+  void step() {
+    bench.tick();
+    job.step(bench.server, bench.now());
+  }
+  WorldBench bench;
+  AuthorId author;
+  RestoreJob job;
+};
+
+}  // namespace
+
+TEST_CASE("a job whose slice has more edits than the log has room for writes it in parts", "[rollback]") {
+  const auto room = static_cast<std::size_t>(GENERATE(1, 2, 3, 5, 9));
+  CAPTURE(room);
+  JobBench b;
+  b.bench.ports.log_records_max = room;
+  b.plan_all(5);
+  int steps = 0;
+  while (b.job.state() == RestoreJob::State::applying) {
+    REQUIRE(++steps <= 10);
+    const std::size_t before = b.bench.ports.records.size();
+    b.step();
+    CHECK(b.bench.ports.records.size() == std::min<std::size_t>(before + room, 10));
+    b.step();  // full: nothing more goes in
+    CHECK(b.bench.ports.records.size() == std::min<std::size_t>(before + room, 10));
+    if (b.job.state() == RestoreJob::State::applying)
+      CHECK(b.job.progress().waits_for == "the log is full (log_queue_records)");
+    b.write_log();
+  }
+  CHECK(b.job.state() == RestoreJob::State::done);
+  const RestoreJob::Progress& p = b.job.progress();
+  CHECK(p.edits == 10);
+  CHECK(p.voxels == 10);
+  CHECK(p.chunks_done == 2);
+  CHECK(p.chunks_changed == 2);
+  CHECK(p.collisions == 0);
+  CHECK(p.waits_for.empty());
+  CHECK(p.first == 1);
+  CHECK(p.last == 10);
+  for (std::size_t i = 0; i < 10; ++i) {
+    CHECK(b.bench.ports.records[i].op == OperationId{0, kInstance, i + 1});
+  }
+}
+
+TEST_CASE("the rest of a chunk is planned again if somebody built there between two parts", "[rollback]") {
+  JobBench b;
+  b.bench.ports.log_records_max = 2;
+  b.plan_all(3);
+  b.step();
+  CHECK(b.job.progress().edits == 2);
+  b.write_log();
+  b.bench.edit(kBuilder, 1, kAtOrigin, 2);
+  b.bench.server.commit(b.bench.now());
+  b.write_log();
+  for (int i = 0; i < 2; ++i) {  // the other chunk goes on
+    b.step();
+    b.write_log();
+  }
+  CHECK(b.job.progress().edits == 5);
+  CHECK(b.job.progress().collisions == 1);
+  CHECK(b.job.progress().chunks_done == 1);
+  const auto again = b.job.next_work(b.bench.server);
+  REQUIRE(again.has_value());
+  REQUIRE(again->items.size() == 1);
+  CHECK(again->items[0].key == kHere);
+  b.job.computed({b.planned(kHere, 1)});
+  b.step();
+  CHECK(b.job.state() == RestoreJob::State::done);
+  CHECK(b.job.progress().voxels == 6);
+  CHECK(b.job.progress().chunks_changed == 2);
+}
+
+TEST_CASE("a job that somebody pays for writes what their rate gives back", "[rollback]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 10;
+  slow.edit_burst = 4;
+  JobBench b(1, slow);
+  REQUIRE(b.author == 1);
+  b.plan_all(5);
+  b.step();
+  CHECK(b.job.progress().edits == 4);
+  CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
+  b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket is one
+  REQUIRE(b.bench.ports.messages<Reject>(kBuilder, kEdge).size() == 1);
+  CHECK(b.bench.ports.messages<Reject>(kBuilder, kEdge)[0].reason == RejectReason::rate_limited);
+  SECTION("time gives it back") {
+    b.bench.tick(200'000);
+    b.job.step(b.bench.server, b.bench.now());
+    CHECK(b.job.progress().edits == 6);
+  }
+  SECTION("a second session of the author pays too") {
+    b.bench.join(2, 1, 2);
+    b.job.step(b.bench.server, b.bench.now());
+    CHECK(b.job.progress().edits == 8);
+  }
+  SECTION("who has gone has nothing to pay with, and finds it done") {
+    b.bench.server.disconnected(kBuilder);
+    b.step();
+    CHECK(b.job.state() == RestoreJob::State::done);
+  }
+}
+
+TEST_CASE("an edit dearer than the bucket is paid with a full one", "[rollback]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 10;
+  slow.edit_burst = 1;
+  JobBench b(1, slow);
+  REQUIRE(b.job.next_work(b.bench.server).has_value());
+  RestoredChunk chunk = b.planned(kHere, 1);
+  chunk.edits[0] = {Paste{{2, 2, 2}, one_cell(), {}}, {}, kEmpty};
+  b.job.computed({chunk, b.planned(kThere, 1)});
+  b.step();
+  CHECK(b.job.progress().edits == 1);
+  b.bench.tick(100'000);
+  b.job.step(b.bench.server, b.bench.now());
+  CHECK(b.job.state() == RestoreJob::State::done);
+}
+
+TEST_CASE("a client that takes a job's client sequences ends the job, not the server", "[rollback]") {
+  JobBench b(1);
+  b.bench.ports.log_records_max = 2;
+  b.plan_all(2);
+  b.step();
+  REQUIRE(b.job.progress().edits == 2);
+  b.write_log();
+  b.bench.join(2, 1, kInstance);
+  b.bench.edit(2, 1000, kAtOrigin);
+  b.step();
+  CHECK(b.job.state() == RestoreJob::State::failed);
+  CHECK(b.job.progress().error.find("taken its client sequences") != std::string::npos);
+  CHECK(b.job.progress().chunks_done == 1);
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,215 @@
+// Questions to the log against a naive scan of it, in worlds that grew in many small commits, were opened
+// again, upgraded from format 1, compacted, or damaged.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/sqlite_store.hpp"
+#include "tests/support/builder_session.hpp"
+#include "tests/support/compact_by_hand.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+/// Builders' edits with some boxes, spheres, rollbacks and console edits among them.
+std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
+  BuilderSession session(seed, 5);
+  SplitMix64 rng(seed);
+  std::vector<EditRecord> records;
+  for (std::size_t i = 0; i < count; ++i) {
+    records.push_back(session.next());
+    if (rng.below(10) == 0) records.back().edit = sample_edit(rng);
+    if (rng.below(20) == 0) records.back().cause = static_cast<Cause>(1 + rng.below(kCauseMax));
+    if (i > 0 && rng.below(8) == 0) records.back().time_us = records[i - 1].time_us;  // equal times
+    if (i > 0) records.back().time_us = std::max(records.back().time_us, records[i - 1].time_us);
+  }
+  return records;
+}
+
+/// Commits of 1 to 40 records, three openings.
+void make_world(const std::string& folder, std::vector<EditRecord>& records, SplitMix64& rng) {
+  REQUIRE(create_world(folder, sample_meta()).has_value());
+  std::size_t done = 0;
+  for (std::size_t part = 1; part <= 3; ++part) {
+    auto store = *open_world(folder, StoreAccess::read_write);
+    const Epoch epoch = *store->raise_epoch();
+    const std::size_t end = records.size() * part / 3;
+    while (done < end) {
+      const std::size_t count = std::min<std::size_t>(1 + rng.below(40), end - done);
+      const std::span<EditRecord> batch(records.data() + done, count);
+      for (EditRecord& record : batch) record.version.epoch = epoch;
+      REQUIRE(store->append({}, batch).has_value());
+      done += count;
+    }
+  }
+}
+
+bool answers(const LogQuery& query, const EditRecord& record) {
+  const VoxelBox box = bounding_box(record.edit);
+  return (!query.author || *query.author == record.op.author) && record.time_us >= query.from_us &&
+         record.time_us <= query.until_us && (!query.cause || *query.cause == record.cause) &&
+         (!query.box || !intersect(*query.box, box).empty()) && record.version.seq >= query.first &&
+         record.version.seq <= query.last;
+}
+
+LogQuery random_query(SplitMix64& rng, const std::vector<EditRecord>& records) {
+  LogQuery query;
+  const auto any = [&]() -> const EditRecord& {
+    return records[rng.below(static_cast<std::uint32_t>(records.size()))];
+  };
+  if (rng.below(2) == 0) query.author = rng.below(7);
+  if (rng.below(3) == 0) query.from_us = any().time_us + rng.between(-1, 1);
+  if (rng.below(3) == 0) query.until_us = any().time_us + rng.between(-1, 1);
+  if (rng.below(2) == 0) {
+    const VoxelPos at = bounding_box(any().edit).min;
+    const VoxelPos min{at.x + rng.between(-9, 9), at.y + rng.between(-9, 9), at.z + rng.between(-9, 9)};
+    query.box =
+        VoxelBox{min, {min.x + rng.between(1, 30), min.y + rng.between(1, 30), min.z + rng.between(1, 30)}};
+  }
+  if (rng.below(4) == 0) query.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
+  if (rng.below(4) == 0) query.first = any().version.seq;
+  if (rng.below(4) == 0) query.last = any().version.seq;
+  return query;
+}
+
+std::vector<EditRecord> ask(Store& store, const LogQuery& query) {
+  std::vector<EditRecord> found;
+  const auto asked = store.query_log(query, [&](const EditRecord& record) {
+    found.push_back(record);
+    return true;
+  });
+  if (!asked) FAIL(asked.error().message());
+  return found;
+}
+
+/// Returns how many questions had an answer.
+std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitMix64& rng, int questions) {
+  std::size_t answered = 0;
+  for (int i = 0; i < questions; ++i) {
+    const LogQuery query = random_query(rng, records);
+    std::vector<EditRecord> naive;
+    for (const EditRecord& record : records) {
+      if (answers(query, record)) naive.push_back(record);
+    }
+    CAPTURE(i);
+    REQUIRE(ask(store, query) == naive);
+    answered += naive.empty() ? 0 : 1;
+  }
+  return answered;
+}
+
+/// Takes from a closed world what formats 2 and 3 added.
+void back_to_format_1(const std::string& file) {
+  REQUIRE(
+      raw_sql(
+          file,
+          "DROP INDEX edit_log_author; DROP INDEX edit_log_cause; DROP TABLE log_box; DROP TABLE keyframe; "
+          "DROP TABLE keyframe_chunk; PRAGMA user_version=1; PRAGMA wal_checkpoint(TRUNCATE)")
+          .find("ERROR") == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("questions to the log have the answers of a naive scan", "[store][query]") {
+  const TempFolder folder;
+  SplitMix64 rng(1);
+  auto records = mixed_records(1, 1500);
+  make_world(folder.path(), records, rng);
+  auto store = *open_world(folder.path(), StoreAccess::read_only);
+  CHECK(compare(*store, records, rng, 400) > 150);
+  CHECK(ask(*store, {}) == records);
+  CHECK(store->check().has_value());
+  std::size_t seen = 0;
+  REQUIRE(store->query_log({}, [&](const EditRecord&) { return ++seen < 7; }).has_value());
+  CHECK(seen == 7);
+}
+
+TEST_CASE("a world of format 1 gets its indexes when it is opened for writing", "[store][query]") {
+  const TempFolder folder;
+  SplitMix64 rng(2);
+  auto records = mixed_records(2, 600);
+  make_world(folder.path(), records, rng);
+  const std::string file = folder / "world.sqlite";
+  back_to_format_1(file);
+  {
+    auto reader = *open_world(folder.path(), StoreAccess::read_only);
+    CHECK(reader->check().has_value());
+    const auto asked = reader->query_log({}, [](const EditRecord&) { return true; });
+    REQUIRE_FALSE(asked.has_value());
+    CHECK(asked.error().kind == StoreError::Kind::bad_request);
+  }
+  auto store = *open_world(folder.path(), StoreAccess::read_write);
+  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
+  CHECK(compare(*store, records, rng, 100) > 30);
+  CHECK(store->check().has_value());
+}
+
+TEST_CASE("questions reach no further back than the log", "[store][query]") {
+  const TempFolder folder;
+  SplitMix64 rng(3);
+  auto records = mixed_records(3, 300);
+  make_world(folder.path(), records, rng);
+  compact_by_hand(folder / "world.sqlite", {records[99].version, records[99].time_us}, {});
+  records.erase(records.begin(), records.begin() + 100);
+  auto store = *open_world(folder.path(), StoreAccess::read_only);
+  CHECK(compare(*store, records, rng, 100) > 20);
+}
+
+TEST_CASE("a segment that misses an edit is damage that the check names", "[store][query]") {
+  const TempFolder folder;
+  SplitMix64 rng(4);
+  auto records = mixed_records(4, 300);
+  make_world(folder.path(), records, rng);
+  const std::string file = folder / "world.sqlite";
+  const std::string change = GENERATE(
+      std::string("DELETE FROM log_box WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
+      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
+      std::string("UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
+  REQUIRE(raw_sql(file, change).find("ERROR") == std::string::npos);
+  const auto checked = (*open_world(folder.path(), StoreAccess::read_only))->check();
+  REQUIRE_FALSE(checked.has_value());
+  CHECK(checked.error().where == "log_box");
+}
+
+TEST_CASE("a commit that was refused leaves the segments as they were", "[store][query]") {
+  const TempFolder folder;
+  SplitMix64 rng(5);
+  auto store = *create_world(folder.path(), sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  auto records = mixed_records(5, 40);
+  REQUIRE(store->append({}, std::span(records).first(20)).has_value());
+  const PlayerRow one = sample_player(1);
+  PlayerRow other = sample_player(2);
+  other.key = one.key;  // refused by the table, after nothing or everything else went in
+  CHECK_FALSE(store->append(std::vector<PlayerRow>{one, other}, std::span(records).subspan(20)).has_value());
+  CHECK(store->check().has_value());
+  REQUIRE(store->append({}, std::span(records).subspan(20)).has_value());
+  CHECK(store->check().has_value());
+  CHECK(compare(*store, records, rng, 50) > 10);
+}
+
+TEST_CASE("a builders' edit costs at most 120 bytes of database, five edits a commit", "[store][query]") {
+  const TempFolder folder;
+  auto store = *create_world(folder.path(), sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  const auto pages = [&] { return std::stol(raw_sql(store->file(), "PRAGMA page_count")); };
+  const long before = pages();
+  BuilderSession session(6);
+  constexpr int kEdits = 20'000;
+  std::vector<EditRecord> batch;
+  for (int i = 0; i < kEdits; ++i) {
+    batch.push_back(session.next());
+    if (batch.size() < 5) continue;
+    REQUIRE(store->append({}, batch).has_value());
+    batch.clear();
+  }
+  const double bytes = static_cast<double>((pages() - before) * 4096) / kEdits;
+  CAPTURE(bytes);
+  CHECK(bytes < 120);
+  CHECK(bytes > 60);
+}

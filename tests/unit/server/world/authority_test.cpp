@@ -1,0 +1,413 @@
+#include "server/world/authority.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/core/hash.hpp"
+#include "common/edits/clipboard/clipboard_builder.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/codec/messages.hpp"
+#include "tests/support/dense_chunk.hpp"
+
+namespace runstone {
+namespace {
+
+EditLimits limits() {
+  EditLimits l;
+  l.chunk_edge = 16;
+  l.material_count = 8;
+  l.volume_max = 50'000;
+  return l;
+}
+
+EditOffer offer(ClientSequence seq, const EditShape& shape, Material material, AuthorId author = 1) {
+  return {{author, 77, seq}, Cause::player, 0, {shape, {}, material}};
+}
+
+EditShape box(std::int32_t x0, std::int32_t x1) { return FillBox{{{x0, 0, 0}, {x1, 4, 4}}}; }
+
+Chunk base_chunk(Material material = kEmpty) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(16), material);
+  chunk.digest = digest_of(chunk.voxels);
+  return chunk;
+}
+
+void load(Authority& authority, const ChunkKey& key, const Chunk& chunk) {
+  REQUIRE(authority.chunks().begin_load(key));
+  REQUIRE_FALSE(authority.chunks().loaded(key, chunk).has_value());
+}
+
+constexpr ChunkKey kOrigin{0, {0, 0, 0}};
+constexpr ChunkKey kEast{0, {1, 0, 0}};
+constexpr Now kNow{1000, 5000};
+
+TEST_CASE("queued edits get consecutive sequences and each touched chunk's previous one", "[world]") {
+  Authority authority(limits(), {3, 40, 0});
+  load(authority, kOrigin, base_chunk());
+  CHECK_FALSE(authority.submit(offer(1, box(0, 4), 1), true).has_value());
+  CHECK_FALSE(authority.submit(offer(2, box(10, 20), 2), true).has_value());  // two chunks
+  CHECK_FALSE(authority.submit(offer(3, box(16, 18), 3), true).has_value());  // east only
+  const auto batch = authority.commit(kNow);
+  REQUIRE(batch.has_value());
+  CHECK(batch->commit.epoch == 3);
+  CHECK(batch->commit.first == 41);
+  REQUIRE(batch->commit.edits.size() == 3);
+  CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{0});
+  CHECK(batch->commit.edits[1].previous == std::vector<Sequence>{41, 0});
+  CHECK(batch->commit.edits[2].previous == std::vector<Sequence>{42});
+  CHECK(batch->commit.edits[1].ordered_us == 1000);
+  CHECK(batch->touched == std::vector<ChunkKey>{kOrigin, kEast});
+  CHECK(authority.head() == 43);
+  CHECK_FALSE(authority.commit(kNow).has_value());
+
+  const ChunkPtr chunk = authority.chunks().find(kOrigin);
+  CHECK(chunk->version == Version{3, 42});
+  CHECK(material_at(chunk->voxels, {0, 0, 0}) == 1);
+  CHECK(material_at(chunk->voxels, {12, 0, 0}) == 2);
+  CHECK(chunk->digest == digest_of(chunk->voxels));
+  CHECK(authority.chunks().find(kEast) == nullptr);
+  CHECK(authority.chunks().version(kEast) == Version{3, 43});
+}
+
+TEST_CASE("records carry version, operation and a time that never goes back", "[world]") {
+  Authority authority(limits(), {2, 0, 9000});
+  (void)authority.submit(offer(1, SetVoxel{{1, 1, 1}}, 1), true);
+  const auto first = authority.commit({0, 5000});
+  CHECK(first->records[0].time_us == 9000);  // the wall clock stood behind the log
+  CHECK(first->records[0].version == Version{2, 1});
+  CHECK(first->records[0].op == OperationId{1, 77, 1});
+  (void)authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2), true);
+  CHECK(authority.commit({0, 10'000})->records[0].time_us == 10'000);
+}
+
+TEST_CASE("an edit that changes no voxel still moves the version", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  load(authority, kOrigin, base_chunk(5));
+  const ChunkPtr before = authority.chunks().find(kOrigin);
+  (void)authority.submit(offer(1, box(0, 4), 5), true);
+  (void)authority.commit(kNow);
+  const ChunkPtr after = authority.chunks().find(kOrigin);
+  CHECK(after->voxels == before->voxels);
+  CHECK(after->version == Version{1, 1});
+  CHECK(before->version == Version{});  // what was published stays as it was
+}
+
+TEST_CASE("a client sequence is decided once, by applying or by a final refusal", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  authority.decided().raise({1, 77, 10});  // from the store
+  CHECK(authority.submit(offer(10, box(0, 1), 1), true) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(9, box(0, 1), 1), true) == RejectReason::already_decided);
+  CHECK_FALSE(authority.submit(offer(20, box(0, 1), 1), true).has_value());  // gaps are allowed
+  CHECK(authority.submit(offer(20, box(0, 1), 1), true) ==
+        RejectReason::already_decided);  // not yet committed
+  CHECK(authority.submit(offer(15, box(0, 1), 1), true) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(21, box(0, 1), 99), true) == RejectReason::unknown_material);
+  CHECK(authority.submit(offer(21, box(0, 1), 1), true) == RejectReason::unknown_material);  // as it was told
+  // Another instance of the same author, and another author, count for themselves.
+  EditOffer other = offer(1, box(0, 1), 1);
+  other.op.instance = 78;
+  CHECK_FALSE(authority.submit(other, true).has_value());
+  CHECK_FALSE(authority.submit(offer(1, box(0, 1), 1, 2), true).has_value());
+  CHECK(authority.commit(kNow)->records.size() == 3);
+}
+
+TEST_CASE("every refusal is final, busy too, and is told again to whoever asks again", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  CHECK(authority.submit(offer(1, box(0, 1), 1), false) == RejectReason::busy);
+  CHECK(authority.decided().of(1, 77) == 1);
+  CHECK(authority.queued() == 0);
+  CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
+  CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1), true).has_value());
+  CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
+  // What is decided or wrong is told even while the log is full.
+  CHECK(authority.submit(offer(2, box(0, 1), 1), false) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(3, box(0, 1), 99), false) == RejectReason::unknown_material);
+}
+
+TEST_CASE("an instance's oldest refusals are forgotten beyond the bound", "[world]") {
+  DecidedMarks marks;
+  for (ClientSequence seq = 1; seq <= DecidedMarks::kRefusalsMax + 1; ++seq) {
+    marks.refuse({1, 7, seq}, RejectReason::busy);
+  }
+  CHECK(marks.answer_to({1, 7, 1}) == RejectReason::already_decided);
+  CHECK(marks.answer_to({1, 7, 2}) == RejectReason::busy);
+  CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_decided);
+}
+
+TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
+  const auto reason = [](const EditDescriptor& edit) { return check_edit(edit, limits()); };
+  CHECK_FALSE(reason({FillSphere{{0, 0, 0}, 20}, {}, 1}).has_value());
+  CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);              // volume
+  CHECK(reason({FillBox{{{0, 0, 0}, {4096, 1, 4096}}}, {}, 1}) == RejectReason::too_large);  // chunks
+  CHECK(reason({FillBox{{{0, 0, 0}, {0, 1, 1}}}, {}, 1}) == RejectReason::bad_edit);         // empty
+  const auto stroke = [&](std::int32_t length, std::uint16_t radius) {
+    return reason({FillStroke{{{0, 0, 0}, {length, 0, 0}}, radius}, {}, 1});
+  };
+  CHECK_FALSE(stroke(1024, 2).has_value());           // counts 1,029 layers of 5 x 5
+  CHECK(stroke(1024, 3) == RejectReason::too_large);  // 1,031 of 7 x 7
+  CHECK(stroke(0, 2) == RejectReason::bad_edit);      // one point twice
+  CHECK(stroke(1025, 2) == RejectReason::bad_edit);
+  CHECK(reason({FillStroke{{{0, 0, 0}, {1024, 1024, 1024}}, 1}, {}, 1}) ==
+        RejectReason::too_large);  // chunks
+  CHECK(reason({SetVoxel{{kWorldLimit, 0, 0}}, {}, 1}) == RejectReason::bad_edit);
+  CHECK(reason({SetVoxel{{0, 0, 0}}, {}, 8}) == RejectReason::unknown_material);
+  CHECK(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 8}, 1}) == RejectReason::unknown_material);
+  CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
+}
+
+TEST_CASE("the server's own edits may be larger and higher than players', but not without end", "[world]") {
+  EditLimits narrow = limits();
+  narrow.heights = {0, 8};
+  Authority authority(narrow, {1, 0, 0});
+  EditOffer large = offer(1, FillBox{{{0, -4, 0}, {64, 60, 64}}}, 2);
+  CHECK(authority.submit(large, true) == RejectReason::outside_world);
+  large.op.seq = 2;
+  large.cause = Cause::rollback;
+  CHECK_FALSE(authority.submit(large, true).has_value());
+  EditOffer endless = offer(3, FillBox{{{0, 0, 0}, {4000, 4000, 4000}}}, 2);
+  endless.cause = Cause::undo;
+  CHECK(authority.submit(endless, true) == RejectReason::too_large);
+  EditOffer unknown = offer(4, box(0, 4), 8);
+  unknown.cause = Cause::redo;
+  CHECK(authority.submit(unknown, true) == RejectReason::unknown_material);
+}
+
+TEST_CASE("a paste is checked by its touched cells and each of its materials", "[world]") {
+  EditLimits l = limits();
+  l.heights = {0, 8};
+  const auto paste = [](VoxelPos at, Material high, std::uint32_t touched) {
+    ClipboardBuilder cells({128, 1, 128}, AxisOrder::xzy);
+    cells.append(touched, Material{1});
+    cells.append(1, high);
+    cells.append(128 * 128 - 1 - touched, std::nullopt);
+    return EditDescriptor{Paste{at, *cells.finish(), {}}, {}, kEmpty};
+  };
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
+  CHECK(check_edit(paste({0, 7, 0}, 8, 900), l) == RejectReason::unknown_material);
+  CHECK(check_edit(paste({0, 8, 0}, 7, 900), l) == RejectReason::outside_world);
+  l.volume_max = 901;
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 900), l).has_value());
+  CHECK(check_edit(paste({0, 7, 0}, 7, 901), l) == RejectReason::too_large);
+  l.touched_chunks_max = 8;  // a row along x
+  CHECK_FALSE(check_edit(paste({0, 7, 0}, 7, 127), l).has_value());
+  CHECK(check_edit(paste({1, 7, 0}, 7, 127), l) == RejectReason::too_large);
+
+  CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}, 16) == 1);
+  CHECK(edit_tokens({FillSphere{{0, 0, 0}, 3}, {}, 1}, 16) == 8);
+  CHECK(edit_tokens({FillSphere{{8, 8, 8}, 60}, {}, 1}, 16) == 9 * 9 * 9);  // by its box
+  FillStroke scribble;                                                      // many points, all in one chunk
+  scribble.radius = 1;
+  for (std::int32_t i = 0; i < 100; ++i) scribble.points.push_back({4 + i % 2, 4 + i % 3, 4});
+  CHECK(edit_tokens({scribble, {}, 1}, 16) == 1);
+  CHECK(edit_tokens({FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}, {}, 1}, 16) == kTouchedChunksMax);
+}
+
+TEST_CASE("a commit ends before its message is too long, whatever the edits weigh", "[world]") {
+  EditLimits l = limits();
+  l.chunk_edge = 128;
+  l.volume_max = 100'000;
+  Authority authority(l, {1, 0, 0});
+  std::vector<Run> runs;  // a byte each
+  for (std::uint32_t i = 1; i <= 48'000; ++i) runs.push_back({i, static_cast<Material>(1 + i % 2)});
+  const Extent extent{128, 125, 3};
+  RunChunk cells{extent, AxisOrder::xyz, RunList(extent.volume())};
+  for (const Run& run : runs) cells.runs.push_back(run);
+  const auto clipboard = *Clipboard::of({1, 2}, cells);
+  CHECK(clipboard->byte_size() > 48'000);
+  CHECK(edit_tokens({Paste{{0, 0, 0}, clipboard, {}}, {}, kEmpty}, 128) == 48);
+  for (ClientSequence seq = 1; seq <= 40; ++seq) {
+    CHECK_FALSE(authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty), true).has_value());
+  }
+  std::size_t edits = 0, commits = 0;
+  while (const auto batch = authority.commit(kNow)) {
+    const EncodedMessage message = encode_message(batch->commit);
+    CHECK(message.bytes->size() <= kServerEditBytesMax);
+    edits += batch->records.size();
+    ++commits;
+  }
+  CHECK(edits == 40);
+  CHECK(commits == 4);  // eleven go over half a MiB
+
+  // Small edits fill a commit by their number, not by what the largest could weigh.
+  for (ClientSequence seq = 41; seq <= 40 + 3000; ++seq) {
+    CHECK_FALSE(authority.submit(offer(seq, SetVoxel{{1, 1, 1}}, 1), true).has_value());
+  }
+  CHECK(authority.commit(kNow)->records.size() == 3000);
+}
+
+TEST_CASE("an edit that reaches above or below the world is refused whole", "[world]") {
+  EditLimits l = limits();
+  l.heights = {-8, 8};
+  const auto reason = [&](const EditShape& shape) { return check_edit({shape, {}, 1}, l); };
+  CHECK_FALSE(reason(SetVoxel{{0, -8, 0}}).has_value());
+  CHECK_FALSE(reason(SetVoxel{{0, 7, 0}}).has_value());
+  CHECK(reason(SetVoxel{{0, 8, 0}}) == RejectReason::outside_world);
+  CHECK(reason(SetVoxel{{0, -9, 0}}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillBox{{{0, -8, 0}, {1, 8, 1}}}).has_value());
+  CHECK(reason(FillBox{{{0, 0, 0}, {1, 9, 1}}}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillStroke{{{0, -6, 0}, {9, 5, 0}}, 2}).has_value());
+  CHECK(reason(FillStroke{{{0, -6, 0}, {9, 6, 0}}, 2}) == RejectReason::outside_world);
+  CHECK_FALSE(reason(FillSphere{{0, 2, 0}, 5}).has_value());
+  CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
+}
+
+TEST_CASE("what an edit answers goes into its commit and its record", "[world]") {
+  Authority authority(limits(), {2, 30, 0});
+  EditOffer undo = offer(1, SetVoxel{{1, 1, 1}}, 1);
+  undo.cause = Cause::undo;
+  undo.subject = 17;
+  CHECK_FALSE(authority.submit(undo, true).has_value());
+  CHECK_FALSE(authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2), true).has_value());
+  const auto batch = authority.commit(kNow);
+  CHECK(batch->commit.edits[0].subject == 17);
+  CHECK(batch->records[0].subject == 17);
+  CHECK(batch->commit.edits[1].subject == 0);
+  CHECK(batch->records[1].subject == 0);
+}
+
+TEST_CASE("reach is measured to the edit's bounding box", "[world]") {
+  const EditDescriptor edit{FillBox{{{10, 0, 0}, {12, 2, 2}}}, {}, 1};
+  CHECK(within_reach(edit, {5, 1, 1}, 5));
+  CHECK_FALSE(within_reach(edit, {4.9, 1, 1}, 5));
+  CHECK(within_reach(edit, {11, 1, 1}, 0.1));
+  CHECK(within_reach(edit, {15, 6, 1}, 5));
+  CHECK_FALSE(within_reach(edit, {15, 6.5, 1}, 5));
+}
+
+TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loaded", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  Authority resident(limits(), {1, 0, 0});
+  load(resident, kOrigin, base_chunk(3));
+  SplitMix64 rng(Catch::rngSeed());
+  for (ClientSequence seq = 1; seq <= 60; ++seq) {
+    const VoxelPos at{rng.between(0, 15), rng.between(0, 15), rng.between(0, 15)};
+    EditShape shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(5))};
+    if (seq % 3 == 0) shape = FillStroke{{at, {15 - at.x, at.y, at.z}, {at.x, 15 - at.y, 20}}, 1};
+    const EditOffer edit = offer(seq, shape, static_cast<Material>(rng.below(8)));
+    (void)authority.submit(edit, true);
+    (void)resident.submit(edit, true);
+    if (rng.below(3) == 0) {
+      (void)authority.commit(kNow);
+      (void)resident.commit(kNow);
+    }
+    if (seq == 30) REQUIRE(authority.chunks().begin_load(kOrigin));  // edits go on while it is being loaded
+  }
+  (void)authority.commit(kNow);
+  (void)resident.commit(kNow);
+  CHECK(authority.chunks().stack_size(kOrigin) > 0);
+  REQUIRE_FALSE(authority.chunks().loaded(kOrigin, base_chunk(3)).has_value());
+  CHECK(authority.chunks().stack_size(kOrigin) == 0);
+  const ChunkPtr late = authority.chunks().find(kOrigin);
+  const ChunkPtr early = resident.chunks().find(kOrigin);
+  CHECK(late->version == early->version);
+  CHECK(late->digest == early->digest);
+  CHECK(test::DenseChunk::of(late->voxels) == test::DenseChunk::of(early->voxels));
+}
+
+TEST_CASE("recovery puts records back on the stacks and skips what a snapshot contains", "[world]") {
+  // First run: five edits; the snapshot was taken after the second.
+  Authority first(limits(), {1, 0, 0});
+  load(first, kOrigin, base_chunk());
+  std::vector<EditRecord> log;
+  ChunkPtr snapshot;
+  for (ClientSequence seq = 1; seq <= 5; ++seq) {
+    const auto x = static_cast<std::int32_t>(seq);
+    (void)first.submit(offer(seq, box(x, x + 3), static_cast<Material>(seq)), true);
+    const auto batch = first.commit(kNow);
+    log.insert(log.end(), batch->records.begin(), batch->records.end());
+    if (seq == 2) snapshot = first.chunks().find(kOrigin);
+  }
+  // Second run: the checkpoint lags behind the snapshot, as after a crash between two of a round's slices.
+  Authority second(limits(), {2, 5, kNow.utc_us});
+  second.chunks().set_saved(kOrigin, snapshot->version);
+  for (const EditRecord& record : log) second.restack(record);
+  CHECK(second.head() == 5);
+  CHECK(second.chunks().version(kOrigin) == Version{1, 5});
+  CHECK(second.chunks().stack_size(kOrigin) == 3);
+  load(second, kOrigin, *snapshot);
+  CHECK(second.chunks().find(kOrigin)->voxels == first.chunks().find(kOrigin)->voxels);
+  CHECK(second.chunks().find(kOrigin)->version == Version{1, 5});
+  (void)second.submit(offer(6, box(0, 1), 1), true);
+  const auto batch = second.commit(kNow);
+  CHECK(batch->commit.first == 6);
+  CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{5});
+  CHECK(second.chunks().find(kOrigin)->version == Version{2, 6});
+}
+
+TEST_CASE("a loaded chunk that does not fit the log is quarantined, and its edits go on in the log alone",
+          "[world]") {
+  Authority authority(limits(), {2, 9, 0});
+  authority.chunks().set_saved(kOrigin, {1, 7});
+  SECTION("older than its snapshot") {
+    REQUIRE(authority.chunks().begin_load(kOrigin));
+    CHECK(authority.chunks().loaded(kOrigin, base_chunk()).has_value());
+  }
+  SECTION("newer than the order") {
+    Chunk newer = base_chunk();
+    newer.version = {1, 8};
+    REQUIRE(authority.chunks().begin_load(kOrigin));
+    CHECK(authority.chunks().loaded(kOrigin, newer).has_value());
+  }
+  SECTION("of another size") {
+    Chunk other;
+    other.voxels = uniform_chunk(Extent::cube(32), 1);
+    other.version = {1, 7};
+    REQUIRE(authority.chunks().begin_load(kOrigin));
+    CHECK(authority.chunks().loaded(kOrigin, other).has_value());
+  }
+  CHECK(authority.chunks().residency(kOrigin) == Residency::quarantined);
+  CHECK_FALSE(authority.chunks().begin_load(kOrigin));
+  CHECK_FALSE(authority.chunks().first_quarantined_edit().has_value());
+  (void)authority.submit(offer(1, box(0, 4), 1), true);
+  (void)authority.submit(offer(2, box(0, 4), 1), true);
+  const auto batch = authority.commit(kNow);
+  CHECK(batch->commit.edits[0].previous == std::vector<Sequence>{7});
+  CHECK(batch->commit.edits[1].previous == std::vector<Sequence>{10});
+  CHECK(authority.chunks().find(kOrigin) == nullptr);
+  CHECK(authority.chunks().first_quarantined_edit() == 10);
+  CHECK(authority.chunks().dirty().empty());
+}
+
+TEST_CASE("one commit never exceeds its limits, the rest follows in the next", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  for (ClientSequence seq = 1; seq <= kCommitEditsMax + 5; ++seq) {
+    REQUIRE_FALSE(authority.submit(offer(seq, SetVoxel{{0, 0, 0}}, 1), true).has_value());
+  }
+  Sequence next = 1;
+  std::size_t commits = 0;
+  while (const auto batch = authority.commit(kNow)) {
+    CHECK(batch->commit.first == next);
+    CHECK(batch->records.size() <= kCommitEditsMax);
+    next += batch->records.size();
+    ++commits;
+  }
+  CHECK(next == kCommitEditsMax + 6);
+  CHECK(commits >= 2);
+}
+
+TEST_CASE("only clean chunks that nobody uses are evicted, longest unused first", "[world]") {
+  Authority authority(limits(), {1, 0, 0});
+  WorldChunks& chunks = authority.chunks();
+  for (std::int32_t x = 0; x < 4; ++x) load(authority, {0, {x, 0, 0}}, base_chunk());
+  (void)authority.submit(offer(1, box(16, 20), 1), true);  // chunk 1 becomes dirty
+  (void)authority.commit(kNow);
+  const auto is_used = [](const ChunkKey& key) { return key.at.x == 2; };
+  for (std::int32_t x = 0; x < 4; ++x) chunks.released({0, {x, 0, 0}});
+  chunks.evict(0, 100, is_used);
+  CHECK(chunks.residency({0, {0, 0, 0}}) == Residency::absent);
+  CHECK(chunks.residency(kEast) == Residency::resident);           // not in a snapshot yet
+  CHECK(chunks.residency({0, {2, 0, 0}}) == Residency::resident);  // used
+  CHECK(chunks.residency({0, {3, 0, 0}}) == Residency::absent);
+  CHECK(chunks.resident_count() == 2);
+  const ChunkPtr east = chunks.find(kEast);
+  chunks.mark_saved(kEast, east->version);
+  chunks.evict(0, 100, is_used);
+  CHECK(chunks.residency(kEast) == Residency::absent);
+  CHECK(chunks.version(kEast) == east->version);  // its version is known without its voxels
+  load(authority, kEast, *east);
+  CHECK(chunks.find(kEast)->voxels == east->voxels);
+  CHECK(chunks.dirty().empty());
+}
+
+}  // namespace
+}  // namespace runstone

@@ -1,0 +1,95 @@
+// WorldBench: a world strand with fake ports and a clock that the test moves, and clients that know the
+// handshake.
+#pragma once
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocol/codec/handshake.hpp"
+#include "server/world/world_server.hpp"
+#include "tests/unit/server/world/fake_ports.hpp"
+
+namespace runstone::test {
+
+inline constexpr std::uint16_t kEdge = 16;
+
+inline KeySeed seed_of(std::uint8_t n) {
+  KeySeed seed{};
+  seed.fill(n);
+  return seed;
+}
+
+inline WorldConfig config() {
+  WorldConfig c;
+  c.chunk_edge = kEdge;
+  c.server_keys = key_pair_of(seed_of(200));
+  c.view_radius_max = 4;
+  c.edits_per_second = 0;
+  for (int i = 1; i < 5; ++i) {
+    MaterialInfo info;
+    info.name = "m" + std::to_string(i);
+    REQUIRE(c.materials.add(info).has_value());
+  }
+  return c;
+}
+
+struct WorldBench {
+  explicit WorldBench(WorldConfig c = config(), WorldStart start = {})
+      : server(std::move(c), start, ports,
+               [](std::span<std::uint8_t> out) { std::fill(out.begin(), out.end(), 9); }) {}
+
+  Now now() const { return {time_us, time_us + 1'000'000'000}; }
+
+  Hello hello(std::uint8_t who, ClientInstance instance = 1) const {
+    Hello h;
+    h.key = key_pair_of(seed_of(who)).public_key;
+    h.instance = instance;
+    h.name = "player" + std::to_string(who);
+    return h;
+  }
+  Proof proof(std::uint8_t who, const Hello& h, const Welcome& w) const {
+    return {sign(key_pair_of(seed_of(who)), client_transcript(h, w))};
+  }
+  Ready join(SessionId session, std::uint8_t who, ClientInstance instance = 1) {
+    server.connected(session, now());
+    const Hello h = hello(who, instance);
+    server.received(session, h, now());
+    const auto welcome = ports.messages<Welcome>(session, 0);
+    REQUIRE(welcome.size() == 1);
+    server.received(session, proof(who, h, welcome[0]), now());
+    const auto ready = ports.messages<Ready>(session, kEdge);
+    REQUIRE(ready.size() == 1);
+    return ready[0];
+  }
+  void view(SessionId session, View v) {
+    server.received(session, v, now());
+    answer_loads();
+  }
+  void answer_loads() {
+    while (!ports.loads.empty()) {
+      const ChunkKey key = ports.loads.front();
+      ports.loads.pop_front();
+      server.chunk_loaded(key, has_empty_base ? empty_chunk(kEdge) : dotted_chunk(kEdge), now());
+    }
+  }
+  void edit(SessionId session, ClientSequence seq, const EditShape& shape, Material material = 1) {
+    server.received(session, EditRequest{seq, 0, {shape, {}, material}}, now());
+  }
+  void tick(TimeUs later_us = 50'000) {
+    time_us += later_us;
+    server.tick(now());
+  }
+  std::vector<Commit> commits(SessionId session) const { return ports.messages<Commit>(session, kEdge); }
+
+  FakePorts ports;
+  TimeUs time_us = 1'000'000;
+  bool has_empty_base = false;  // of chunks of one material; else a snapshot is sent of each
+  WorldServer server;
+};
+
+inline constexpr View kSmall{{0, 0, 0}, 1, 0};  // five chunks
+inline const EditShape kAtOrigin = SetVoxel{{1, 1, 1}};
+
+}  // namespace runstone::test
