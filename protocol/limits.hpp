@@ -28,16 +28,18 @@ inline constexpr std::size_t kFrameHeaderBytes = 12;
 inline constexpr std::size_t kFragmentBytesMax = 16 * 1024;
 
 // Whole messages, by what their class may carry: bounds the memory a peer can make us hold per session.
-inline constexpr std::size_t kClientControlBytesMax = 4 * 1024;         // hello, view, ping: all small
-inline constexpr std::size_t kClientEditBytesMax = 64 * 1024;           // one descriptor
-inline constexpr std::size_t kServerControlBytesMax = 8 * 1024 * 1024;  // the material table in welcome
-inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;         // one commit
+inline constexpr std::size_t kClientControlBytesMax = 4 * 1024;  // hello, view, ping: all small
+inline constexpr std::size_t kClientEditBytesMax = 64 * 1024;    // one descriptor
+inline constexpr std::size_t kServerControlBytesMax =
+    8 * 1024 * 1024;                                             // the material table in welcome
+inline constexpr std::size_t kServerEditBytesMax = 1024 * 1024;  // one commit
 inline constexpr std::size_t kServerChunkBytesMax = 16 * 1024 * 1024;
 
 // Chunk bytes. Raw noise at 128^3 is the worst case.
 inline constexpr std::size_t kChunkHeaderBytes = 12;
 inline constexpr std::size_t kChunkBytesMax = kChunkHeaderBytes + 6ULL * kVolumeMax;
-static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax, "the largest raw chunk fits a message");
+static_assert(kChunkBytesMax + 1024 <= kServerChunkBytesMax,
+              "the largest raw chunk fits a message");
 
 // FlatBuffers verifier: nesting and table count of the largest honest message.
 inline constexpr unsigned kVerifierDepthMax = 8;
@@ -57,16 +59,18 @@ inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // a peer that stays si
 inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
 
 // World.
-inline constexpr std::uint8_t kLodMax = 0;               // levels above full detail are reserved
-inline constexpr std::size_t kViewRadiusMax = 64;        // chunks
-inline constexpr std::uint16_t kViewConeMax = 32768;     // half a turn: all around
-inline constexpr std::size_t kUniformChunksMax = 4096;   // per message: bounds what a few bytes may unpack to
+inline constexpr std::uint8_t kLodMax = 0;            // levels above full detail are reserved
+inline constexpr std::size_t kViewRadiusMax = 64;     // chunks
+inline constexpr std::uint16_t kViewConeMax = 32768;  // half a turn: all around
+inline constexpr std::size_t kUniformChunksMax =
+    4096;  // per message: bounds what a few bytes may unpack to
 inline constexpr std::size_t kChunkRequestKeysMax = 64;  // per message
 inline constexpr std::size_t kUnavailableKeysMax = 64;   // per message
 inline constexpr std::size_t kHeldChunksMax = 256;       // per message
 inline constexpr std::size_t kHeldClaimsMax = 32'768;    // that wait for an answer, per session
 inline constexpr std::size_t kSameChunksMax = 1024;      // per message
-inline constexpr std::size_t kChunkEditsMax = 1024;      // per message; more of them are sent as a snapshot
+inline constexpr std::size_t kChunkEditsMax =
+    1024;  // per message; more of them are sent as a snapshot
 inline constexpr std::size_t kCommitEditsMax = 4096;
 inline constexpr std::size_t kTouchedChunksMax = 4096;  // per edit: bounds the work of one request
 inline constexpr std::size_t kAuditEntriesMax = 1024;

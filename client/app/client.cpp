@@ -26,12 +26,15 @@ namespace runstone {
 namespace {
 
 constexpr TimeUs kRestUs = 10'000;  // longest pause of the loop: session ticks
-constexpr TimeUs kInputUs = 2'000;  // longest pause with a window: how late a key or click is noticed
+constexpr TimeUs kInputUs =
+    2'000;  // longest pause with a window: how late a key or click is noticed
 constexpr TimeUs kTitleUs = 500'000;
-constexpr TimeUs kSettleUsMax = 10'000'000;  // for all that is here to be drawn without anything new to draw
-constexpr Sequence kScrubSteps = 100;        // from the first edit to the newest
-constexpr TimeUs kEventsUs = 1'000;    // of a turn for messages: then own edits, meshes and frames get theirs
-constexpr TimeUs kKeepUs = 2'000'000;  // between two batches for the chunk cache
+constexpr TimeUs kSettleUsMax =
+    10'000'000;  // for all that is here to be drawn without anything new to draw
+constexpr Sequence kScrubSteps = 100;  // from the first edit to the newest
+constexpr TimeUs kEventsUs =
+    1'000;  // of a turn for messages: then own edits, meshes and frames get theirs
+constexpr TimeUs kKeepUs = 2'000'000;       // between two batches for the chunk cache
 constexpr std::int64_t kGoodbyeMs = 1'000;  // to say goodbye
 
 /// Null where nothing is to be seen.
@@ -55,7 +58,8 @@ std::unique_ptr<DrawThread> make_draw_thread(const ClientOptions& options, Windo
 std::string moment_text(const std::optional<PastMoment>& past) {
   if (!past) return {};
   const std::time_t seconds = past->utc_us / 1'000'000;
-  return fmt::format("  as it was after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq, fmt::gmtime(seconds));
+  return fmt::format("  as it was after edit {} ({:%Y-%m-%d %H:%M:%S} UTC)", past->seq,
+                     fmt::gmtime(seconds));
 }
 
 /// Null without a cache; a cache that cannot be had is a warning.
@@ -71,7 +75,8 @@ std::unique_ptr<CacheThread> make_cache(const ClientOptions& options, std::funct
     spdlog::warn("{}; this client goes without", cache.error());
     return nullptr;
   }
-  if (const std::string warning = (*cache)->take_warning(); !warning.empty()) spdlog::warn("{}", warning);
+  if (const std::string warning = (*cache)->take_warning(); !warning.empty())
+    spdlog::warn("{}", warning);
   return std::make_unique<CacheThread>(*std::move(cache), std::move(wake));
 }
 
@@ -95,9 +100,10 @@ Client::Client(ClientOptions options, const Script* script)
       session_(session_config(options_, cache_ != nullptr)),
       pins_known_(session_.pinned().size()),
       window_(make_window(options_)),
-      picture_(session_.replica(), make_draw_thread(options_, window_.get(), [this] { wake_.notify(); }),
-               window_ != nullptr, options_.workers, [this] { wake_.notify(); }) {
-  spdlog::info("renderer={}", picture_.renderer_name());
+      pipeline_(session_.replica(),
+                make_draw_thread(options_, window_.get(), [this] { wake_.notify(); }),
+                window_ != nullptr, options_.workers, [this] { wake_.notify(); }) {
+  spdlog::info("renderer={}", pipeline_.renderer_name());
   if (script != nullptr) runner_.emplace(*script, static_cast<ScriptHost&>(*this));
   started_us_ = steady_now_us();
   lost_us_ = started_us_;
@@ -125,10 +131,10 @@ int Client::play(const volatile std::sig_atomic_t& stop) {
   std::optional<int> code;
   while (!code) {
     take_events();
-    take_news();  // before the script asks whether all of it is drawn
+    drain_changes();  // before the script asks whether all of it is drawn
     const TimeUs now_us = steady_now_us();
     take_input(now_us);
-    picture_.take_drawn();
+    pipeline_.take_drawn();
     see_completeness(now_us);
     if (runner_) runner_->step(now_us);
     settle();  // own edits first: to follow the player may take long
@@ -150,7 +156,8 @@ void Client::take_events() {
   if (events_.empty()) {
     for (NetEvent& event : net_->take_events()) events_.push_back(std::move(event));
   }
-  for (const TimeUs until_us = steady_now_us() + kEventsUs; !events_.empty() && steady_now_us() < until_us;) {
+  for (const TimeUs until_us = steady_now_us() + kEventsUs;
+       !events_.empty() && steady_now_us() < until_us;) {
     NetEvent event = std::move(events_.front());
     events_.pop_front();
     if (const auto* connected = std::get_if<NetConnected>(&event)) on_connected(*connected);
@@ -174,8 +181,9 @@ void Client::on_received(NetReceived& event) {
     chunk_stats_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
     chunk_stats_.unpack_ns.add(event.unpack_ns);
   }
-  session_.receive(std::move(event.message), {event.received_us, event.unpacked_us, steady_now_us()});
-  if (session_.openings() != openings_seen_) world_opened();
+  session_.receive(std::move(event.message),
+                   {event.received_us, event.unpacked_us, steady_now_us()});
+  if (session_.connect_count() != connects_seen_) world_opened();
 }
 
 void Client::on_disconnected(const NetDisconnected& event) {
@@ -184,7 +192,8 @@ void Client::on_disconnected(const NetDisconnected& event) {
   step_cache(steady_now_us(), true);
   session_.disconnected();
   last_failure_ = event.why;
-  if (session_.end() && !session_.end()->text.empty()) last_failure_ += " (" + session_.end()->text + ")";
+  if (session_.end() && !session_.end()->text.empty())
+    last_failure_ += " (" + session_.end()->text + ")";
   if (!lost_us_) {
     lost_us_ = steady_now_us();
     spdlog::warn("connection lost: {}", last_failure_);
@@ -194,13 +203,13 @@ void Client::on_disconnected(const NetDisconnected& event) {
 }
 
 void Client::world_opened() {
-  openings_seen_ = session_.openings();
+  connects_seen_ = session_.connect_count();
   lost_us_.reset();
   const Welcome& welcome = *session_.welcome();
-  spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(), welcome.epoch,
-               welcome.head, welcome.durable, welcome.chunk_edge);
+  spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(),
+               welcome.epoch, welcome.head, welcome.durable, welcome.chunk_edge);
   player_.enter(welcome.world_id, welcome.spawn);
-  picture_.set_materials(welcome.materials);
+  pipeline_.set_materials(welcome.materials);
   if (!options_.key_file.empty() && session_.pinned().size() != pins_known_) {
     save_pinned_servers(options_.key_file, session_.pinned());
     pins_known_ = session_.pinned().size();
@@ -209,12 +218,13 @@ void Client::world_opened() {
 
 void Client::settle() {
   flush();
-  take_news();
-  picture_.mesh();
+  drain_changes();
+  pipeline_.mesh();
 }
 
 void Client::flush() {
-  for (const Message& message : session_.take_outgoing()) net_->send(connection_, encode_message(message));
+  for (const Message& message : session_.take_outgoing())
+    net_->send(connection_, encode_message(message));
   if (session_.wants_close() && connection_ != 0) net_->close(connection_);
 }
 
@@ -228,7 +238,8 @@ void Client::step_cache(TimeUs now_us, bool all) {
       cache_->keep(*world, session_.replica().take_unkept(all ? SIZE_MAX : cache_->room()));
     }
   }
-  if (const std::string warning = cache_->take_warning(); !warning.empty()) spdlog::warn("{}", warning);
+  if (const std::string warning = cache_->take_warning(); !warning.empty())
+    spdlog::warn("{}", warning);
 }
 
 // ---- player
@@ -240,7 +251,7 @@ void Client::take_input(TimeUs now_us) {
   input_us_ = now_us;
   if (input.close || input.escape) wish_to_end_ = kExitOk;
   if (runner_) return;  // the script steers
-  player_.steer(input, std::min(seconds, 0.1), picture_.materials().size());
+  player_.steer(input, std::min(seconds, 0.1), pipeline_.materials().size());
   for (int i = 0; i < input.remove_clicks; ++i) click(false, now_us);
   for (int i = 0; i < input.place_clicks; ++i) click(true, now_us);
   if (input.scrub != 0) scrub(input.scrub);
@@ -248,14 +259,15 @@ void Client::take_input(TimeUs now_us) {
   if (input.redo) static_cast<void>(session_.command("redo"));
   if (input.live) static_cast<void>(session_.travel({}));
   if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
-  picture_.moved();
+  pipeline_.moved();
 }
 
 void Client::click(bool place, TimeUs now_us) {
   const auto hit = pick();
   if (!hit) return;
   const auto at = place ? place_against(*hit) : hit->voxel;
-  if (at) static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
+  if (at)
+    static_cast<void>(submit({SetVoxel{*at}, {}, place ? player_.held() : kEmpty}, now_us, now_us));
 }
 
 std::string Client::command(const std::string& text) {
@@ -275,9 +287,9 @@ void Client::scrub(int steps) {
   const auto from = static_cast<std::int64_t>(is_away ? scrubbed_to_ : newest);
   const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
   const auto to = static_cast<Sequence>(std::max<std::int64_t>(0, from + steps * step));
-  Travel travel;  // live
+  HistoryRequest travel;  // live
   if (to < newest) {
-    travel.to = TravelTo::sequence;
+    travel.to = HistoryTarget::sequence;
     travel.seq = scrubbed_to_ = to;
   }
   static_cast<void>(session_.travel(travel));
@@ -305,17 +317,17 @@ void Client::follow_player(TimeUs now_us) {
     view.radius_h = options_.view_radius;
     view.radius_v = options_.view_radius_v;
     session_.set_view(view);
-    if (moves) picture_.view_changed();
+    if (moves) pipeline_.view_changed();
   }
-  picture_.joined(session_.view(), started_us_);
-  picture_.set_eye(centre);
+  pipeline_.joined(session_.view(), started_us_);
+  pipeline_.set_eye(centre);
 }
 
 // ---- picture
 
-void Client::take_news() {
-  const ReplicaNews news = session_.replica().take_news();
-  picture_.take(news, session_.clock(), steady_now_us());
+void Client::drain_changes() {
+  const ReplicaChanges news = session_.replica().drain_changes();
+  pipeline_.take(news, session_.clock(), steady_now_us());
   for (const auto& [key, reason] : news.unavailable) {
     spdlog::warn("chunk={} unavailable: {}", text_of(key), to_string(reason));
   }
@@ -333,15 +345,15 @@ std::vector<Marker> Client::markers() const {
   if (options_.headless) return out;
   if (const auto hit = pick()) {
     const auto at = [](std::int32_t v) { return v - 0.002; };
-    out.push_back(
-        {at(hit->voxel.x), at(hit->voxel.y), at(hit->voxel.z), 1.004, 1.004, 1.004, 20, 20, 20, false});
+    out.push_back({at(hit->voxel.x), at(hit->voxel.y), at(hit->voxel.z), 1.004, 1.004, 1.004, 20,
+                   20, 20, false});
   }
   const WorldPos eye = player_.eye();
   const LookDirection look = player_.direction();
   constexpr double kAhead = 0.5, kSize = 0.004;
   const auto dot = [&](double from, double slope) { return from + slope * kAhead - kSize / 2; };
-  out.push_back(
-      {dot(eye.x, look.x), dot(eye.y, look.y), dot(eye.z, look.z), kSize, kSize, kSize, 255, 255, 255, true});
+  out.push_back({dot(eye.x, look.x), dot(eye.y, look.y), dot(eye.z, look.z), kSize, kSize, kSize,
+                 255, 255, 255, true});
   return out;
 }
 
@@ -350,7 +362,7 @@ void Client::draw(TimeUs now_us) {
   const Camera camera = player_.camera((options_.view_radius + 1.5) * edge);
   const std::array<int, 2> size =
       window_ ? window_->framebuffer_size() : std::array{options_.width, options_.height};
-  picture_.draw(now_us, camera, size, [this] { return markers(); });
+  pipeline_.draw(now_us, camera, size, [this] { return markers(); });
   show_title(now_us);
 }
 
@@ -358,13 +370,13 @@ void Client::show_title(TimeUs now_us) {
   if (!window_ || now_us - title_us_ < kTitleUs) return;
   const WorldPos at = player_.eye();
   const Material held = player_.held();
-  const MaterialTable& materials = picture_.materials();
-  const std::uint64_t frames = picture_.frames_presented();
-  window_->set_title(
-      fmt::format("Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}",
-                  static_cast<double>(frames - title_frames_) * 1e6 / static_cast<double>(now_us - title_us_),
-                  materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
-                  moment_text(session_.replica().past()), lost_us_ ? "  (connecting)" : ""));
+  const MaterialTable& materials = pipeline_.materials();
+  const std::uint64_t frames = pipeline_.frames_presented();
+  window_->set_title(fmt::format(
+      "Runstone  {:.0f} fps  {}  {:.0f} {:.0f} {:.0f}{}{}",
+      static_cast<double>(frames - title_frames_) * 1e6 / static_cast<double>(now_us - title_us_),
+      materials.knows(held) ? materials[held].name : "", at.x, at.y, at.z,
+      moment_text(session_.replica().past()), lost_us_ ? "  (connecting)" : ""));
   title_us_ = now_us;
   title_frames_ = frames;
 }
@@ -381,11 +393,12 @@ std::optional<int> Client::exit_code(TimeUs now_us) {
     std::fprintf(stderr, "runstone-client: %s\n", end->text.c_str());
     return kExitNoStart;
   }
-  if (runner_ && runner_->finished() && picture_.screenshots_done() && picture_.has_caught_up()) {
+  if (runner_ && runner_->finished() && pipeline_.screenshots_done() && pipeline_.has_caught_up()) {
     return runner_->failures().empty() && !drift_found() ? kExitOk : kExitFailed;
   }
   if (wish_to_end_) return drift_found() ? kExitFailed : *wish_to_end_;
-  if (end && end->by_server && options_.exit_on_goodbye) return drift_found() ? kExitFailed : kExitOk;
+  if (end && end->by_server && options_.exit_on_goodbye)
+    return drift_found() ? kExitFailed : kExitOk;
   if (lost_us_ && static_cast<double>(now_us - *lost_us_) > options_.reconnect_seconds * 1e6) {
     std::fprintf(stderr, "runstone-client: no server at %s:%u: %s\n", options_.host.c_str(),
                  unsigned{options_.port}, last_failure_.c_str());
@@ -403,12 +416,12 @@ void Client::rest(TimeUs now_us) {
 
 ClientReport Client::report() const {
   ClientReport out;
-  out.renderer = picture_.renderer_name();
+  out.renderer = pipeline_.renderer_name();
   out.seconds = static_cast<double>(steady_now_us() - started_us_) / 1e6;
-  out.latency = picture_.recorder().report();
-  out.join = picture_.join();
+  out.latency = pipeline_.recorder().report();
+  out.join = pipeline_.join();
   out.chunks = chunk_stats_;
-  picture_.report(out.chunks, out.frames);
+  pipeline_.report(out.chunks, out.frames);
   const NetStats& net = net_->stats();
   out.net.bytes_received = net.bytes_received;
   out.net.bytes_sent = net.bytes_sent;
@@ -429,7 +442,8 @@ int Client::finish(int code) {
   flush();
   net_->stop(kGoodbyeMs);
   if (runner_) {
-    for (const std::string& failure : runner_->failures()) std::fprintf(stderr, "%s\n", failure.c_str());
+    for (const std::string& failure : runner_->failures())
+      std::fprintf(stderr, "%s\n", failure.c_str());
   }
   const ClientReport measured = report();
   if (!options_.report.empty() && !write_text(options_.report, to_json(measured, session_))) {
@@ -440,7 +454,7 @@ int Client::finish(int code) {
     std::fprintf(stderr, "runstone-client: cannot write %s\n", options_.digests.c_str());
     code = std::max(code, kExitFailed);
   }
-  if (session_.openings() != 0) std::fputs(to_table(measured, session_).c_str(), stdout);
+  if (session_.connect_count() != 0) std::fputs(to_table(measured, session_).c_str(), stdout);
   spdlog::info("exit code={}", code);
   return code;
 }
@@ -449,22 +463,22 @@ int Client::finish(int code) {
 
 void Client::move_to(const WorldPos& eye) {
   player_.move_to(eye);
-  picture_.moved();
+  pipeline_.moved();
 }
 
 void Client::look(double yaw, double pitch) {
   player_.look(yaw, pitch);
-  picture_.moved();
+  pipeline_.moved();
 }
 
 std::optional<Material> Client::material(std::string_view name) const {
   unsigned id = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
   if (error == std::errc{} && end == name.data() + name.size()) {
-    if (id >= picture_.materials().size()) return std::nullopt;
+    if (id >= pipeline_.materials().size()) return std::nullopt;
     return static_cast<Material>(id);
   }
-  return picture_.materials().find(name);
+  return pipeline_.materials().find(name);
 }
 
 std::optional<RayHit> Client::pick() const {
@@ -483,11 +497,11 @@ TimeUs Client::utc_now_us() const {
 bool Client::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
   const auto seq = session_.submit(edit, due_us, now_us);
   if (!seq) {
-    picture_.recorder().not_submitted();
+    pipeline_.recorder().not_submitted();
     spdlog::warn("edit not taken: {}", seq.error().what);
     return false;
   }
-  picture_.recorder().submitted(*seq, due_us);
+  pipeline_.recorder().submitted(*seq, due_us);
   return true;
 }
 
@@ -499,23 +513,25 @@ bool Client::view_has_followed() const {
 bool Client::loaded() const {
   if (!is_complete()) return false;
   // Where others never stop editing there is always a mesh to make: then what was drawn meanwhile is the picture.
-  return picture_.is_settled() || (complete_us_ && steady_now_us() - *complete_us_ >= kSettleUsMax);
+  return pipeline_.is_settled() ||
+         (complete_us_ && steady_now_us() - *complete_us_ >= kSettleUsMax);
 }
 
 bool Client::synced(std::uint64_t mark) const {
   // Two pongs: the first may answer a ping sent before the mark.
-  return is_complete() && session_.pongs() >= mark + 2 && session_.replica().own_edits().unanswered().empty();
+  return is_complete() && session_.pongs() >= mark + 2 &&
+         session_.replica().local_edits().unanswered().empty();
 }
 
 bool Client::screenshot(const std::string& file) {
-  if (!picture_.draws()) return false;
-  picture_.request_screenshot(screenshot_path(file), steady_now_us());
+  if (!pipeline_.draws()) return false;
+  pipeline_.request_screenshot(screenshot_path(file), steady_now_us());
   return true;
 }
 
 std::optional<bool> Client::screenshot_written() const {
-  if (!picture_.screenshots_done()) return std::nullopt;
-  return picture_.screenshots_written();
+  if (!pipeline_.screenshots_done()) return std::nullopt;
+  return pipeline_.screenshots_written();
 }
 
 }  // namespace runstone

@@ -11,20 +11,20 @@
 #include <string>
 #include <vector>
 
-#include "common/os/exit_code.hpp"
 #include "client/app/options.hpp"
-#include "client/display/picture.hpp"
 #include "client/app/player.hpp"
-#include "client/report/report.hpp"
-#include "client/script/script_host.hpp"
-#include "client/script/script_runner.hpp"
 #include "client/cache/cache_thread.hpp"
+#include "client/display/mesh_pipeline.hpp"
 #include "client/net/net_client.hpp"
 #include "client/net/wake_up.hpp"
 #include "client/platform/window.hpp"
 #include "client/replica/client_session.hpp"
 #include "client/replica/copy_box.hpp"
+#include "client/report/report.hpp"
 #include "client/schedule/view_pace.hpp"
+#include "client/script/script_host.hpp"
+#include "client/script/script_runner.hpp"
+#include "common/os/exit_code.hpp"
 
 namespace runstone {
 
@@ -56,7 +56,7 @@ class Client final : private ScriptHost {
   void flush();
   /// Asks the cache what the session wants of it, and hands over what is to be kept: now and then, or `all` at once.
   void step_cache(TimeUs now_us, bool all);
-  void take_news();
+  void drain_changes();
   void draw(TimeUs now_us);
   void show_title(TimeUs now_us);
   std::optional<int> exit_code(TimeUs now_us);
@@ -77,12 +77,14 @@ class Client final : private ScriptHost {
   void scrub(int steps);
 
   // ScriptHost.
-  bool ready() const override { return session_.openings() != 0; }
+  bool ready() const override { return session_.connect_count() != 0; }
   WorldPos eye() const override { return player_.eye(); }
   void move_to(const WorldPos& eye) override;
   void look(double yaw, double pitch) override;
   std::optional<Material> material(std::string_view name) const override;
-  std::optional<Material> shown_at(VoxelPos at) const override { return session_.replica().shown_at(at); }
+  std::optional<Material> shown_at(VoxelPos at) const override {
+    return session_.replica().shown_at(at);
+  }
   Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
     return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
   }
@@ -90,10 +92,10 @@ class Client final : private ScriptHost {
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
   bool loaded() const override;
-  bool durable() const override { return session_.replica().own_edits().all().empty(); }
+  bool durable() const override { return session_.replica().local_edits().all().empty(); }
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
-  void travel(const Travel& travel) override { static_cast<void>(session_.travel(travel)); }
+  void travel(const HistoryRequest& travel) override { static_cast<void>(session_.travel(travel)); }
   bool travelling() const override { return session_.travelling(); }
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }
@@ -110,7 +112,7 @@ class Client final : private ScriptHost {
   ClientSession session_;
   std::size_t pins_known_ = 0;
   std::unique_ptr<Window> window_;  // null off screen
-  Picture picture_;
+  MeshPipeline pipeline_;
   std::optional<ScriptRunner> runner_;
   Player player_;
   ViewPace view_pace_;
@@ -118,7 +120,7 @@ class Client final : private ScriptHost {
 
   std::deque<NetEvent> events_;      // taken from the network, not handled yet
   ConnectionNumber connection_ = 0;  // 0: none
-  std::uint64_t openings_seen_ = 0;
+  std::uint64_t connects_seen_ = 0;
   TimeUs started_us_ = 0;
   std::optional<TimeUs> lost_us_;      // without a session since
   std::string last_failure_;           // why the last attempt to connect failed

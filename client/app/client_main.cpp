@@ -42,7 +42,8 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
   }
   Client client(std::move(options), script ? &*script : nullptr);
   client_runs = true;
-  std::atexit(correct_exit);  // after the driver is loaded: the newest comes first, and the driver's may hang
+  std::atexit(
+      correct_exit);  // after the driver is loaded: the newest comes first, and the driver's may hang
   const int code = client.run(stop);
   client_runs = false;
   return code;

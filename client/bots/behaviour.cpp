@@ -16,7 +16,8 @@ constexpr double kEyeAbove = 12;  // voxels above the spawn's height: sees groun
 constexpr double kWalkSpeed = 4;  // voxels a second
 constexpr double kRunSpeed = 64;  // two chunks of edge 32 a second
 constexpr std::int32_t kPlotsAlong = kSiteSide / kPlotSide;
-constexpr std::int32_t kBuriedMax = 24;  // voxels from a plot's highest ground to its lowest that are filled
+constexpr std::int32_t kBuriedMax =
+    24;  // voxels from a plot's highest ground to its lowest that are filled
 
 std::int32_t down(double v) { return static_cast<std::int32_t>(std::floor(v)); }
 
@@ -28,7 +29,9 @@ class Idle final : public Behaviour {
  public:
   explicit Idle(const BotPlace& place) : at_(above_middle(site_corner(place))) {}
   WorldPos position(double /*seconds*/) const override { return at_; }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+    return std::nullopt;
+  }
 
  private:
   WorldPos at_;
@@ -41,7 +44,9 @@ class Walk final : public Behaviour {
     const double radius = kSiteSide / 2.0, angle = seconds * kWalkSpeed / radius;
     return {middle_.x + radius * std::cos(angle), middle_.y, middle_.z + radius * std::sin(angle)};
   }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+    return std::nullopt;
+  }
 
  private:
   WorldPos middle_;
@@ -57,7 +62,9 @@ class RunAway final : public Behaviour {
     const double way = seconds * kRunSpeed;
     return {from_.x + way * std::cos(angle_), from_.y, from_.z + way * std::sin(angle_)};
   }
-  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override { return std::nullopt; }
+  std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
+    return std::nullopt;
+  }
 
  private:
   WorldPos from_;
@@ -120,7 +127,8 @@ class Build final : public Behaviour {
   const MaterialTable& materials_;
   SplitMix64 random_;
   std::int32_t plot_ = 0;  // goes round the site again and again
-  std::array<std::optional<std::int32_t>, static_cast<std::size_t>(kPlotsAlong) * kPlotsAlong> levels_;
+  std::array<std::optional<std::int32_t>, static_cast<std::size_t>(kPlotsAlong) * kPlotsAlong>
+      levels_;
   std::vector<EditDescriptor> ground_;  // last one first
   std::vector<Placement> plan_;
   std::size_t next_ = 0;
@@ -137,8 +145,10 @@ class Brush final : public Behaviour {
     const auto from = on_ground(ground), to = on_ground(ground);
     if (!from || !to) return std::nullopt;
     const auto radius = static_cast<std::uint16_t>(random_.between(2, 5));
-    const auto material = static_cast<Material>(random_.below(static_cast<std::uint32_t>(materials_.size())));
-    if (random_.below(2) == 0 || *from == *to) return EditDescriptor{FillSphere{*from, radius}, {}, material};
+    const auto material =
+        static_cast<Material>(random_.below(static_cast<std::uint32_t>(materials_.size())));
+    if (random_.below(2) == 0 || *from == *to)
+      return EditDescriptor{FillSphere{*from, radius}, {}, material};
     return EditDescriptor{FillStroke{{*from, *to}, radius}, {}, material};
   }
 
@@ -175,7 +185,8 @@ class Grief final : public Behaviour {
     const VoxelPos at = {x, *y, z};
     switch (random_.below(3)) {
       case 0:  // a crater
-        return EditDescriptor{FillSphere{at, static_cast<std::uint16_t>(random_.between(2, 6))}, {}, kEmpty};
+        return EditDescriptor{
+            FillSphere{at, static_cast<std::uint16_t>(random_.between(2, 6))}, {}, kEmpty};
       case 1: {  // a pillar through whatever stands there
         const VoxelBox box = {{x - 1, *y - 2, z - 1}, {x + 1, *y + 12, z + 1}};
         return EditDescriptor{FillBox{box}, {}, paint()};
@@ -228,14 +239,16 @@ std::optional<BotRole> bot_role(std::string_view name) {
 }
 
 VoxelPos site_corner(const BotPlace& place) {
-  const auto along = static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(place.count))));
+  const auto along =
+      static_cast<std::int32_t>(std::ceil(std::sqrt(static_cast<double>(place.count))));
   const auto index = static_cast<std::int32_t>(place.index);
-  return {down(place.spawn.x) + (index % along) * kSiteSide - along * kSiteSide / 2, down(place.spawn.y),
+  return {down(place.spawn.x) + (index % along) * kSiteSide - along * kSiteSide / 2,
+          down(place.spawn.y),
           down(place.spawn.z) + (index / along) * kSiteSide - along * kSiteSide / 2};
 }
 
-std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place, const MaterialTable& materials,
-                                          std::uint64_t seed) {
+std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place,
+                                          const MaterialTable& materials, std::uint64_t seed) {
   switch (role) {
     case BotRole::idle:
     case BotRole::join_storm:

@@ -42,7 +42,7 @@ class Behaviour {
 };
 
 /// `materials` must outlive the behaviour and have one that is not empty.
-std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place, const MaterialTable& materials,
-                                          std::uint64_t seed);
+std::unique_ptr<Behaviour> make_behaviour(BotRole role, const BotPlace& place,
+                                          const MaterialTable& materials, std::uint64_t seed);
 
 }  // namespace runstone

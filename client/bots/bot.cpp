@@ -38,8 +38,8 @@ bool Bot::enter() {
   if (open == nullptr) return false;
   if (behaviour_) return true;
   if (open->materials.size() < 2) return false;  // nothing to build with
-  behaviour_ =
-      make_behaviour(config_.role, {open->spawn, config_.site, config_.sites}, open->materials, config_.seed);
+  behaviour_ = make_behaviour(config_.role, {open->spawn, config_.site, config_.sites},
+                              open->materials, config_.seed);
   return true;
 }
 
@@ -60,7 +60,7 @@ void Bot::step(TimeUs now_us) {
   tick(now_us);
   if (!enter()) return;
   follow(now_us);
-  take_news();
+  drain_changes();
   if (joining_us_ && loaded()) {
     ++counts_.joins;
     counts_.join_us.add(now_us - *joining_us_);

@@ -1,5 +1,5 @@
 // Bot: one player of a crowd: a behaviour, the times at which it acts, and a session of one kind or the other (ReplicaBot,
-// LightBot). Open loop: an edit is due at its time, whatever became of the ones before. Pure, as the sessions: messages and times come
+// HeadlessBot). Open loop: an edit is due at its time, whatever became of the ones before. Pure, as the sessions: messages and times come
 // in as arguments (microseconds of the process' steady clock). One thread.
 #pragma once
 #include <cstdint>
@@ -21,8 +21,8 @@ struct BotConfig {
   BotRole role = BotRole::build;
   std::size_t site = 0, sites = 1;
   std::uint64_t seed = 1;
-  double rate = 1;                         // edits, or joins of a join storm, a second, > 0
-  double phase = 0;                        // 0 .. 1: how much of 1 / rate passes before the first one
+  double rate = 1;   // edits, or joins of a join storm, a second, > 0
+  double phase = 0;  // 0 .. 1: how much of 1 / rate passes before the first one
   std::optional<std::uint64_t> edits_max;  // nothing more after so many
 };
 
@@ -33,7 +33,8 @@ struct BotCounts {
   std::uint64_t refused = 0;    // by the session: it holds too many, or the world ends there
   std::uint64_t confirmed = 0, rejected = 0, durable = 0;
   std::uint64_t others = 0;  // edits of others that came
-  Histogram own_us;  // due -> own commit applied, or verified by a bot without a replica; infinite: no answer
+  Histogram
+      own_us;  // due -> own commit applied, or verified by a bot without a replica; infinite: no answer
   std::uint64_t joins = 0;  // times that a bot came to see all of its view after connecting anew
   Histogram join_us;        // from connecting until then
   void merge(const BotCounts& other);
@@ -74,7 +75,7 @@ class Bot {
   virtual const Ground& ground() const = 0;
   virtual void tick(TimeUs now_us) = 0;
   virtual TimeUs tick_due_us(TimeUs now_us) const = 0;
-  virtual void take_news() {}
+  virtual void drain_changes() {}
   /// Whether the session took it.
   virtual bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
   virtual bool is_answered() const = 0;

@@ -1,12 +1,12 @@
 // DueTimes: when the edits of all bots of this process were due, on its one steady clock. A bot that receives an edit of another
-// one looks here, so no clock is estimated. Bound: of each client instance the newest kOwnEditsMax edits, as many as may be
+// one looks here, so no clock is estimated. Bound: of each client instance the newest kLocalEditsMax edits, as many as may be
 // without an answer. One thread.
 #pragma once
 #include <deque>
 #include <optional>
 #include <unordered_map>
 
-#include "client/replica/own_edits.hpp"
+#include "client/replica/local_edits.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -21,7 +21,7 @@ class DueTimes {
       row.first = seq;
     }
     row.due_us.push_back(due_us);
-    if (row.due_us.size() > kOwnEditsMax) {
+    if (row.due_us.size() > kLocalEditsMax) {
       row.due_us.pop_front();
       ++row.first;
     }

@@ -9,8 +9,9 @@ namespace {
 
 using Names = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 4> kFloors = {"planks", "stone", "marble", "wool_brown"};
-constexpr std::array<std::string_view, 8> kWalls = {"brick",  "stone_brick", "marble",    "sandstone",
-                                                    "planks", "wool_white",  "wool_cyan", "wool_yellow"};
+constexpr std::array<std::string_view, 8> kWalls = {"brick",     "stone_brick", "marble",
+                                                    "sandstone", "planks",      "wool_white",
+                                                    "wool_cyan", "wool_yellow"};
 constexpr std::array<std::string_view, 1> kWindows = {"glass"};
 constexpr std::array<std::string_view, 6> kRoofs = {"slate",    "thatch", "copper",
                                                     "wool_red", "log",    "wool_blue"};
@@ -34,10 +35,12 @@ HouseMaterials draw_house_materials(const MaterialTable& table, SplitMix64& rand
   return out;
 }
 
-std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materials, SplitMix64& random) {
+std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materials,
+                                  SplitMix64& random) {
   const std::int32_t width = random.between(7, 9), depth = random.between(7, 9);
   const std::int32_t walls = random.between(3, 4);
-  const VoxelPos first = {corner.x + (kPlotSide - width) / 2, corner.y, corner.z + (kPlotSide - depth) / 2};
+  const VoxelPos first = {corner.x + (kPlotSide - width) / 2, corner.y,
+                          corner.z + (kPlotSide - depth) / 2};
   const std::int32_t door = random.between(2, width - 3);
   std::vector<Placement> plan;
   const auto set = [&](std::int32_t x, std::int32_t y, std::int32_t z, Material material) {

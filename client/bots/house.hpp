@@ -29,6 +29,7 @@ struct Placement {
 
 /// `corner`: of the plot's smallest x and z, at the height of the floor. No voxel twice; all within the plot and
 /// below corner.y + kHouseHeight.
-std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materials, SplitMix64& random);
+std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materials,
+                                  SplitMix64& random);
 
 }  // namespace runstone

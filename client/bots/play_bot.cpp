@@ -10,7 +10,8 @@ namespace {
 
 /// Bytes of requests without an answer, at most: a link that holds much more is cut.
 constexpr std::size_t kOpenBytesMax = 2 * 1024 * 1024;
-constexpr std::int32_t kAloftHeight = kWorldLimit / 2;  // voxels: in every world, and far from what is built
+constexpr std::int32_t kAloftHeight =
+    kWorldLimit / 2;  // voxels: in every world, and far from what is built
 
 std::vector<TimeUs> offsets_of(const RecordedAuthor& recorded) {
   std::vector<TimeUs> offsets;
@@ -26,7 +27,8 @@ SessionConfig named(SessionConfig config, const std::string& name) {
 
 std::size_t bytes_bound(const EditDescriptor& edit) {
   const auto* paste = std::get_if<Paste>(&edit.shape);
-  return 256 + (paste == nullptr ? descriptor_bytes_max(kind_of(edit)) : paste->clipboard->byte_size());
+  return 256 +
+         (paste == nullptr ? descriptor_bytes_max(kind_of(edit)) : paste->clipboard->byte_size());
 }
 
 bool is_pushed_back(RejectReason reason) {
@@ -42,20 +44,21 @@ PlayBot::PlayBot(const RecordedAuthor& recorded, SessionConfig config, double sp
 
 bool PlayBot::waits() const {
   return schedule_.unanswered() != 0 || schedule_.waiting() != 0 || !session_.is_open() ||
-         !session_.replica().own_edits().all().empty();
+         !session_.replica().local_edits().all().empty();
 }
 
 void PlayBot::look_away() {
   const Welcome& world = *session_.welcome();
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
-  const View view{chunk_of({down(world.spawn.x), kAloftHeight, down(world.spawn.z)}, world.chunk_edge), 0, 0};
+  const View view{
+      chunk_of({down(world.spawn.x), kAloftHeight, down(world.spawn.z)}, world.chunk_edge), 0, 0};
   if (session_.view() != view) session_.set_view(view);
   session_.set_pose({world.spawn, 0, 0});
 }
 
 void PlayBot::step(TimeUs now_us) {
   session_.tick(now_us);
-  take_news(now_us);
+  drain_changes(now_us);
   counts_.due = schedule_.due(now_us);
   if (!session_.is_open()) return;
   look_away();
@@ -63,7 +66,8 @@ void PlayBot::step(TimeUs now_us) {
 }
 
 void PlayBot::hand_in(TimeUs now_us) {
-  while (open_bytes_ < kOpenBytesMax && session_.replica().own_edits().all().size() < kOwnEditsMax) {
+  while (open_bytes_ < kOpenBytesMax &&
+         session_.replica().local_edits().all().size() < kLocalEditsMax) {
     const auto turn = schedule_.next(now_us);
     if (!turn) return;
     const EditDescriptor& edit = recorded_.edits[turn->index].edit;
@@ -80,8 +84,8 @@ void PlayBot::hand_in(TimeUs now_us) {
   }
 }
 
-void PlayBot::take_news(TimeUs now_us) {
-  const ReplicaNews news = session_.replica().take_news();
+void PlayBot::drain_changes(TimeUs now_us) {
+  const ReplicaChanges news = session_.replica().drain_changes();
   const auto close = [this](ClientSequence seq) -> std::optional<Open> {
     const auto found = open_.find(seq);
     if (found == open_.end()) return std::nullopt;

@@ -17,12 +17,14 @@ namespace runstone {
 struct PlayCounts {
   std::uint64_t due = 0;        // edits whose time came
   std::uint64_t submitted = 0;  // handed in, those offered again included
-  std::uint64_t again = 0;      // pushed back (`rate_limited`, `busy`), and so offered again as new edits
+  std::uint64_t again =
+      0;  // pushed back (`rate_limited`, `busy`), and so offered again as new edits
   std::uint64_t confirmed = 0, durable = 0;
-  std::uint64_t unseen = 0;                       // decided while the connection was down: nobody knows how
+  std::uint64_t unseen = 0;  // decided while the connection was down: nobody knows how
   std::map<std::string, std::uint64_t> rejected;  // by the server for good, by reason
-  std::map<std::string, std::uint64_t> refused;   // by the session: beyond what this world takes; by reason
-  Histogram own_us;                               // due -> own commit applied
+  std::map<std::string, std::uint64_t>
+      refused;       // by the session: beyond what this world takes; by reason
+  Histogram own_us;  // due -> own commit applied
 };
 
 class PlayBot {
@@ -38,7 +40,9 @@ class PlayBot {
   /// Hands in what is due, and takes the replica's news. Call every few milliseconds and after messages.
   void step(TimeUs now_us);
   /// Every edit was handed in and answered, and what was applied is on disk.
-  bool settled() const { return schedule_.done() && session_.replica().own_edits().all().empty(); }
+  bool settled() const {
+    return schedule_.done() && session_.replica().local_edits().all().empty();
+  }
   /// Something is owed to it: an answer, a place on the disk, or room for an edit.
   bool waits() const;
 
@@ -51,7 +55,7 @@ class PlayBot {
   };
   void look_away();
   void hand_in(TimeUs now_us);
-  void take_news(TimeUs now_us);
+  void drain_changes(TimeUs now_us);
 
   const RecordedAuthor& recorded_;
   ClientSession session_;

@@ -27,8 +27,8 @@ void PlaySchedule::begin(TimeUs now_us) {
 
 TimeUs PlaySchedule::due_of(std::size_t index, TimeUs now_us) const {
   if (speed_ == 0) return now_us;
-  return *began_us_ +
-         static_cast<TimeUs>(std::min(static_cast<double>(offsets_us_[index]) / speed_, kFarthestUs));
+  return *began_us_ + static_cast<TimeUs>(
+                          std::min(static_cast<double>(offsets_us_[index]) / speed_, kFarthestUs));
 }
 
 std::uint64_t PlaySchedule::due(TimeUs now_us) const {

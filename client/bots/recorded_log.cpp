@@ -16,8 +16,8 @@ Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 /// Times of a file never fall, but may lie anywhere.
 TimeUs between(TimeUs first, TimeUs later) {
   const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(first);
-  return static_cast<TimeUs>(
-      std::min<std::uint64_t>(apart, static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max())));
+  return static_cast<TimeUs>(std::min<std::uint64_t>(
+      apart, static_cast<std::uint64_t>(std::numeric_limits<TimeUs>::max())));
 }
 
 void note_materials(const EditDescriptor& edit, std::vector<bool>& used) {
@@ -51,7 +51,8 @@ Result<RecordedLog, std::string> read_recorded_log(RlogSource source) {
     if (log.edits == 0) first_us = record.time_us;
     if (!log.materials.knows(material_max(record.edit))) {
       wrong = "edit " + std::to_string(record.version.seq) + " uses material " +
-              std::to_string(material_max(record.edit)) + ", which the file's table of materials lacks";
+              std::to_string(material_max(record.edit)) +
+              ", which the file's table of materials lacks";
       return false;
     }
     note_materials(record.edit, used);

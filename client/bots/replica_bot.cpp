@@ -9,8 +9,8 @@ constexpr TimeUs kTickUs = 10'000;  // as ClientSession::tick() wants it
 
 }  // namespace
 
-ReplicaBot::ReplicaBot(BotConfig config, CrowdBook& crowd)
-    : Bot(std::move(config)), crowd_(crowd), session_(config_.session) {}
+ReplicaBot::ReplicaBot(BotConfig config, FleetStatistics& fleet)
+    : Bot(std::move(config)), crowd_(fleet), session_(config_.session) {}
 
 TimeUs ReplicaBot::tick_due_us(TimeUs now_us) const { return now_us + kTickUs; }
 
@@ -24,8 +24,8 @@ bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us
   return true;
 }
 
-void ReplicaBot::take_news() {
-  const ReplicaNews news = session_.replica().take_news();
+void ReplicaBot::drain_changes() {
+  const ReplicaChanges news = session_.replica().drain_changes();
   for (const EditNews& edit : news.edits) {
     if (edit.predicted) continue;
     // An edit whose chunks come in parts is told, and counted, with each of them.
@@ -52,7 +52,7 @@ void ReplicaBot::take_news() {
     }
   }
   counts_.durable += news.durable.size();
-  is_answered_ = session_.replica().own_edits().all().empty();
+  is_answered_ = session_.replica().local_edits().all().empty();
 }
 
 BotCounts ReplicaBot::counts() const {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "client/bots/bot.hpp"
-#include "client/bots/crowd_book.hpp"
+#include "client/bots/fleet_statistics.hpp"
 #include "client/replica/client_session.hpp"
 
 namespace runstone {
@@ -11,7 +11,7 @@ namespace runstone {
 class ReplicaBot final : public Bot {
  public:
   /// `crowd` must outlive the bot.
-  ReplicaBot(BotConfig config, CrowdBook& crowd);
+  ReplicaBot(BotConfig config, FleetStatistics& fleet);
 
   ClientSession& session() { return session_; }
   const ClientSession& session() const { return session_; }
@@ -20,18 +20,20 @@ class ReplicaBot final : public Bot {
   EditLedger::Standing standing() const override { return ledger_.compare(session_.replica()); }
 
  private:
-  const Welcome* world() const override { return session_.is_open() ? &*session_.welcome() : nullptr; }
+  const Welcome* world() const override {
+    return session_.is_open() ? &*session_.welcome() : nullptr;
+  }
   void set_view(const View& view) override { session_.set_view(view); }
   void set_pose(const Pose& pose) override { session_.set_pose(pose); }
   const Ground& ground() const override { return ground_; }
   void tick(TimeUs now_us) override { session_.tick(now_us); }
   TimeUs tick_due_us(TimeUs now_us) const override;
-  void take_news() override;
+  void drain_changes() override;
   bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
   bool is_answered() const override { return is_answered_; }
   void depart() override { session_.close(GoodbyeReason::closing, ""); }
 
-  CrowdBook& crowd_;
+  FleetStatistics& crowd_;
   ClientSession session_;
   ReplicaGround ground_{session_.replica()};
   EditLedger ledger_;

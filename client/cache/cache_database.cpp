@@ -6,15 +6,18 @@ namespace runstone {
 
 // ---- statements
 
-CacheDatabase::Statement::Statement(CacheDatabase& database, const char* sql) : database_(&database) {
+CacheDatabase::Statement::Statement(CacheDatabase& database, const char* sql)
+    : database_(&database) {
   if (!database.ok()) return;
   sqlite3_stmt* made = nullptr;
-  database.take(
-      sqlite3_prepare_v3(database.handle_.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &made, nullptr));
+  database.take(sqlite3_prepare_v3(database.handle_.get(), sql, -1, SQLITE_PREPARE_PERSISTENT,
+                                   &made, nullptr));
   handle_.reset(made);
 }
 
-void CacheDatabase::Statement::Finalize::operator()(sqlite3_stmt* handle) const { sqlite3_finalize(handle); }
+void CacheDatabase::Statement::Finalize::operator()(sqlite3_stmt* handle) const {
+  sqlite3_finalize(handle);
+}
 
 CacheDatabase::Statement& CacheDatabase::Statement::bind(int parameter, std::int64_t value) {
   if (database_->ok()) database_->take(sqlite3_bind_int64(handle_.get(), parameter, value));
@@ -23,7 +26,8 @@ CacheDatabase::Statement& CacheDatabase::Statement::bind(int parameter, std::int
 
 CacheDatabase::Statement& CacheDatabase::Statement::bind(int parameter, ByteView value) {
   if (database_->ok()) {
-    database_->take(sqlite3_bind_blob64(handle_.get(), parameter, value.data(), value.size(), SQLITE_STATIC));
+    database_->take(
+        sqlite3_bind_blob64(handle_.get(), parameter, value.data(), value.size(), SQLITE_STATIC));
   }
   return *this;
 }
@@ -53,7 +57,9 @@ std::int64_t CacheDatabase::Statement::integer(int column) const {
 
 ByteView CacheDatabase::Statement::blob(int column) const {
   const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(handle_.get(), column));
-  return {data, data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
+  return {data, data == nullptr
+                    ? 0
+                    : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 
 // ---- the database
@@ -62,7 +68,8 @@ void CacheDatabase::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(
 
 CacheDatabase::CacheDatabase(const std::string& file) {
   sqlite3* made = nullptr;
-  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+  const int flags =
+      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
   const int code = sqlite3_open_v2(file.c_str(), &made, flags, nullptr);
   handle_.reset(made);
   take(code);
@@ -77,7 +84,8 @@ void CacheDatabase::take(int code) {
 bool CacheDatabase::is_corrupt() const {
   const int kind = code_ & 0xff;
   // A table or column that is missing: somebody else's database, or one that was damaged into another shape.
-  return kind == SQLITE_CORRUPT || kind == SQLITE_NOTADB || kind == SQLITE_ERROR || kind == SQLITE_CONSTRAINT;
+  return kind == SQLITE_CORRUPT || kind == SQLITE_NOTADB || kind == SQLITE_ERROR ||
+         kind == SQLITE_CONSTRAINT;
 }
 
 void CacheDatabase::run(const char* sql) {

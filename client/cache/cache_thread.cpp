@@ -82,7 +82,8 @@ void CacheThread::run() {
       return;
     }
     counters_ = cache_->counters();
-    if (std::string warning = cache_->take_warning(); !warning.empty()) warning_ = std::move(warning);
+    if (std::string warning = cache_->take_warning(); !warning.empty())
+      warning_ = std::move(warning);
   }
 }
 

@@ -25,8 +25,10 @@ constexpr const char* kSchema =
     "PRAGMA journal_size_limit = 4194304;"
     "PRAGMA cell_size_check = ON;"
     "CREATE TABLE IF NOT EXISTS world (id INTEGER PRIMARY KEY, world_id BLOB NOT NULL UNIQUE,"
-    " chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, head INTEGER NOT NULL);"
-    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL,"
+    " chunk_edge INTEGER NOT NULL, epoch INTEGER NOT NULL, durable INTEGER NOT NULL, head INTEGER "
+    "NOT NULL);"
+    "CREATE TABLE IF NOT EXISTS chunk (world INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT "
+    "NULL,"
     " z INTEGER NOT NULL, epoch INTEGER NOT NULL, seq INTEGER NOT NULL, used INTEGER NOT NULL,"
     " bytes INTEGER NOT NULL, checksum INTEGER NOT NULL, digest BLOB NOT NULL, data BLOB NOT NULL,"
     " UNIQUE (world, x, y, z));"
@@ -42,12 +44,13 @@ Bytes digest_bytes(const Digest& digest) {
 }
 
 /// Over all that a row says.
-std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Version& version, ByteView digest,
-                         ByteView data) {
+std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Version& version,
+                         ByteView digest, ByteView data) {
   Bytes bytes;
   ByteWriter out(bytes);
   out.bytes(world);
-  for (const std::int32_t c : {key.at.x, key.at.y, key.at.z}) out.u32(static_cast<std::uint32_t>(c));
+  for (const std::int32_t c : {key.at.x, key.at.y, key.at.z})
+    out.u32(static_cast<std::uint32_t>(c));
   out.u32(version.epoch);
   out.u64(version.seq);
   out.bytes(digest);
@@ -75,8 +78,10 @@ struct ChunkCache::Tables {
   explicit Tables(CacheDatabase& d)
       : find_world(d, "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1"),
         add_world(d,
-                  "INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES (?1,?2,?3,?4,?5)"),
-        mark_world(d, "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1"),
+                  "INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES "
+                  "(?1,?2,?3,?4,?5)"),
+        mark_world(d,
+                   "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1"),
         drop_lost(d, "DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3"),
         drop_all(d, "DELETE FROM chunk WHERE world = ?1"),
         drop_edited(d, "DELETE FROM chunk WHERE world = ?1 AND seq > 0"),
@@ -86,12 +91,13 @@ struct ChunkCache::Tables {
         use(d, "UPDATE chunk SET used = ?2 WHERE rowid = ?1"),
         drop(d, "DELETE FROM chunk WHERE rowid = ?1"),
         keep(d,
-             "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, digest, data)"
+             "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, "
+             "digest, data)"
              " VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)"),
         size(d, "SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4"),
         oldest(d, "SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1") {}
-  Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use, drop, keep, size,
-      oldest;
+  Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use, drop,
+      keep, size, oldest;
 };
 
 ChunkCache::ChunkCache(std::string file, std::uint64_t bytes_max, FolderLock lock)
@@ -102,7 +108,8 @@ Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::str
                                                                   std::uint64_t bytes_max) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return Unexpected<std::string>{"chunk cache " + folder + " cannot be made: " + error.message()};
+  if (error)
+    return Unexpected<std::string>{"chunk cache " + folder + " cannot be made: " + error.message()};
   auto lock = FolderLock::take(folder + "/cache.lock");
   if (!lock && errno == EWOULDBLOCK) {
     return Unexpected<std::string>{"chunk cache " + folder + " is in use by another client"};
@@ -111,7 +118,8 @@ Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::str
     return Unexpected<std::string>{"chunk cache " + folder +
                                    " cannot be written: " + std::generic_category().message(errno)};
   }
-  std::unique_ptr<ChunkCache> cache(new ChunkCache(folder + "/cache.sqlite", bytes_max, *std::move(lock)));
+  std::unique_ptr<ChunkCache> cache(
+      new ChunkCache(folder + "/cache.sqlite", bytes_max, *std::move(lock)));
   cache->open_database();
   if (cache->has_ended_) return Unexpected<std::string>{cache->warning_};
   return cache;
@@ -141,11 +149,13 @@ void ChunkCache::open_database() {
   }
   if (database_ && database_->ok()) return;
   has_ended_ = true;
-  warning_ = "chunk cache " + file_ + " cannot be used: " + (database_ ? database_->error() : "its layout");
+  warning_ = "chunk cache " + file_ +
+             " cannot be used: " + (database_ ? database_->error() : "its layout");
 }
 
 void ChunkCache::set_aside() {
-  warning_ = "chunk cache " + file_ + " is damaged (" + database_->error() + "): set aside, begun anew";
+  warning_ =
+      "chunk cache " + file_ + " is damaged (" + database_->error() + "): set aside, begun anew";
   tables_.reset();
   database_.reset();
   std::error_code ignored;
@@ -167,7 +177,9 @@ void ChunkCache::settle() {
 std::string ChunkCache::take_warning() { return std::exchange(warning_, {}); }
 
 std::int64_t ChunkCache::enter(const CachedWorld& world) {
-  const auto number = [](Sequence seq) { return static_cast<std::int64_t>(std::min(seq, kSequenceMax)); };
+  const auto number = [](Sequence seq) {
+    return static_cast<std::int64_t>(std::min(seq, kSequenceMax));
+  };
   Tables& t = *tables_;
   std::optional<std::int64_t> id;
   bool is_other_size = false;
@@ -204,7 +216,9 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   } else if (kept.went_back()) {
     count(t.drop_edited.bind(1, *id));
   } else if (before->epoch != world.mark.epoch) {
-    count(t.drop_lost.bind(1, *id).bind(2, number(kept.common())).bind(3, std::int64_t{world.mark.epoch}));
+    count(t.drop_lost.bind(1, *id)
+              .bind(2, number(kept.common()))
+              .bind(3, std::int64_t{world.mark.epoch}));
   }
   t.mark_world.bind(1, *id)
       .bind(2, std::int64_t{world.chunk_edge})
@@ -215,7 +229,8 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   return *id;
 }
 
-std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row, const ChunkKey& key) {
+std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row,
+                                          const ChunkKey& key) {
   Tables& t = *tables_;
   t.find.bind(1, row)
       .bind(2, std::int64_t{key.at.x})
@@ -227,7 +242,8 @@ std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t
     return std::nullopt;
   }
   auto chunk = std::make_shared<Chunk>();
-  chunk->version = {static_cast<Epoch>(t.find.integer(0)), static_cast<Sequence>(t.find.integer(1))};
+  chunk->version = {static_cast<Epoch>(t.find.integer(0)),
+                    static_cast<Sequence>(t.find.integer(1))};
   const bool is_old = t.find.integer(2) != stamp_;
   const std::int64_t id = t.find.integer(6);
   const ByteView digest = t.find.blob(4), data = t.find.blob(5);
@@ -282,7 +298,8 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeptChunk> chunk
           .bind(3, std::int64_t{key.at.y})
           .bind(4, std::int64_t{key.at.z});
     };
-    if (at(t.size).step()) bytes_ -= std::min(bytes_, static_cast<std::uint64_t>(t.size.integer(0)));
+    if (at(t.size).step())
+      bytes_ -= std::min(bytes_, static_cast<std::uint64_t>(t.size.integer(0)));
     t.size.reset();
     const Bytes data = encode_chunk(chunk->voxels, ChunkEncoding::packed);
     const Bytes digest = digest_bytes(chunk->digest);

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "client/cache/cache_database.hpp"
-#include "common/os/folder_lock.hpp"
 #include "client/replica/cache_question.hpp"
 #include "common/core/result.hpp"
+#include "common/os/folder_lock.hpp"
 
 namespace runstone {
 

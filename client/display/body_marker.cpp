@@ -6,13 +6,16 @@ namespace runstone {
 namespace {
 
 constexpr double kHalfWidth = 0.3, kHeight = 1.8;
-constexpr double kEyeHeight = 1.6;              // of a pose above the feet
-constexpr double kTooNear = 2 * Camera{}.near;  // the corners of the near plane lie farther than its middle
+constexpr double kEyeHeight = 1.6;  // of a pose above the feet
+constexpr double kTooNear =
+    2 * Camera{}.near;  // the corners of the near plane lie farther than its middle
 
 }  // namespace
 
 std::optional<Marker> body_marker(AuthorId author, const WorldPos& at, const WorldPos& eye) {
-  const auto near = [](double v, double from, double to) { return v > from - kTooNear && v < to + kTooNear; };
+  const auto near = [](double v, double from, double to) {
+    return v > from - kTooNear && v < to + kTooNear;
+  };
   const double feet = at.y - kEyeHeight;
   if (near(eye.x, at.x - kHalfWidth, at.x + kHalfWidth) && near(eye.y, feet, feet + kHeight) &&
       near(eye.z, at.z - kHalfWidth, at.z + kHalfWidth))

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "client/display/drawn_world.hpp"
-#include "common/os/exit_code.hpp"
 #include "client/render/image.hpp"
+#include "common/os/exit_code.hpp"
 #include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/draw_answer.hpp"
@@ -49,11 +49,13 @@ class DrawService {
       const ssize_t got = ::read(orders_, buffer.data(), buffer.size());
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) return refuse(std::string("the orders cannot be read: ") + std::strerror(errno));
-      const auto taken = got == 0 ? reader_.finish()
-                                  : reader_.feed({buffer.data(), static_cast<std::size_t>(got)},
-                                                 [this](DrawOrder order) { return take(std::move(order)); });
+      const auto taken =
+          got == 0 ? reader_.finish()
+                   : reader_.feed({buffer.data(), static_cast<std::size_t>(got)},
+                                  [this](DrawOrder order) { return take(std::move(order)); });
       if (!taken) {
-        return refuse(std::string(taken.error().what) + ", at byte " + std::to_string(taken.error().offset));
+        return refuse(std::string(taken.error().what) + ", at byte " +
+                      std::to_string(taken.error().offset));
       }
     }
     return code_;

@@ -94,7 +94,8 @@ std::size_t DrawThread::waiting() const {
 
 // ---- the thread
 
-void DrawThread::run(const std::stop_token& stop, const std::function<std::unique_ptr<Screen>()>& make_screen,
+void DrawThread::run(const std::stop_token& stop,
+                     const std::function<std::unique_ptr<Screen>()>& make_screen,
                      DrawPriority priority) {
   // Nothing may leave this function: an exception would end the program.
   try {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "common/runs/layer_diff.hpp"
 #include "common/core/assert.hpp"
 #include "common/mesh/visibility.hpp"
 #include "common/os/steady_clock.hpp"
+#include "common/runs/layer_diff.hpp"
 
 namespace runstone {
 namespace {
@@ -15,7 +15,8 @@ ChunkKey beside(const ChunkKey& key, Direction d) { return {key.lod, neighbour(k
 
 }  // namespace
 
-DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials, unsigned workers)
+DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials,
+                       unsigned workers)
     : screen_(screen),
       edge_(edge),
       pool_(VisibilityTable(materials), workers, steady_now_ns, [this] { results_.release(); }) {

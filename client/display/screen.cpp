@@ -14,12 +14,15 @@ class GlScreen final : public Screen {
       : context_(std::move(context)), renderer_(context_->loader()) {}
 
   const char* name() const override { return context_->name(); }
-  void set_materials(const MaterialTable& materials) override { renderer_.set_materials(materials); }
+  void set_materials(const MaterialTable& materials) override {
+    renderer_.set_materials(materials);
+  }
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) override {
     renderer_.upload(key, edge, mesh);
   }
   void remove(const ChunkKey& key) override { renderer_.remove(key); }
-  RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers) override {
+  RenderStats draw(const Camera& camera, int width, int height,
+                   std::span<const Marker> markers) override {
     const RenderStats stats = renderer_.draw(camera, width, height, markers);
     if (context_->is_window()) renderer_.present(width, height);
     renderer_.finish();
@@ -35,7 +38,9 @@ class GlScreen final : public Screen {
 
 }  // namespace
 
-std::unique_ptr<Screen> make_headless_screen() { return std::make_unique<GlScreen>(make_headless_context()); }
+std::unique_ptr<Screen> make_headless_screen() {
+  return std::make_unique<GlScreen>(make_headless_context());
+}
 std::unique_ptr<Screen> make_window_screen(Window& window) {
   return std::make_unique<GlScreen>(make_window_context(window));
 }

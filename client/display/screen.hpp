@@ -29,7 +29,8 @@ class Screen {
   virtual void remove(const ChunkKey& key) = 0;
   /// Draws and waits until the picture is done: off screen the fence after the frame, else the swap. Pixels.
   /// Throws std::runtime_error if the driver gave up.
-  virtual RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers) = 0;
+  virtual RenderStats draw(const Camera& camera, int width, int height,
+                           std::span<const Marker> markers) = 0;
   /// What the last draw() made. Requires a draw() before.
   virtual Image read_image() = 0;
 };

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/fleet/crowd_member.hpp"
-#include "client/fleet/step_turns.hpp"
+#include "client/fleet/fleet_bot.hpp"
+#include "client/fleet/step_scheduler.hpp"
 #include "client/net/key_file.hpp"
 #include "common/core/hash.hpp"
 #include "common/os/open_files.hpp"
@@ -27,7 +27,8 @@ constexpr std::int64_t kGoodbyeMs = 1'000;
 
 BotConfig config_of(const BotOptions& options, std::size_t index) {
   BotConfig config;
-  config.session.name = options.count == 1 ? options.name : options.name + "-" + std::to_string(index + 1);
+  config.session.name =
+      options.count == 1 ? options.name : options.name + "-" + std::to_string(index + 1);
   config.session.keys =
       options.key_dir.empty()
           ? random_key()
@@ -60,19 +61,20 @@ struct BotFleet::Parts {
     NetConfig link = net;
     const BotConfig& config = configs[index];
     if (config.role == BotRole::join_storm) link.pause_ms_first = 1;  // it comes back at once
-    members.push_back(make_member(io, link, config, crowd, index < options.replicas));
+    members.push_back(make_member(io, link, config, fleet, index < options.replicas));
     members.back()->bot().start(now_us);
     turns.add(index, now_us);
   }
   /// When the next bot joins; nothing if all have.
   std::optional<TimeUs> join_us() const {
     if (members.size() == options.count) return std::nullopt;
-    return began_us + static_cast<TimeUs>(static_cast<double>(members.size()) / options.join_rate * 1e6);
+    return began_us +
+           static_cast<TimeUs>(static_cast<double>(members.size()) / options.join_rate * 1e6);
   }
 
   void step(TimeUs now_us) {
     while (const auto turn = turns.take(now_us)) {
-      CrowdMember& member = *members[turn->who];
+      FleetBot& member = *members[turn->who];
       // Read again: the steps before took their time.
       const TimeUs at_us = steady_now_us();
       lag_us.add(at_us - turn->due_us);
@@ -90,8 +92,8 @@ struct BotFleet::Parts {
   }
 
   /// Runs the links and steps every bot when it is due until `done`, the end of `seconds` (false) or so many signals (false).
-  bool play_until(const std::function<bool()>& done, double seconds, const volatile std::sig_atomic_t& stop,
-                  int signals = 1) {
+  bool play_until(const std::function<bool()>& done, double seconds,
+                  const volatile std::sig_atomic_t& stop, int signals = 1) {
     const TimeUs end_us = steady_now_us() + static_cast<TimeUs>(seconds * 1e6);
     TimeUs check_us = 0;
     while (stop < signals) {
@@ -112,10 +114,11 @@ struct BotFleet::Parts {
   }
   template <class F>
   bool all(F&& holds) const {
-    return std::all_of(members.begin(), members.end(), [&](const auto& member) { return holds(*member); });
+    return std::all_of(members.begin(), members.end(),
+                       [&](const auto& member) { return holds(*member); });
   }
   /// What is wrong with the first bot that is not as it should be.
-  std::string explain(const std::string& what, const std::function<bool(CrowdMember&)>& holds) const {
+  std::string explain(const std::string& what, const std::function<bool(FleetBot&)>& holds) const {
     for (const auto& member : members) {
       if (!holds(*member)) return member->failure(what);
     }
@@ -154,9 +157,9 @@ struct BotFleet::Parts {
   std::vector<BotConfig> configs;
   asio::io_context io{1};
   asio::steady_timer timer{io};
-  CrowdBook crowd;
-  std::vector<std::unique_ptr<CrowdMember>> members;
-  StepTurns turns;
+  FleetStatistics fleet;
+  std::vector<std::unique_ptr<FleetBot>> members;
+  StepScheduler turns;
   Histogram lag_us;
   TimeUs began_us = 0;  // when the first bot joined
 };
@@ -172,29 +175,32 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
   report.replicas = std::min(fleet.options.replicas, fleet.options.count);
   const std::size_t files = fleet.options.count + kOtherFiles;
   if (const std::size_t allowed = allow_open_files(files); allowed < files) {
-    spdlog::warn("{} bots need {} open files, and the hard limit is {}: see ulimit -Hn", report.bots, files,
-                 allowed);
+    spdlog::warn("{} bots need {} open files, and the hard limit is {}: see ulimit -Hn",
+                 report.bots, files, allowed);
   }
-  const auto is_loaded = [](CrowdMember& member) { return member.bot().counts().joins != 0; };
-  const auto is_settled = [](CrowdMember& member) { return member.bot().settled(); };
-  const auto is_refused = [](CrowdMember& member) { return member.is_final(); };
+  const auto is_loaded = [](FleetBot& member) { return member.bot().counts().joins != 0; };
+  const auto is_settled = [](FleetBot& member) { return member.bot().settled(); };
+  const auto is_refused = [](FleetBot& member) { return member.is_final(); };
 
   fleet.began_us = steady_now_us();
   const double joining = static_cast<double>(fleet.options.count) / fleet.options.join_rate;
-  fleet.play_until([&] { return fleet.all(is_loaded) || fleet.all(is_refused); }, joining + patience, stop);
+  fleet.play_until([&] { return fleet.all(is_loaded) || fleet.all(is_refused); },
+                   joining + patience, stop);
   report.failure = fleet.explain("does not see the world around it", is_loaded);
-  if (report.failure.empty() && fleet.members.size() < report.bots) report.failure = "stopped while joining";
+  if (report.failure.empty() && fleet.members.size() < report.bots)
+    report.failure = "stopped while joining";
   if (report.failure.empty()) {
     spdlog::info("{} bots see the world", report.bots);
     const Parts::Meter before = fleet.meter();
     fleet.lag_us = {};
     const TimeUs began_us = steady_now_us();
-    fleet.crowd.begin(began_us);
+    fleet.fleet.begin(began_us);
     for (const auto& member : fleet.members) member->bot().begin(began_us);
-    fleet.turns.hasten(began_us);  // they were to ping next, some time after their first edits are due
+    fleet.turns.hasten(
+        began_us);  // they were to ping next, some time after their first edits are due
     // Ends early when no bot has an edit left to make.
-    fleet.play_until([&] { return fleet.options.edits && fleet.all(is_settled); }, fleet.options.seconds,
-                     stop);
+    fleet.play_until([&] { return fleet.options.edits && fleet.all(is_settled); },
+                     fleet.options.seconds, stop);
     for (const auto& member : fleet.members) member->bot().end();
     report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
     const Parts::Meter after = fleet.meter();
@@ -209,9 +215,9 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
   }
 
   for (const auto& member : fleet.members) member->add_to(report);
-  report.seen_us = fleet.crowd.seen_us();
-  report.seen_worst_us = fleet.crowd.worst_us();
-  report.unattributed = fleet.crowd.unattributed();
+  report.seen_us = fleet.fleet.seen_us();
+  report.seen_worst_us = fleet.fleet.worst_us();
+  report.unattributed = fleet.fleet.unattributed();
   fleet.leave();
   return report;
 }

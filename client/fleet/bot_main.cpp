@@ -8,10 +8,10 @@
 #include <exception>
 
 #include "client/fleet/bot_fleet.hpp"
-#include "common/os/exit_code.hpp"
 #include "client/fleet/play_fleet.hpp"
 #include "client/fleet/recorded_file.hpp"
 #include "client/report/report.hpp"
+#include "common/os/exit_code.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {

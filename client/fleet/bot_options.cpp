@@ -23,7 +23,8 @@ constexpr std::size_t kMixSharesMax = 1'000;
 /// "build=8,walk=2": eight builders and two walkers of every ten.
 std::vector<BotRole> roles_of(const std::string& text) {
   const auto wrong = [&text](const std::string& why) {
-    return CLI::ValidationError("--mix", "expected NAME=SHARE,NAME=SHARE,...: " + why + ": " + text);
+    return CLI::ValidationError("--mix",
+                                "expected NAME=SHARE,NAME=SHARE,...: " + why + ": " + text);
   };
   std::vector<BotRole> roles;
   for (const std::string& part : CLI::detail::split(text, ',')) {
@@ -45,7 +46,8 @@ std::vector<BotRole> roles_of(const std::string& text) {
 ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   BotOptions out;
   CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // as the other programs
+  app.option_defaults()->multi_option_policy(
+      CLI::MultiOptionPolicy::TakeLast);  // as the other programs
   std::string address, role = "build", mix;
   unsigned view = out.view_radius;
   std::uint64_t edits = 0;
@@ -58,22 +60,28 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
           });
   app.add_option("--mix", mix, "several behaviours and their shares, such as build=8,walk=2")
       ->excludes(behaviour);
-  app.add_option("--replicas", out.replicas,
-                 "so many bots, the first ones, keep a replica and compare digests; the others verify");
-  app.add_option("--join-rate", out.join_rate, "bots a second that join")->check(CLI::Range(0.1, 100'000.0));
+  app.add_option(
+      "--replicas", out.replicas,
+      "so many bots, the first ones, keep a replica and compare digests; the others verify");
+  app.add_option("--join-rate", out.join_rate, "bots a second that join")
+      ->check(CLI::Range(0.1, 100'000.0));
   app.add_option("--name", out.name, "name of one bot; of several, NAME-1, NAME-2, ...")
       ->check([](const std::string& name) {
-        return name.empty() || name.size() + 6 > kPlayerNameBytesMax ? "a bot's name has 1 to 26 bytes" : "";
+        return name.empty() || name.size() + 6 > kPlayerNameBytesMax
+                   ? "a bot's name has 1 to 26 bytes"
+                   : "";
       });
   app.add_option("--key-dir", out.key_dir,
                  "folder of their keys, made if missing; default: new keys each time")
       ->check(CLI::ExistingDirectory);
   app.add_option("--rate", out.rate, "edits, or joins of a join storm, a second, each bot")
       ->check(CLI::Range(0.001, 100'000.0));
-  app.add_option("--duration", out.seconds, "seconds for which edits are due")->check(CLI::NonNegativeNumber);
+  app.add_option("--duration", out.seconds, "seconds for which edits are due")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--edits", edits, "edits at most, each bot");
-  app.add_option("--sites", out.sites,
-                 "building sites of the whole crowd, where several fleets share a world; default: --count");
+  app.add_option(
+      "--sites", out.sites,
+      "building sites of the whole crowd, where several fleets share a world; default: --count");
   app.add_option("--seed", out.seed, "draws everything the bots do");
   app.add_option("--view", view, "view radius in chunks, both ways")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
@@ -82,15 +90,17 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--report", out.report, "write counts and latencies as JSON at the end");
   app.add_flag("--verbose", out.verbose, "log every step");
-  CLI::Option* play =
-      app.add_option("--play", out.play,
-                     "play the edits of this .rlog instead: a bot for each author, each edit at its time");
+  CLI::Option* play = app.add_option(
+      "--play", out.play,
+      "play the edits of this .rlog instead: a bot for each author, each edit at its time");
   app.add_option_function<std::string>(
          "--speed", [&out](const std::string& text) { out.speed = speed_of(text); },
-         "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; default 1")
+         "play: 2 is twice as fast as recorded, 0 or max as fast as the server takes them; default "
+         "1")
       ->needs(play);
-  for (const char* other : {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name",
-                            "--key-dir", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
+  for (const char* other :
+       {"--count", "--behaviour", "--mix", "--replicas", "--join-rate", "--name", "--key-dir",
+        "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
     play->excludes(app.get_option(other));
   }
   try {

@@ -20,7 +20,8 @@ class FleetMember {
  public:
   template <class... BotArguments>
   FleetMember(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
-      : bot_(std::forward<BotArguments>(arguments)...), link_(io, bot_.session(), bot_.name(), net) {}
+      : bot_(std::forward<BotArguments>(arguments)...),
+        link_(io, bot_.session(), bot_.name(), net) {}
 
   using Session = std::remove_reference_t<decltype(std::declval<BotType&>().session())>;
 

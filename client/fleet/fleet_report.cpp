@@ -19,7 +19,8 @@ double each_second(const FleetReport& report, std::uint64_t bytes) {
 }
 
 double cores(const FleetReport& report) {
-  return report.seconds > 0 ? (report.process.user_s + report.process.system_s) / report.seconds : 0;
+  return report.seconds > 0 ? (report.process.user_s + report.process.system_s) / report.seconds
+                            : 0;
 }
 
 Json versions_json(const FleetReport& report) {
@@ -100,38 +101,42 @@ std::string to_table(const FleetReport& report) {
     return each_second(report, report.class_bytes[static_cast<std::size_t>(frame_class)]);
   };
   std::string table = fmt::format(
-      "bots {} ({} with a replica): {} edits due in {:.1f} s, {} submitted, {} confirmed, {} rejected, {} "
+      "bots {} ({} with a replica): {} edits due in {:.1f} s, {} submitted, {} confirmed, {} "
+      "rejected, {} "
       "durable; {} not ready, {} refused\n",
-      report.bots, report.replicas, c.due, report.seconds, c.submitted, c.confirmed, c.rejected, c.durable,
-      c.not_ready, c.refused);
+      report.bots, report.replicas, c.due, report.seconds, c.submitted, c.confirmed, c.rejected,
+      c.durable, c.not_ready, c.refused);
   table += histogram_line("due to confirmed", c.own_us);
   table += histogram_line("due to received and verified, over all subscribers", report.seen_us);
   table += histogram_picture(report.seen_us);
   table += "slowest of each second, ms:";
-  for (const TimeUs worst_us : report.seen_worst_us) table += fmt::format(" {}", (worst_us + 500) / 1000);
+  for (const TimeUs worst_us : report.seen_worst_us)
+    table += fmt::format(" {}", (worst_us + 500) / 1000);
   table += "\n";
   table += histogram_line("connecting to all of the view", c.join_us);
   table += fmt::format(
       "voxels set and not set again: {}, of them {} intact, {} changed, {} out of sight\n"
       "edits of others seen {}; drift: {} of {} chunk digests\n",
-      report.standing.held, report.standing.intact, report.standing.changed, report.standing.unseen, c.others,
-      report.drifted, report.audited);
+      report.standing.held, report.standing.intact, report.standing.changed, report.standing.unseen,
+      c.others, report.drifted, report.audited);
   table += fmt::format(
-      "without a replica: {} commits of {} edits verified, {} chunk edits followed, {} snapshots, {} chunks "
+      "without a replica: {} commits of {} edits verified, {} chunk edits followed, {} snapshots, "
+      "{} chunks "
       "resent, {} versions audited, {} violations\n",
       report.commits, report.commit_edits, v.followed, v.snapshots, v.resent, v.audited,
       report.violations.total());
   for (const auto& [name, entry] : report.violations.all()) {
     table += fmt::format("violation: {} {}, first: {}\n", entry.count, name, entry.first);
   }
-  for (const auto& [reason, count] : report.losses) table += fmt::format("lost: {} {}\n", count, reason);
-  table +=
-      fmt::format("bytes a second and bot: control {:.0f}, edits {:.0f}, chunks {:.0f}; with frames {:.0f}\n",
-                  by_class(FrameClass::control), by_class(FrameClass::edits), by_class(FrameClass::chunks),
-                  each_second(report, report.frame_bytes));
+  for (const auto& [reason, count] : report.losses)
+    table += fmt::format("lost: {} {}\n", count, reason);
+  table += fmt::format(
+      "bytes a second and bot: control {:.0f}, edits {:.0f}, chunks {:.0f}; with frames {:.0f}\n",
+      by_class(FrameClass::control), by_class(FrameClass::edits), by_class(FrameClass::chunks),
+      each_second(report, report.frame_bytes));
   table += traffic_table(report.traffic);
-  table += fmt::format("this process: {:.2f} s user, {:.2f} s system, {:.2f} cores\n", report.process.user_s,
-                       report.process.system_s, cores(report));
+  table += fmt::format("this process: {:.2f} s user, {:.2f} s system, {:.2f} cores\n",
+                       report.process.user_s, report.process.system_s, cores(report));
   table += histogram_line("its steps late by", report.lag_us);
   return table;
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "client/fleet/fleet.hpp"
-#include "client/report/histogram_report.hpp"
 #include "client/net/key_file.hpp"
+#include "client/report/histogram_report.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -58,7 +58,8 @@ struct PlayFleet::Parts : Fleet<PlayBot> {
 
   /// Runs the links and steps every bot until `done`. Otherwise what stood in the way: a stop, a server that does not
   /// want a bot, or nothing that moved for as long as patience lasts while a bot waited.
-  std::string play_until(const std::function<bool(Member&)>& done, const volatile std::sig_atomic_t& stop) {
+  std::string play_until(const std::function<bool(Member&)>& done,
+                         const volatile std::sig_atomic_t& stop) {
     const auto patience_us = static_cast<TimeUs>(options.load_seconds * 1e6);
     TimeUs moved_us = steady_now_us();
     std::uint64_t moves = 0;
@@ -70,7 +71,7 @@ struct PlayFleet::Parts : Fleet<PlayBot> {
         member->step(now_us);
         const PlayCounts& counts = member->bot().counts();
         moves_now += counts.confirmed + counts.durable + total(counts.rejected) + counts.unseen +
-                     member->bot().session().openings();
+                     member->bot().session().connect_count();
         if (done(*member)) continue;
         if (member->link().is_final()) return member->failure("was sent away");
         if (open == nullptr) open = member.get();
@@ -100,7 +101,8 @@ PlayReport PlayFleet::run(const volatile std::sig_atomic_t& stop) {
   PlayReport report;
   report.bots = fleet.members.size();
   report.edits = fleet.log.edits;
-  report.failure = fleet.play_until([](Member& member) { return member.bot().session().is_open(); }, stop);
+  report.failure =
+      fleet.play_until([](Member& member) { return member.bot().session().is_open(); }, stop);
   if (report.failure.empty() && !fleet.members.empty()) {
     const auto known =
         check_materials(fleet.log, fleet.members.front()->bot().session().welcome()->materials);
@@ -146,12 +148,16 @@ std::string to_json(const PlayReport& report) {
 std::string to_table(const PlayReport& report) {
   const PlayCounts& c = report.counts;
   std::string table = fmt::format(
-      "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} offered "
+      "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} "
+      "offered "
       "again, {} rejected, {} refused here, {} without an answer\n{}",
-      report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable, c.again,
-      total(c.rejected), total(c.refused), c.unseen, histogram_line("due to confirmed", c.own_us));
-  for (const auto& [reason, count] : c.rejected) table += fmt::format("rejected: {} {}\n", count, reason);
-  for (const auto& [reason, count] : c.refused) table += fmt::format("refused: {} {}\n", count, reason);
+      report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable,
+      c.again, total(c.rejected), total(c.refused), c.unseen,
+      histogram_line("due to confirmed", c.own_us));
+  for (const auto& [reason, count] : c.rejected)
+    table += fmt::format("rejected: {} {}\n", count, reason);
+  for (const auto& [reason, count] : c.refused)
+    table += fmt::format("refused: {} {}\n", count, reason);
   return table + traffic_table(report.traffic);
 }
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
+#include "client/bots/play_bot.hpp"
 #include "client/fleet/bot_options.hpp"
 #include "client/report/traffic_report.hpp"
-#include "client/bots/play_bot.hpp"
 
 namespace runstone {
 

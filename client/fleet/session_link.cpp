@@ -11,15 +11,16 @@
 namespace runstone {
 
 template <class Session>
-LinkedSession<Session>::LinkedSession(asio::io_context& io, Session& session, const std::string& name,
-                                      const NetConfig& net)
+LinkedSession<Session>::LinkedSession(asio::io_context& io, Session& session,
+                                      const std::string& name, const NetConfig& net)
     : session_(session), name_(name), link_(io, net, *this) {
   link_.start();
 }
 
 template <class Session>
 void LinkedSession<Session>::flush() {
-  for (const Message& message : session_.take_outgoing()) link_.send(connection_, encode_message(message));
+  for (const Message& message : session_.take_outgoing())
+    link_.send(connection_, encode_message(message));
   if (session_.wants_close() && connection_ != 0) link_.close(connection_);
 }
 
@@ -40,14 +41,15 @@ void LinkedSession<Session>::on_connected(ConnectionNumber connection) {
 template <class Session>
 void LinkedSession<Session>::on_received(NetReceived received) {
   const TimeUs now_us = steady_now_us();
-  session_.receive(std::move(received.message), {received.received_us, received.unpacked_us, now_us});
+  session_.receive(std::move(received.message),
+                   {received.received_us, received.unpacked_us, now_us});
   flush();
 }
 
 template <class Session>
-Result<bool> LinkedSession<Session>::on_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
-                                              TimeUs received_us) {
-  if constexpr (std::is_same_v<Session, LightSession>) {
+Result<bool> LinkedSession<Session>::on_bytes(FrameClass frame_class, ByteView body,
+                                              std::uint16_t chunk_edge, TimeUs received_us) {
+  if constexpr (std::is_same_v<Session, HeadlessSession>) {
     return session_.receive_bytes(frame_class, body, chunk_edge, received_us);
   } else {
     return LinkEvents::on_bytes(frame_class, body, chunk_edge, received_us);
@@ -60,12 +62,13 @@ void LinkedSession<Session>::on_disconnected(ConnectionNumber /*connection*/, st
   const bool is_wished = session_.wants_close() && !session_.end();
   session_.disconnected();
   last_failure_ = std::move(why);
-  if (session_.end() && !session_.end()->text.empty()) last_failure_ += " (" + session_.end()->text + ")";
+  if (session_.end() && !session_.end()->text.empty())
+    last_failure_ += " (" + session_.end()->text + ")";
   if (!is_wished) ++losses_[last_failure_];
   spdlog::debug("{}: {}", name_, last_failure_);
 }
 
 template class LinkedSession<ClientSession>;
-template class LinkedSession<LightSession>;
+template class LinkedSession<HeadlessSession>;
 
 }  // namespace runstone

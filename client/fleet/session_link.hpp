@@ -6,19 +6,20 @@
 #include <map>
 #include <string>
 
-#include "client/bots/light_session.hpp"
+#include "client/bots/headless_session.hpp"
 #include "client/net/link.hpp"
 #include "client/replica/client_session.hpp"
 
 namespace runstone {
 
-/// Session: ClientSession or LightSession.
+/// Session: ClientSession or HeadlessSession.
 template <class Session>
 class LinkedSession final : private LinkEvents {
  public:
   /// Starts connecting. `session` must outlive the link; so must `io`, which must not be run any more when it is
   /// destroyed.
-  LinkedSession(asio::io_context& io, Session& session, const std::string& name, const NetConfig& net);
+  LinkedSession(asio::io_context& io, Session& session, const std::string& name,
+                const NetConfig& net);
 
   const NetStats& stats() const { return link_.stats(); }
   /// Why the last connection ended; empty if none did.
@@ -50,6 +51,6 @@ class LinkedSession final : private LinkEvents {
 
 using SessionLink = LinkedSession<ClientSession>;
 extern template class LinkedSession<ClientSession>;
-extern template class LinkedSession<LightSession>;
+extern template class LinkedSession<HeadlessSession>;
 
 }  // namespace runstone

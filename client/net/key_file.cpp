@@ -22,7 +22,8 @@ template <std::size_t N>
 bool parse_hex(const std::string& text, std::array<std::uint8_t, N>& out) {
   if (text.size() != 2 * N) return false;
   std::size_t read = 0;
-  return sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &read, nullptr) == 0 && read == N;
+  return sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &read, nullptr) == 0 &&
+         read == N;
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& why) {
@@ -58,7 +59,8 @@ KeyPair load_or_create_key(const std::string& file) {
   std::ifstream in(file);
   std::string line;
   KeySeed seed;
-  if (!std::getline(in, line) || !parse_hex(line, seed)) refuse(file, "is not a key file (64 hex digits)");
+  if (!std::getline(in, line) || !parse_hex(line, seed))
+    refuse(file, "is not a key file (64 hex digits)");
   return key_pair_of(seed);
 }
 

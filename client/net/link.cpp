@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "client/net/read_report.hpp"
+#include "client/net/receive_ack_scheduler.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -41,7 +41,7 @@ struct Link::State {
 
   asio::ip::tcp::resolver resolver{io};
   asio::ip::tcp::socket socket{io};
-  asio::steady_timer pause{io};         // between attempts; for the connect timeout; while events are full
+  asio::steady_timer pause{io};  // between attempts; for the connect timeout; while events are full
   asio::steady_timer work_to_send{io};  // never expires: cancelled when there is something to send
   bool stopping = false;
 
@@ -54,7 +54,7 @@ struct Link::State {
   std::uint64_t chunk_bytes = 0;  // of frames of chunks read on this connection
   std::array<std::uint64_t, kFrameClassCount>
       frames_before{};  // read on it, up to the last message of the class
-  ReadReport report;
+  ReceiveAckScheduler report;
   asio::steady_timer report_due{io};
   bool is_report_due_set = false;
   std::deque<EncodedMessage> edits, others;
@@ -63,9 +63,9 @@ struct Link::State {
 
 Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, TimeUs received_us) {
   return reader.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
-    const std::uint64_t frames =
-        reader.frames(frame_class) -
-        std::exchange(frames_before[static_cast<std::size_t>(frame_class)], reader.frames(frame_class));
+    const std::uint64_t frames = reader.frames(frame_class) -
+                                 std::exchange(frames_before[static_cast<std::size_t>(frame_class)],
+                                               reader.frames(frame_class));
     const auto taken = events.on_bytes(frame_class, body, chunk_edge, received_us);
     if (!taken) return Unexpected<Error>{taken.error()};
     if (*taken) {
@@ -99,7 +99,7 @@ void Link::State::tell_read() {
   const TimeUs now_us = steady_now_us();
   if (report.is_due(chunk_bytes, now_us)) {
     report.told(chunk_bytes, now_us);
-    enqueue(connection, encode_message(Received{chunk_bytes}));
+    enqueue(connection, encode_message(ReceiveAck{chunk_bytes}));
   }
   const auto due_us = report.due(chunk_bytes);
   if (!due_us || is_report_due_set) return;
@@ -200,7 +200,8 @@ asio::awaitable<std::string> connect(State& state) {
   const std::string port = std::to_string(state.config.port);
   const auto [resolve_error, endpoints] =
       co_await state.resolver.async_resolve(state.config.host, port, kTuple);
-  if (resolve_error) co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
+  if (resolve_error)
+    co_return "cannot resolve " + state.config.host + ": " + resolve_error.message();
   state.socket = asio::ip::tcp::socket(state.io);
   state.pause.expires_after(milliseconds(state.config.connect_ms_max));
   State* const raw = &state;
@@ -244,8 +245,8 @@ asio::awaitable<void> keep_connected(State& state) {
       state.events.on_disconnected(0, std::move(failure));
     }
     if (state.stopping) break;
-    const auto spread =
-        static_cast<std::int64_t>(randombytes_uniform(static_cast<std::uint32_t>(pause_ms / 2 + 1)));
+    const auto spread = static_cast<std::int64_t>(
+        randombytes_uniform(static_cast<std::uint32_t>(pause_ms / 2 + 1)));
     state.pause.expires_after(milliseconds(pause_ms * 3 / 4 + spread));
     co_await state.pause.async_wait(kTuple);
     pause_ms = std::min(pause_ms * 2, state.config.pause_ms_max);

@@ -43,7 +43,7 @@ struct NetConfig {
 /// Counts since the start, over all connections.
 struct NetStats {
   std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // frames included
-  TrafficMeter received, sent;                                  // messages; received: that were verified
+  TrafficMeter received, sent;  // messages; received: that were verified
   std::atomic<std::uint64_t> connections{0};
 };
 
@@ -55,8 +55,8 @@ class LinkEvents {
   virtual void on_received(NetReceived received) = 0;
   /// Offers a message before it is decoded; `body` is 8-aligned and lives until the call returns, `chunk_edge` is 0 before
   /// welcome. True: it was verified and taken, and on_received() is not told of it. An error closes the connection.
-  virtual Result<bool> on_bytes(FrameClass /*frame_class*/, ByteView /*body*/, std::uint16_t /*chunk_edge*/,
-                                TimeUs /*received_us*/) {
+  virtual Result<bool> on_bytes(FrameClass /*frame_class*/, ByteView /*body*/,
+                                std::uint16_t /*chunk_edge*/, TimeUs /*received_us*/) {
     return false;
   }
   /// `connection` 0: no connection came up at all.

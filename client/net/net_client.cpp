@@ -10,7 +10,9 @@ namespace runstone {
 
 struct NetClient::State final : private LinkEvents {
   State(NetConfig config, std::function<void()> net_wake)
-      : events_max(config.events_max), wake(std::move(net_wake)), link(io, std::move(config), *this) {}
+      : events_max(config.events_max),
+        wake(std::move(net_wake)),
+        link(io, std::move(config), *this) {}
 
   void push(NetEvent event) {
     {
@@ -52,7 +54,8 @@ std::vector<NetEvent> NetClient::take_events() {
 }
 
 void NetClient::send(ConnectionNumber connection, const EncodedMessage& message) {
-  asio::post(state_->io, [raw = state_.get(), connection, message] { raw->link.send(connection, message); });
+  asio::post(state_->io,
+             [raw = state_.get(), connection, message] { raw->link.send(connection, message); });
 }
 
 void NetClient::close(ConnectionNumber connection) {

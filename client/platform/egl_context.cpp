@@ -32,10 +32,11 @@ std::unique_ptr<GlContext> make_egl_surfaceless_context(std::string& tried) {
     tried += std::string("EGL surfaceless: ") + why + "; ";
     return nullptr;
   };
-  const auto get_display =
-      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+  const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+      eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_display == nullptr) return give_up("no eglGetPlatformDisplayEXT");
-  const EGLDisplay display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  const EGLDisplay display =
+      get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE)
     return give_up("no display");
   eglBindAPI(EGL_OPENGL_API);

@@ -18,7 +18,8 @@ class OsmesaContext final : public GlContext {
   ~OsmesaContext() override { OSMesaDestroyContext(context_); }
 
   bool try_make_current() {
-    return OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, kWindowSide, kWindowSide) == GL_TRUE;
+    return OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, kWindowSide,
+                             kWindowSide) == GL_TRUE;
   }
   Loader loader() const override { return &OSMesaGetProcAddress; }
   const char* name() const override { return "OSMesa"; }

@@ -53,7 +53,8 @@ class WindowContext final : public GlContext {
 
 }  // namespace
 
-Window::Window(int width, int height, const std::string& title) : state_(std::make_unique<State>()) {
+Window::Window(int width, int height, const std::string& title)
+    : state_(std::make_unique<State>()) {
   if (glfwInit() != GLFW_TRUE) throw std::runtime_error("no window: " + glfw_words());
   constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
   for (const auto& [major, minor] : kVersions) {
@@ -87,7 +88,9 @@ Window::Window(int width, int height, const std::string& title) : state_(std::ma
     state.cursor_y = y;
   });
   glfwSetScrollCallback(state_->window, [](GLFWwindow* w, double, double dy) {
-    static_cast<State*>(glfwGetWindowUserPointer(w))->pending.scroll += dy > 0 ? 1 : dy < 0 ? -1 : 0;
+    static_cast<State*>(glfwGetWindowUserPointer(w))->pending.scroll += dy > 0   ? 1
+                                                                        : dy < 0 ? -1
+                                                                                 : 0;
   });
   glfwSetKeyCallback(state_->window, [](GLFWwindow* w, int key, int, int action, int mods) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
@@ -125,7 +128,9 @@ WindowInput Window::poll() {
   return input;
 }
 
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(state_->window, title.c_str()); }
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(state_->window, title.c_str());
+}
 std::array<int, 2> Window::framebuffer_size() const {
   std::array<int, 2> size{};
   glfwGetFramebufferSize(state_->window, &size[0], &size[1]);

@@ -18,9 +18,9 @@ struct WindowInput {
   int place_clicks = 0;             // right button presses
   int digit = -1;                   // number key pressed, 0..9, or -1
   int scroll = 0;                   // wheel steps, up positive
-  bool escape = false;              // pressed while the mouse was free (the first press only frees it)
-  bool screenshot = false;          // F2 pressed
-  int scrub = 0;                    // ] less [ pressed: later or earlier
+  bool escape = false;      // pressed while the mouse was free (the first press only frees it)
+  bool screenshot = false;  // F2 pressed
+  int scrub = 0;            // ] less [ pressed: later or earlier
   bool undo = false, redo = false;  // Ctrl+Z, Ctrl+Y pressed
   bool live = false;                // Home pressed
   bool close = false;               // the window's close button

@@ -13,7 +13,8 @@ ChunkBuffers::ChunkBuffers(std::int32_t edge, const ChunkMesh& mesh)
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(byte_size()), nullptr, GL_STATIC_DRAW);
   const auto opaque_bytes = static_cast<GLsizeiptr>(opaque_ * sizeof(Quad));
   glBufferSubData(GL_ARRAY_BUFFER, 0, opaque_bytes, mesh.opaque.quads.data());
-  glBufferSubData(GL_ARRAY_BUFFER, opaque_bytes, static_cast<GLsizeiptr>(transparent_ * sizeof(Quad)),
+  glBufferSubData(GL_ARRAY_BUFFER, opaque_bytes,
+                  static_cast<GLsizeiptr>(transparent_ * sizeof(Quad)),
                   mesh.transparent.quads.data());
   glEnableVertexAttribArray(0);
   glVertexAttribDivisor(0, 1);
@@ -24,8 +25,9 @@ void ChunkBuffers::draw(std::uint32_t first, std::uint32_t count) const {
   glBindVertexArray(array_.get());
   // Setting the pointer stands in for a base instance, which OpenGL 3.3 lacks.
   glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
-  glVertexAttribIPointer(0, 2, GL_UNSIGNED_INT, sizeof(Quad),
-                         reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first * sizeof(Quad))));
+  glVertexAttribIPointer(
+      0, 2, GL_UNSIGNED_INT, sizeof(Quad),
+      reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first * sizeof(Quad))));
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
 }
 

@@ -16,7 +16,8 @@ class Frustum {
   /// False only if the box is wholly outside one plane.
   bool may_see(const glm::vec3& min, const glm::vec3& max) const {
     for (const glm::vec4& p : planes_) {
-      const glm::vec3 far_corner{p.x > 0 ? max.x : min.x, p.y > 0 ? max.y : min.y, p.z > 0 ? max.z : min.z};
+      const glm::vec3 far_corner{p.x > 0 ? max.x : min.x, p.y > 0 ? max.y : min.y,
+                                 p.z > 0 ? max.z : min.z};
       if (glm::dot(glm::vec3(p), far_corner) + p.w < 0) return false;
     }
     return true;

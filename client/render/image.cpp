@@ -26,8 +26,8 @@ Image halved(const Image& image) {
   for (int y = 0; y < out.height; ++y) {
     for (int x = 0; x < out.width; ++x) {
       for (int c = 0; c < 3; ++c) {
-        const unsigned sum = at(2 * x, 2 * y, c) + at(2 * x + 1, 2 * y, c) + at(2 * x, 2 * y + 1, c) +
-                             at(2 * x + 1, 2 * y + 1, c);
+        const unsigned sum = at(2 * x, 2 * y, c) + at(2 * x + 1, 2 * y, c) +
+                             at(2 * x, 2 * y + 1, c) + at(2 * x + 1, 2 * y + 1, c);
         out.rgb.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
       }
     }
@@ -38,7 +38,8 @@ Image halved(const Image& image) {
 bool write_png(const std::string& file, const Image& image) {
   // Flat faces repeat: without a filter before compression these pictures are smaller, and made in half the time.
   stbi_write_force_png_filter = 0;
-  return stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(), image.width * 3) != 0;
+  return stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(),
+                        image.width * 3) != 0;
 }
 
 }  // namespace runstone

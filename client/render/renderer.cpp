@@ -54,15 +54,15 @@ struct Renderer::State {
   void fill_marker_buffer() {
     std::vector<float> corners;
     const auto add = [&](std::uint8_t c) {
-      corners.insert(corners.end(),
-                     {static_cast<float>(c & 1), static_cast<float>(c >> 1 & 1), static_cast<float>(c >> 2)});
+      corners.insert(corners.end(), {static_cast<float>(c & 1), static_cast<float>(c >> 1 & 1),
+                                     static_cast<float>(c >> 2)});
     };
     std::for_each(kEdges.begin(), kEdges.end(), add);
     std::for_each(kFaces.begin(), kFaces.end(), add);
     glBindVertexArray(marker_array.get());
     glBindBuffer(GL_ARRAY_BUFFER, marker_buffer.get());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
-                 GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)),
+                 corners.data(), GL_STATIC_DRAW);
     glEnableVertexAttribArray(0);
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   }
@@ -140,8 +140,9 @@ struct Renderer::State {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
-    glDisable(GL_CULL_FACE);                                              // water is seen from below, too
-    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0F);  // overlaps would blend twice
+    glDisable(GL_CULL_FACE);  // water is seen from below, too
+    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"),
+                0.0F);  // overlaps would blend twice
     for (auto v = visible.rbegin(); v != visible.rend(); ++v) {
       if (v->buffers->transparent_count() == 0) continue;
       place(*v);
@@ -160,12 +161,15 @@ struct Renderer::State {
       // Outlines stand off the voxel a little, or they would fight its faces for depth.
       const double grow = m.filled ? 0.0 : 0.01;
       glUniform3f(glGetUniformLocation(marker_program.get(), "origin"),
-                  static_cast<float>(m.x - grow - camera.x), static_cast<float>(m.y - grow - camera.y),
+                  static_cast<float>(m.x - grow - camera.x),
+                  static_cast<float>(m.y - grow - camera.y),
                   static_cast<float>(m.z - grow - camera.z));
-      glUniform3f(glGetUniformLocation(marker_program.get(), "size"), static_cast<float>(m.size_x + 2 * grow),
-                  static_cast<float>(m.size_y + 2 * grow), static_cast<float>(m.size_z + 2 * grow));
-      glUniform4f(glGetUniformLocation(marker_program.get(), "colour"), static_cast<float>(m.r) / 255.0F,
-                  static_cast<float>(m.g) / 255.0F, static_cast<float>(m.b) / 255.0F, 1.0F);
+      glUniform3f(glGetUniformLocation(marker_program.get(), "size"),
+                  static_cast<float>(m.size_x + 2 * grow), static_cast<float>(m.size_y + 2 * grow),
+                  static_cast<float>(m.size_z + 2 * grow));
+      glUniform4f(glGetUniformLocation(marker_program.get(), "colour"),
+                  static_cast<float>(m.r) / 255.0F, static_cast<float>(m.g) / 255.0F,
+                  static_cast<float>(m.b) / 255.0F, 1.0F);
       if (m.filled) {
         glDrawArrays(GL_TRIANGLES, kEdgeVertices, kCubeVertices);
       } else {
@@ -175,7 +179,8 @@ struct Renderer::State {
   }
 
   static void set_matrix(const GlProgram& program, const char* name, const glm::mat4& matrix) {
-    glUniformMatrix4fv(glGetUniformLocation(program.get(), name), 1, GL_FALSE, glm::value_ptr(matrix));
+    glUniformMatrix4fv(glGetUniformLocation(program.get(), name), 1, GL_FALSE,
+                       glm::value_ptr(matrix));
   }
 
   GlProgram quad_program, sky_program, marker_program;
@@ -198,16 +203,18 @@ void Renderer::upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& m
 
 void Renderer::remove(const ChunkKey& key) { state_->chunks.erase(key); }
 
-RenderStats Renderer::draw(const Camera& camera, int width, int height, std::span<const Marker> markers) {
+RenderStats Renderer::draw(const Camera& camera, int width, int height,
+                           std::span<const Marker> markers) {
   RenderStats stats;
   state_->target.bind(width, height);
   const glm::vec3 forward{static_cast<float>(std::sin(camera.yaw) * std::cos(camera.pitch)),
                           static_cast<float>(std::sin(camera.pitch)),
                           static_cast<float>(std::cos(camera.yaw) * std::cos(camera.pitch))};
   // Straight up and down, the up vector must not be parallel to the view.
-  const glm::vec3 up = std::abs(forward.y) > 0.999F ? glm::vec3{static_cast<float>(std::sin(camera.yaw)), 0,
-                                                                static_cast<float>(std::cos(camera.yaw))}
-                                                    : glm::vec3{0, 1, 0};
+  const glm::vec3 up = std::abs(forward.y) > 0.999F
+                           ? glm::vec3{static_cast<float>(std::sin(camera.yaw)), 0,
+                                       static_cast<float>(std::cos(camera.yaw))}
+                           : glm::vec3{0, 1, 0};
   const glm::mat4 view = glm::lookAt(glm::vec3{0}, forward, up);
   const glm::mat4 projection = glm::perspective(
       static_cast<float>(camera.fov_y), static_cast<float>(width) / static_cast<float>(height),
@@ -226,7 +233,8 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height, std::spa
 
 void Renderer::finish() {
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kNanosecondsMax = 30'000'000'000;  // a hung driver must not hang the client for ever
+  constexpr GLuint64 kNanosecondsMax =
+      30'000'000'000;  // a hung driver must not hang the client for ever
   const GLenum waited = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
   glDeleteSync(fence);
   if (waited == GL_TIMEOUT_EXPIRED)
@@ -246,7 +254,8 @@ Image Renderer::read_image() {
   glReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, bottom_up.data());
   image.rgb.reserve(bottom_up.size());
   for (int y = image.height - 1; y >= 0; --y) {
-    const auto begin = bottom_up.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y));
+    const auto begin =
+        bottom_up.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y));
     image.rgb.insert(image.rgb.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
   }
   return image;

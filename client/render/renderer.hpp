@@ -54,7 +54,8 @@ class Renderer {
   void remove(const ChunkKey& key);
 
   /// Draws into an own off-screen target of width x height.
-  RenderStats draw(const Camera& camera, int width, int height, std::span<const Marker> markers = {});
+  RenderStats draw(const Camera& camera, int width, int height,
+                   std::span<const Marker> markers = {});
   /// Blocks until the GPU has finished what draw() queued (a fence): the "presented" moment of a headless
   /// client. Throws std::runtime_error if it never does, or has no memory left.
   void finish();

@@ -4,14 +4,15 @@
 namespace runstone {
 
 // Shared by sky and terrain: what the sky looks like in a direction, so that fog fades into exactly that.
-#define RUNSTONE_SKY_GLSL                                                                               \
-  "const vec3 kSun = normalize(vec3(0.55, 0.70, 0.35));\n"                                              \
-  "vec3 sky(vec3 d) {\n"                                                                                \
-  "  float up = clamp(d.y, 0.0, 1.0);\n"                                                                \
-  "  vec3 c = mix(vec3(0.80, 0.87, 0.93), vec3(0.26, 0.48, 0.80), pow(up, 0.55));\n"                    \
-  "  c = mix(c, vec3(0.58, 0.66, 0.72), clamp(-d.y * 4.0, 0.0, 1.0));\n"                                \
-  "  float s = max(dot(d, kSun), 0.0);\n"                                                               \
-  "  return c + vec3(1.0, 0.85, 0.60) * (0.25 * pow(s, 24.0) + 2.0 * smoothstep(0.9993, 0.9997, s));\n" \
+#define RUNSTONE_SKY_GLSL                                                                         \
+  "const vec3 kSun = normalize(vec3(0.55, 0.70, 0.35));\n"                                        \
+  "vec3 sky(vec3 d) {\n"                                                                          \
+  "  float up = clamp(d.y, 0.0, 1.0);\n"                                                          \
+  "  vec3 c = mix(vec3(0.80, 0.87, 0.93), vec3(0.26, 0.48, 0.80), pow(up, 0.55));\n"              \
+  "  c = mix(c, vec3(0.58, 0.66, 0.72), clamp(-d.y * 4.0, 0.0, 1.0));\n"                          \
+  "  float s = max(dot(d, kSun), 0.0);\n"                                                         \
+  "  return c + vec3(1.0, 0.85, 0.60) * (0.25 * pow(s, 24.0) + 2.0 * smoothstep(0.9993, 0.9997, " \
+  "s));\n"                                                                                        \
   "}\n"
 
 inline constexpr const char* kQuadVertexShader =
@@ -19,7 +20,7 @@ inline constexpr const char* kQuadVertexShader =
     "layout(location = 0) in uvec2 quad;\n"  // common/mesh/quad.hpp, low word first
     "uniform mat4 clip;\n"                   // clip space from eye-relative space
     "uniform vec3 origin;\n"                 // chunk origin minus eye
-    "uniform vec3 pattern;\n"                // chunk origin modulo 4096: world-fixed texture coordinates
+    "uniform vec3 pattern;\n"  // chunk origin modulo 4096: world-fixed texture coordinates
     "uniform sampler2D palette;\n"
     "uniform float seam;\n"  // growth of a quad per unit of distance
     "out vec3 relative;\n"
@@ -70,7 +71,8 @@ inline constexpr const char* kQuadFragmentShader =
     "  vec3 dir = relative / far;\n"
     "  float sun = max(dot(normal, kSun), 0.0);\n"
     "  float skylight = 0.5 + 0.5 * normal.y;\n"
-    "  vec3 light = vec3(1.00, 0.93, 0.80) * (0.75 * sun) + mix(vec3(0.33, 0.31, 0.30), vec3(0.44, 0.52, "
+    "  vec3 light = vec3(1.00, 0.93, 0.80) * (0.75 * sun) + mix(vec3(0.33, 0.31, 0.30), vec3(0.44, "
+    "0.52, "
     "0.62), skylight);\n"
     // Each voxel differs a little, so that merged faces still read as voxels; fades before it would flicker.
     "  vec3 face = abs(normal);\n"
@@ -82,7 +84,8 @@ inline constexpr const char* kQuadFragmentShader =
     "  float tint = 1.0 + detail * (0.10 * (hash(ivec3(floor(voxel))) - 0.5) - 0.10 * rim);\n"
     "  vec3 lit = colour.rgb * light * tint;\n"
     "  float fog = smoothstep(fog_start, fog_end, far);\n"
-    "  fragment = vec4(pow(mix(lit, pow(sky(dir), vec3(2.2)), fog), vec3(1.0 / 2.2)), mix(colour.a, 1.0, "
+    "  fragment = vec4(pow(mix(lit, pow(sky(dir), vec3(2.2)), fog), vec3(1.0 / 2.2)), "
+    "mix(colour.a, 1.0, "
     "fog));\n"
     "}\n";
 

@@ -37,15 +37,15 @@ void ClientSession::disconnected() {
 }
 
 void ClientSession::receive(Message message, const Arrival& arrival) {
-  if (connection_.listens()) now_us_ = arrival.now_us;
+  if (connection_.accepts_input()) now_us_ = arrival.now_us;
   switch (connection_.receive(message, arrival)) {
-    case ServerConnection::Heard::handled:
+    case ServerConnection::Dispatch::handled:
       return;
-    case ServerConnection::Heard::another_world:
+    case ServerConnection::Dispatch::another_world:
       return replica_.reset();
-    case ServerConnection::Heard::ready:
-      return on_ready(std::get<Ready>(message), arrival.now_us);
-    case ServerConnection::Heard::for_session:
+    case ServerConnection::Dispatch::ready:
+      return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
+    case ServerConnection::Dispatch::for_session:
       break;
   }
   std::visit(
@@ -59,7 +59,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_.receive(std::move(m), arrival);
         } else if constexpr (std::is_same_v<T, ChunkEdits>) {
           replica_.receive(m, arrival);
-        } else if constexpr (std::is_same_v<T, Same>) {
+        } else if constexpr (std::is_same_v<T, ChunksNotModified>) {
           replica_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, UniformChunks>) {
           replica_.receive(m, arrival);
@@ -68,16 +68,16 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
         } else if constexpr (std::is_same_v<T, Commit>) {
           const auto taken = replica_.receive(m, arrival);
           if (!taken) connection_.fail_with(GoodbyeReason::malformed_message, taken.error().what);
-        } else if constexpr (std::is_same_v<T, Reject> || std::is_same_v<T, Audit>) {
+        } else if constexpr (std::is_same_v<T, Reject> || std::is_same_v<T, DigestCheck>) {
           replica_.receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Durable>) {
           replica_.receive(m);
-        } else if constexpr (std::is_same_v<T, Moment>) {
-          on_moment(m);
+        } else if constexpr (std::is_same_v<T, HistoryState>) {
+          on_history_state(m);
         } else if constexpr (std::is_same_v<T, PlayerPoses>) {
           on_poses(m);
-        } else if constexpr (std::is_same_v<T, Roster>) {
-          on_roster(m);
+        } else if constexpr (std::is_same_v<T, PlayerList>) {
+          on_player_list(m);
         } else if constexpr (std::is_same_v<T, CommandOutput>) {
           on_command_output(std::move(m));
         } else {
@@ -87,7 +87,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       message);
 }
 
-void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
+void ClientSession::on_session_accepted(const SessionAccepted& ready, TimeUs now_us) {
   const Welcome& world = *welcome();
   opened_us_ = now_us;
   replica_.set_view(view());
@@ -97,7 +97,7 @@ void ClientSession::on_ready(const Ready& ready, TimeUs now_us) {
                             .epoch = world.epoch,
                             .durable = world.durable,
                             .head = world.head,
-                            .decided = ready.decided,
+                            .resolved = ready.resolved,
                             .heights = world.heights,
                             .edit_volume_max = world.edit_volume_max});
   wish_view();
@@ -117,7 +117,8 @@ void ClientSession::tick(TimeUs now_us) {
   send_waiting_edits(now_us);
 }
 
-Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us) {
+Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs submitted_us,
+                                             TimeUs now_us) {
   if (const auto valid = validate(edit); !valid) return Unexpected<Error>{valid.error()};
   if (welcome() && !welcome()->materials.knows(material_max(edit))) {
     return fail(ErrorCode::not_found, "material is not in the world's table");
@@ -134,8 +135,8 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
   // An edit that got no answer: its commit was dropped on the way to us. The server tells by the operation id
   // whether it was decided, so asking twice does no harm.
   if (waiting_.empty()) {
-    for (const auto& [seq, own] : replica_.own_edits().all()) {
-      if (own.decided && !own.asked) continue;
+    for (const auto& [seq, own] : replica_.local_edits().all()) {
+      if (own.resolved && !own.asked) continue;
       if (own.sent_us == OwnEdit::kNever || now_us - own.sent_us < kAnswerUsMax) break;
       waiting_.push_back(seq);
     }
@@ -144,8 +145,9 @@ void ClientSession::send_waiting_edits(TimeUs now_us) {
   // Without a clock offset the others could not tell how old the edit is.
   if (!clock().known() && now_us - opened_us_ < kOffsetWaitUsMax) return;
   for (const ClientSequence seq : std::exchange(waiting_, {})) {
-    const auto it = replica_.own_edits().all().find(seq);
-    if (it == replica_.own_edits().all().end() || (it->second.decided && !it->second.asked)) continue;
+    const auto it = replica_.local_edits().all().find(seq);
+    if (it == replica_.local_edits().all().end() || (it->second.resolved && !it->second.asked))
+      continue;
     connection_.send_edit(seq, it->second);
     replica_.mark_sent(seq, now_us);
   }
@@ -175,7 +177,8 @@ Result<void> ClientSession::command(std::string text) {
 }
 
 void ClientSession::on_command_output(CommandOutput output) {
-  if (!is_commanding_ || output.id != command_) return;  // of a command that a lost connection ended
+  if (!is_commanding_ || output.id != command_)
+    return;  // of a command that a lost connection ended
   for (std::string& line : output.lines) {
     if (command_lines_.size() < kCommandLinesKept) command_lines_.push_back(std::move(line));
   }
@@ -183,7 +186,7 @@ void ClientSession::on_command_output(CommandOutput output) {
   is_command_ok_ = output.is_done && output.is_ok;
 }
 
-Result<void> ClientSession::travel(Travel travel) {
+Result<void> ClientSession::travel(HistoryRequest travel) {
   if (!is_open()) return fail(ErrorCode::bad_value, "no world is open");
   travel.request = ++travel_request_;
   travel_refusal_.clear();
@@ -191,14 +194,16 @@ Result<void> ClientSession::travel(Travel travel) {
   return {};
 }
 
-void ClientSession::on_moment(const Moment& moment) {
+void ClientSession::on_history_state(const HistoryState& moment) {
   const bool is_newest = moment.request == travel_request_;
-  if (moment.phase == MomentPhase::begins) {
-    replica_.begin_moment(moment.past ? std::optional(PastMoment{moment.seq, moment.utc_us}) : std::nullopt);
-    if (is_newest && !moment.past) travelled_ = moment.request;  // its chunks are counted like any others
+  if (moment.phase == HistoryPhase::begins) {
+    replica_.begin_moment(moment.past ? std::optional(PastMoment{moment.seq, moment.utc_us})
+                                      : std::nullopt);
+    if (is_newest && !moment.past)
+      travelled_ = moment.request;  // its chunks are counted like any others
   } else if (is_newest) {
     travelled_ = moment.request;
-    if (moment.phase == MomentPhase::refused) travel_refusal_ = moment.text;
+    if (moment.phase == HistoryPhase::refused) travel_refusal_ = moment.text;
   }
 }
 
@@ -235,8 +240,9 @@ void ClientSession::answer(std::vector<KeptChunk> found, TimeUs now_us) {
 
 std::optional<CachedWorld> ClientSession::cached_world() const {
   if (!is_open()) return std::nullopt;
-  return CachedWorld{
-      welcome()->world_id, welcome()->chunk_edge, {welcome()->epoch, replica_.durable(), replica_.newest()}};
+  return CachedWorld{welcome()->world_id,
+                     welcome()->chunk_edge,
+                     {welcome()->epoch, replica_.durable(), replica_.newest()}};
 }
 
 void ClientSession::send_view() {
@@ -253,7 +259,7 @@ bool ClientSession::loaded() const {
          replica_.awaiting_count() == 0;
 }
 
-void ClientSession::on_roster(const Roster& roster) {
+void ClientSession::on_player_list(const PlayerList& roster) {
   std::map<AuthorId, OtherPlayer> known = std::exchange(others_, {});
   if (roster.is_change) std::swap(known, others_);
   for (const AuthorId author : roster.left) others_.erase(author);

@@ -26,9 +26,9 @@ inline constexpr TimeUs kOffsetWaitUsMax =
     1'000'000;  // edits wait this long for the first pong, then go without
 /// Ready travels with the edits; messages of the other classes may overtake it. So many are held back for it.
 inline constexpr std::size_t kEarlyMessagesMax = 4096;
-inline constexpr TimeUs kCacheWaitUsMax = 250'000;      // that a view waits for what a cache has of it
+inline constexpr TimeUs kCacheWaitUsMax = 250'000;  // that a view waits for what a cache has of it
 inline constexpr std::size_t kCommandLinesKept = 4096;  // of one command's output
-inline constexpr TimeUs kAnswerUsMax = 10'000'000;      // an edit not answered by then is offered again
+inline constexpr TimeUs kAnswerUsMax = 10'000'000;  // an edit not answered by then is offered again
 
 struct OtherPlayer {
   std::string name;
@@ -59,7 +59,7 @@ class ClientSession {
   void set_view(const View& view);
   /// Asks to see the view as it was at a moment of the past, read-only, or as it is. `travel.request` is given here. The
   /// live world is not touched, nor what others see. Fails before ready.
-  Result<void> travel(Travel travel);
+  Result<void> travel(HistoryRequest travel);
   /// Gives the server a command, such as "undo". One at a time. bad_value, also if it is no text of 1 ..
   /// kCommandBytesMax bytes, and unknown_kind if the server takes no commands.
   Result<void> command(std::string text);
@@ -88,7 +88,9 @@ class ClientSession {
   /// Of the current or last connection; empty before the first.
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
   AuthorId author() const { return connection_.author(); }
-  OperationId operation(ClientSequence seq) const { return {author(), connection_.config().instance, seq}; }
+  OperationId operation(ClientSequence seq) const {
+    return {author(), connection_.config().instance, seq};
+  }
   /// The view in force: the wished one within the server's limits.
   View view() const { return connection_.view(); }
   /// Number of chunks in view.
@@ -102,17 +104,17 @@ class ClientSession {
   const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
   /// Server keys by world: those given, and those of worlds seen for the first time.
   const std::map<WorldId, PublicKey>& pinned() const { return connection_.config().pinned; }
-  std::uint64_t openings() const { return connection_.openings(); }
+  std::uint64_t connect_count() const { return connection_.connect_count(); }
 
   Replica& replica() { return replica_; }
   const Replica& replica() const { return replica_; }
 
  private:
-  void on_ready(const Ready& ready, TimeUs now_us);
+  void on_session_accepted(const SessionAccepted& ready, TimeUs now_us);
   void on_command_output(CommandOutput output);
-  void on_roster(const Roster& roster);
+  void on_player_list(const PlayerList& roster);
   void on_poses(const PlayerPoses& poses);
-  void on_moment(const Moment& moment);
+  void on_history_state(const HistoryState& moment);
   /// Sends the view, and before it what of it is held; waits for the cache if there is something to ask it.
   void wish_view();
   void send_view();

@@ -27,7 +27,8 @@ class ClockOffset {
   std::optional<TimeUs> to_server(TimeUs local_us) const;
   std::optional<TimeUs> to_local(TimeUs server_us) const;
 
-  static constexpr std::size_t kSamples = 16;  // at one ping a second, drift stays below the error of a LAN
+  static constexpr std::size_t kSamples =
+      16;  // at one ping a second, drift stays below the error of a LAN
 
  private:
   struct Sample {

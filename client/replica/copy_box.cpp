@@ -40,7 +40,8 @@ class PartReader {
 };
 
 Extent extent_of(const VoxelBox& box) {
-  return {static_cast<std::uint8_t>(box.max.x - box.min.x), static_cast<std::uint8_t>(box.max.y - box.min.y),
+  return {static_cast<std::uint8_t>(box.max.x - box.min.x),
+          static_cast<std::uint8_t>(box.max.y - box.min.y),
           static_cast<std::uint8_t>(box.max.z - box.min.z)};
 }
 
@@ -60,7 +61,8 @@ Result<std::shared_ptr<const Clipboard>> copy_box(const Replica& replica, const 
                                                   CopyEmpty empty) {
   if (box.empty()) return fail(ErrorCode::bad_value, "box to copy is empty");
   if (!replica.opened()) return fail(ErrorCode::bad_value, "no world is open");
-  if (!inside_world(box)) return fail(ErrorCode::bad_value, "box to copy reaches outside the world");
+  if (!inside_world(box))
+    return fail(ErrorCode::bad_value, "box to copy reaches outside the world");
   const auto side_max = static_cast<std::int32_t>(kSideMax);
   if (box.max.x - box.min.x > side_max || box.max.y - box.min.y > side_max ||
       box.max.z - box.min.z > side_max) {
@@ -87,8 +89,9 @@ Result<std::shared_ptr<const Clipboard>> copy_box(const Replica& replica, const 
   for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
     for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
       const ChunkCoord at = chunk_of({box.min.x, y, z}, edge);
-      const std::size_t begin =
-          (static_cast<std::size_t>(at.z - first.z) * rows + static_cast<std::size_t>(at.y - first.y)) * row;
+      const std::size_t begin = (static_cast<std::size_t>(at.z - first.z) * rows +
+                                 static_cast<std::size_t>(at.y - first.y)) *
+                                row;
       for (std::size_t i = begin; i < begin + row; ++i) parts[i].line(out, empty);
     }
   }

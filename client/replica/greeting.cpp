@@ -22,7 +22,8 @@ std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& wel
     return WelcomeFault{GoodbyeReason::not_authenticated, "server signature is wrong"};
   }
   if ((welcome.features & ~hello.features) != 0) {
-    return WelcomeFault{GoodbyeReason::malformed_message, "welcome has features that hello did not offer"};
+    return WelcomeFault{GoodbyeReason::malformed_message,
+                        "welcome has features that hello did not offer"};
   }
   const auto [pin, first_use] = pinned.try_emplace(welcome.world_id, welcome.server_key);
   if (!first_use && pin->second != welcome.server_key) {

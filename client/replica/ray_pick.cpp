@@ -67,7 +67,8 @@ LookDirection look_direction(double yaw, double pitch) {
 std::optional<RayHit> pick(const Replica& replica, const WorldPos& eye, const LookDirection& look,
                            double reach) {
   if (!replica.opened() || !inside_world(eye)) return std::nullopt;
-  std::array<AxisWalk, 3> walk = {AxisWalk{eye.x, look.x}, AxisWalk{eye.y, look.y}, AxisWalk{eye.z, look.z}};
+  std::array<AxisWalk, 3> walk = {AxisWalk{eye.x, look.x}, AxisWalk{eye.y, look.y},
+                                  AxisWalk{eye.z, look.z}};
   ShownReader reader(replica);
   std::optional<Direction> face;
   double distance = 0;

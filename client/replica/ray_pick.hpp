@@ -12,8 +12,9 @@ namespace runstone {
 struct RayHit {
   VoxelPos voxel;  // not empty
   Material material = kEmpty;
-  std::optional<Direction> face;  // the face the ray came in by; none if the ray starts inside the voxel
-  double distance = 0;            // from the eye to that face, voxels
+  std::optional<Direction>
+      face;             // the face the ray came in by; none if the ray starts inside the voxel
+  double distance = 0;  // from the eye to that face, voxels
 };
 
 /// Direction of a look; yaw 0 looks along +z and grows towards +x, pitch is positive upward. Radians;

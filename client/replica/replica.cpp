@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/runs/layer_diff.hpp"
 #include "common/core/assert.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "common/runs/layer_diff.hpp"
 
 namespace runstone {
 
 // ---- opening, view
 
-std::vector<ClientSequence> Replica::open(const Opening& opening) {
+std::vector<ClientSequence> Replica::open(const SessionParameters& opening) {
   if (opening_ && opening_->chunk_edge != opening.chunk_edge) reset();
   std::optional<ServerMark> before;
   if (opening_) before = ServerMark{opening_->epoch, durable_, newest_};
@@ -39,11 +39,11 @@ std::vector<ClientSequence> Replica::open(const Opening& opening) {
       ++counters_.dropped_by_epoch;
     }
   }
-  const auto offers = own_.resume(opening.decided);
+  const auto offers = own_.resume(opening.resolved);
   for (auto& [key, chunk] : chunks_) {
     for (TrackedChunk::Pending& pending : chunk.pending) {
       const OwnEdit* own = own_.find(pending.seq);
-      pending.until_snapshot = own == nullptr || own->decided;
+      pending.until_snapshot = own == nullptr || own->resolved;
       pending.decided_at = 0;
     }
   }
@@ -96,7 +96,7 @@ TrackedChunk& Replica::track(const ChunkKey& key) {
   if (fresh && !past_) {
     const VoxelBox box = box_of(key.at, opening_->chunk_edge);
     for (const auto& [seq, own] : own_.all()) {
-      if (!own.decided && touches(own.edit, box)) it->second.add_pending(seq, own.edit);
+      if (!own.resolved && touches(own.edit, box)) it->second.add_pending(seq, own.edit);
     }
   }
   return it->second;
@@ -114,7 +114,8 @@ const TrackedChunk* Replica::find(const ChunkKey& key) const {
 
 // ---- own edits
 
-Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us) {
+Result<ClientSequence> Replica::submit(const EditDescriptor& edit, TimeUs submitted_us,
+                                       TimeUs now_us) {
   if (!opening_) return fail(ErrorCode::bad_value, "no world is open");
   if (past_) return fail(ErrorCode::bad_value, "the past cannot be edited");
   if (const auto ok = validate(edit); !ok) return Unexpected<Error>{ok.error()};
@@ -188,8 +189,8 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
   if (chunk.confirmed) {
     const Version held = chunk.confirmed->version;
     // One version has one digest: a copy with another one has drifted.
-    const bool has_drifted =
-        snapshot.chunk.version == held && snapshot.chunk.digest != digest_of(chunk.confirmed->voxels);
+    const bool has_drifted = snapshot.chunk.version == held &&
+                             snapshot.chunk.digest != digest_of(chunk.confirmed->voxels);
     counters_.repaired += has_drifted && was_current ? 1 : 0;
     counters_.claims_refuted += has_drifted && !was_current ? 1 : 0;
     const bool repairs = has_drifted || (chunk.awaiting && snapshot.chunk.version == held);
@@ -227,7 +228,7 @@ void Replica::vouched_for(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_u
   settle(key, chunk, true, now_us);
 }
 
-void Replica::receive(const Same& same, TimeUs now_us) {
+void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   if (!opening_ || past_) return;
   for (const SameChunk& said : same.chunks) {
     if (!view_ || !view_->contains(said.key.at)) continue;
@@ -312,7 +313,8 @@ void Replica::receive(const ChunkUnavailable& unavailable) {
     news_.removed(key);  // also where nothing was shown: neighbours wait for it no longer
     for (int i = 0; was_shown && i < kDirectionCount; ++i) {
       const auto d = static_cast<Direction>(i);
-      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), all_layers(was_shown->extent), {});
+      border_changed({key.lod, neighbour(key.at, d)}, opposite(d), all_layers(was_shown->extent),
+                     {});
     }
     news_.unavailable({key, unavailable.reason});
   }
@@ -336,16 +338,16 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
     OrderedPtr info;
     const auto shared_info = [&] {
       if (!info) {
-        info = std::make_shared<const OrderedInfo>(
-            OrderedInfo{ordered.op, version, ordered.edit, ordered.subject, own, ordered.submitted_us,
-                        ordered.ordered_us, arrival.received_us, arrival.unpacked_us});
+        info = std::make_shared<const OrderedInfo>(OrderedInfo{
+            ordered.op, version, ordered.edit, ordered.subject, own, ordered.submitted_us,
+            ordered.ordered_us, arrival.received_us, arrival.unpacked_us});
       }
       return info;
     };
     if (own) {
       if (OwnEdit* held = own_.find(ordered.op.seq)) {
-        if (!held->decided) ++counters_.own_confirmed;
-        held->decided = true;
+        if (!held->resolved) ++counters_.own_confirmed;
+        held->resolved = true;
         held->asked = held->unseen = false;
         held->version = version;
         if (version.seq <= durable_) settle_own();
@@ -382,8 +384,9 @@ Result<void> Replica::receive(const Commit& commit, const Arrival& arrival) {
 
 void Replica::receive(const Reject& reject, TimeUs now_us) {
   OwnEdit* own = own_.find(reject.client_seq);
-  if (own == nullptr || (own->decided && !own->asked)) return;  // applied after all, or taken back before
-  const bool decided_unseen = reject.reason == RejectReason::already_decided;
+  if (own == nullptr || (own->resolved && !own->asked))
+    return;  // applied after all, or taken back before
+  const bool decided_unseen = reject.reason == RejectReason::already_resolved;
   for (const ChunkKey& key : own->chunks) {
     TrackedChunk* chunk = find(key);
     if (chunk == nullptr) continue;
@@ -399,7 +402,7 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
     if (chunk->drop_pending(reject.client_seq) && chunk->confirmed) show_predicted(key, *chunk, {});
   }
   if (decided_unseen) {
-    own->decided = own->unseen = true;
+    own->resolved = own->unseen = true;
     own->asked = false;
     own->version = {opening_->epoch, reject.seq != 0 ? reject.seq : newest_};
     return settle_own();
@@ -423,9 +426,9 @@ void Replica::settle_own() {
   news_.unseen(settled.unseen);
 }
 
-void Replica::receive(const Audit& audit, TimeUs now_us) {
+void Replica::receive(const DigestCheck& audit, TimeUs now_us) {
   if (past_) return;
-  for (const AuditEntry& theirs : audit.entries) {
+  for (const DigestCheckEntry& theirs : audit.entries) {
     TrackedChunk* chunk = find(theirs.key);
     if (chunk == nullptr || !chunk->confirmed || chunk->awaiting) continue;
     const Chunk& ours = *chunk->confirmed;
@@ -454,7 +457,8 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
   requests_.clear();
   awaiting_.clear();
   unavailable_count_ = 0;
-  if (!from_past || !past) current_count_ = 0;  // from moment to moment, what is not sent again is the same
+  if (!from_past || !past)
+    current_count_ = 0;  // from moment to moment, what is not sent again is the same
   for (auto& [key, chunk] : chunks_) {
     chunk.unavailable = chunk.awaiting = false;
     chunk.audited_at = {};
@@ -469,7 +473,7 @@ void Replica::begin_moment(const std::optional<PastMoment>& past) {
   }
   if (past) return;
   for (const auto& [seq, own] : own_.all()) {
-    if (own.decided) continue;
+    if (own.resolved) continue;
     for (const ChunkKey& key : own.chunks) {
       if (TrackedChunk* chunk = find(key)) chunk->add_pending(seq, own.edit);
     }
@@ -498,7 +502,8 @@ std::vector<HeldChunk> Replica::take_claims() {
     if (waiting + claims.size() >= kClaimsMax) break;
     if (!chunk.confirmed || chunk.current || chunk.claimed || chunk.awaiting) continue;
     chunk.claimed = true;
-    claims.push_back({key, chunk.confirmed->version, claim_digest(digest_of(chunk.confirmed->voxels))});
+    claims.push_back(
+        {key, chunk.confirmed->version, claim_digest(digest_of(chunk.confirmed->voxels))});
   }
   counters_.claimed += claims.size();
   return claims;
@@ -603,7 +608,8 @@ void Replica::request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us) {
   ++counters_.requests;
 }
 
-void Replica::show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause) {
+void Replica::show_predicted(const ChunkKey& key, TrackedChunk& chunk,
+                             std::span<EditNews* const> cause) {
   counters_.predicted_stacks.add(chunk.pending.size());
   show(key, chunk, chunk.predicted(origin(key), scratch_), cause);
 }
@@ -625,7 +631,7 @@ void Replica::show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next,
   own.layers.dirty |= dirty;
   own.whole = own.whole || whole;
   own.removed = false;
-  NewsBook::attribute(own, cause);
+  ChangeQueue::attribute(own, cause);
   // Neighbours learn of a new chunk by its news: whether they waited for it is theirs to know.
   if (whole) return;
   for (int i = 0; i < kDirectionCount; ++i) {
@@ -645,7 +651,7 @@ void Replica::border_changed(const ChunkKey& key, Direction side, const DirtyLay
   ChunkNews& border = news_.chunk(key);
   border.serial = chunk->serial;
   border.layers.beyond[static_cast<std::size_t>(side)] |= dirty;
-  NewsBook::attribute(border, cause);
+  ChangeQueue::attribute(border, cause);
 }
 
 std::vector<ChunkKey> Replica::take_requests() { return std::exchange(requests_, {}); }

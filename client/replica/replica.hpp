@@ -12,7 +12,7 @@
 // edits it lost are offered again; operation ids make that exactly-once. A server whose log ends before what
 // was durable here stands on a restored backup: then every edited chunk is distrusted. Pure: no clock, no
 // socket; times are arguments (microseconds of the client's steady clock). One thread; the chunks handed out
-// are immutable and may be read from anywhere. Bounds: chunks, by the view; own edits, kOwnEditsMax (full:
+// are immutable and may be read from anywhere. Bounds: chunks, by the view; own edits, kLocalEditsMax (full:
 // submit() refuses); commits held back, kInboxEditsMax a chunk (full: they are dropped and the chunk asks for
 // a snapshot that contains them).
 #pragma once
@@ -25,10 +25,10 @@
 #include <span>
 #include <vector>
 
+#include "client/replica/change_queue.hpp"
 #include "client/replica/kept_versions.hpp"
-#include "client/replica/news_book.hpp"
-#include "client/replica/own_edits.hpp"
-#include "client/replica/replica_news.hpp"
+#include "client/replica/local_edits.hpp"
+#include "client/replica/replica_changes.hpp"
 #include "client/replica/tracked_chunk.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/apply/edit_stack.hpp"
@@ -38,8 +38,9 @@
 
 namespace runstone {
 
-inline constexpr std::size_t kInboxEditsMax = 1024;   // edits held back per chunk
-inline constexpr TimeUs kRequestAgainUs = 2'000'000;  // a chunk asked for is asked for again after this
+inline constexpr std::size_t kInboxEditsMax = 1024;  // edits held back per chunk
+inline constexpr TimeUs kRequestAgainUs =
+    2'000'000;  // a chunk asked for is asked for again after this
 
 /// Claims that wait for an answer: half of what a server takes, so that those for the next view fit beside them.
 inline constexpr std::size_t kClaimsMax = kHeldClaimsMax / 2;
@@ -47,13 +48,13 @@ inline constexpr std::size_t kLeftMax =
     32'768;  // chunks that left the view and wait to be kept; others are forgotten
 
 /// What welcome and ready say about the world and about us.
-struct Opening {
+struct SessionParameters {
   std::int32_t chunk_edge = 32;
   AuthorId author = 0;
   ClientInstance instance = 0;
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
-  ClientSequence decided = 0;
+  ClientSequence resolved = 0;
   HeightLimits heights{};                                                     // of edits
   std::uint64_t edit_volume_max = std::numeric_limits<std::uint64_t>::max();  // voxels per edit
 };
@@ -67,8 +68,8 @@ struct PastMoment {
 class Replica {
  public:
   /// A connection opens: the first one, or a resumption of the same world. Returns the own edits to send
-  /// (again), in client order; find them in own_edits().
-  std::vector<ClientSequence> open(const Opening& opening);
+  /// (again), in client order; find them in local_edits().
+  std::vector<ClientSequence> open(const SessionParameters& opening);
   /// Forgets chunks and own edits: another world.
   void reset();
   bool opened() const { return opening_.has_value(); }
@@ -80,13 +81,13 @@ class Replica {
 
   /// Shows an own edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled
   /// time. Fails in the past, on an invalid descriptor, beyond the world's heights or volume, on an unavailable chunk,
-  /// before the first opening, and when kOwnEditsMax are held.
+  /// before the first opening, and when kLocalEditsMax are held.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void mark_sent(ClientSequence seq, TimeUs now_us);
 
   void receive(ChunkSnapshot snapshot, const Arrival& arrival);
   /// Claimed chunks are current as they are; where it is not the copy that is held now, the chunk is asked for.
-  void receive(const Same& same, TimeUs now_us);
+  void receive(const ChunksNotModified& same, TimeUs now_us);
   /// As a snapshot at `edits.to`, made of what is held. Asks for the chunk if the two do not fit each other.
   void receive(const ChunkEdits& edits, const Arrival& arrival);
   /// Snapshots of one material each.
@@ -97,7 +98,7 @@ class Replica {
   Result<void> receive(const Commit& commit, const Arrival& arrival);
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
-  void receive(const Audit& audit, TimeUs now_us);
+  void receive(const DigestCheck& audit, TimeUs now_us);
   /// From here on the chunks are those of another moment: what is shown stays until they come. In the past nothing is
   /// predicted and no commit is applied, but for the fate of own edits. Back in the live world all is as after a
   /// resumption, and own edits that wait are shown again.
@@ -121,7 +122,7 @@ class Replica {
   std::vector<std::pair<ChunkKey, ChunkPtr>> take_unkept(std::size_t count_max);
 
   /// What changed since the last call.
-  ReplicaNews take_news() { return news_.take(); }
+  ReplicaChanges drain_changes() { return news_.take(); }
   /// Chunks to ask the server for, ascending.
   std::vector<ChunkKey> take_requests();
 
@@ -149,7 +150,7 @@ class Replica {
     const TrackedChunk* chunk = find(key);
     return chunk != nullptr && chunk->unavailable;
   }
-  const OwnEdits& own_edits() const { return own_; }
+  const LocalEdits& local_edits() const { return own_; }
   Sequence durable() const { return durable_; }
   /// Newest sequence seen in a commit or a welcome.
   Sequence newest() const { return newest_; }
@@ -163,7 +164,8 @@ class Replica {
   void settle_own();
   void set_awaiting(const ChunkKey& key, TrackedChunk& chunk, bool awaiting);
   void request(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_us);
-  void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next, std::span<EditNews* const> cause);
+  void show(const ChunkKey& key, TrackedChunk& chunk, ShownPtr next,
+            std::span<EditNews* const> cause);
   void border_changed(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
                       std::span<EditNews* const> cause);
   void show_predicted(const ChunkKey& key, TrackedChunk& chunk, std::span<EditNews* const> cause);
@@ -172,7 +174,7 @@ class Replica {
   bool is_own(const OperationId& op) const;
   VoxelPos origin(const ChunkKey& key) const { return origin_of(key.at, opening_->chunk_edge); }
 
-  std::optional<Opening> opening_;
+  std::optional<SessionParameters> opening_;
   std::optional<View> view_;
   std::optional<PastMoment> past_;
   std::map<ChunkKey, TrackedChunk> chunks_;
@@ -180,14 +182,14 @@ class Replica {
   std::size_t confirmed_count_ = 0;
   std::size_t current_count_ = 0;
   std::size_t unavailable_count_ = 0;
-  OwnEdits own_;
+  LocalEdits own_;
   Sequence durable_ = 0;
   Sequence newest_ = 0;
   std::uint64_t last_serial_ = 0;
   ApplyScratch scratch_;
   ReplicaCounters counters_;
 
-  NewsBook news_;
+  ChangeQueue news_;
   bool keeps_ = false;
   std::vector<std::pair<ChunkKey, ChunkPtr>> left_;  // the view, to be kept; kLeftMax at most
   std::vector<ChunkKey> requests_;

@@ -32,59 +32,59 @@ void ServerConnection::disconnected() {
   wants_close_ = false;
 }
 
-ServerConnection::Heard ServerConnection::receive(Message& message, const Arrival& arrival) {
-  if (!listens()) return Heard::handled;
+ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arrival& arrival) {
+  if (!accepts_input()) return Dispatch::handled;
   heard_us_ = arrival.now_us;
   if (const auto* goodbye = std::get_if<Goodbye>(&message)) {
     end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_final(goodbye->reason)};
     wants_close_ = true;
-    return Heard::handled;
+    return Dispatch::handled;
   }
   if (auto* welcome = std::get_if<Welcome>(&message)) {
     if (state_ == SessionState::greeting) return on_welcome(std::move(*welcome));
     fail_with(GoodbyeReason::unexpected_message, "welcome twice");
-    return Heard::handled;
+    return Dispatch::handled;
   }
-  if (const auto* ready = std::get_if<Ready>(&message)) {
+  if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
     if (state_ != SessionState::proving) {
       fail_with(GoodbyeReason::unexpected_message, "ready out of turn");
-      return Heard::handled;
+      return Dispatch::handled;
     }
-    on_ready(*ready, arrival.now_us);
-    return Heard::ready;
+    on_session_accepted(*ready, arrival.now_us);
+    return Dispatch::ready;
   }
   if (const auto* pong = std::get_if<Pong>(&message); pong != nullptr && is_open()) {
     clock_.add(pong->sent_us, pong->server_us, arrival.received_us);
     ++pongs_;
-    return Heard::handled;
+    return Dispatch::handled;
   }
-  return Heard::for_session;
+  return Dispatch::for_session;
 }
 
-ServerConnection::Heard ServerConnection::on_welcome(Welcome welcome) {
+ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   if (const auto fault = check_welcome(hello_, welcome, config_.pinned)) {
     end_ = SessionEnd{fault->reason, fault->text, false, true};
     close(fault->reason, fault->text);
-    return Heard::handled;
+    return Dispatch::handled;
   }
   const bool is_another_world = welcome_ && welcome_->world_id != welcome.world_id;
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
-  outgoing_.push_back(Proof{sign(config_.keys, client_transcript(hello_, welcome))});
+  outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome))});
   welcome_ = std::move(welcome);
   state_ = SessionState::proving;
-  return is_another_world ? Heard::another_world : Heard::handled;
+  return is_another_world ? Dispatch::another_world : Dispatch::handled;
 }
 
-void ServerConnection::on_ready(const Ready& ready, TimeUs now_us) {
+void ServerConnection::on_session_accepted(const SessionAccepted& ready, TimeUs now_us) {
   author_ = ready.author;
-  ++openings_;
+  ++connect_count_;
   state_ = SessionState::open;
   ping_us_ = now_us - kPingEveryUs;
   move_us_ = now_us - kMoveEveryUs;
 }
 
 void ServerConnection::close(GoodbyeReason reason, std::string text) {
-  if (listens()) outgoing_.push_back(Goodbye{reason, std::move(text)});
+  if (accepts_input()) outgoing_.push_back(Goodbye{reason, std::move(text)});
   wants_close_ = true;
 }
 
@@ -96,7 +96,7 @@ void ServerConnection::fail_with(GoodbyeReason reason, std::string text) {
 // ---- what is sent
 
 bool ServerConnection::tick(TimeUs now_us, TimeUs ping_every_us) {
-  if (!listens()) return false;
+  if (!accepts_input()) return false;
   if (now_us - heard_us_ > kServerSilenceUsMax) {
     fail_with(GoodbyeReason::timed_out, "server is silent");
     return false;

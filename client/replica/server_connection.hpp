@@ -14,16 +14,17 @@
 
 #include "client/replica/clock_offset.hpp"
 #include "client/replica/greeting.hpp"
-#include "client/replica/own_edits.hpp"
-#include "client/replica/replica_news.hpp"
+#include "client/replica/local_edits.hpp"
+#include "client/replica/replica_changes.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
 inline constexpr TimeUs kPingEveryUs = 1'000'000;
-inline constexpr TimeUs kServerSilenceUsMax = 15'000'000;  // with a ping a second, silence means a dead link
-inline constexpr TimeUs kMoveEveryUs = 50'000;             // poses sent at most
+inline constexpr TimeUs kServerSilenceUsMax =
+    15'000'000;                                 // with a ping a second, silence means a dead link
+inline constexpr TimeUs kMoveEveryUs = 50'000;  // poses sent at most
 
 enum class SessionState { offline, greeting, proving, open };
 
@@ -46,14 +47,14 @@ class ServerConnection {
   void disconnected();
 
   /// What a message was.
-  enum class Heard {
-    handled,        // of the connection itself, which may have ended it; or nobody listens any more
+  enum class Dispatch {
+    handled,  // of the connection itself, which may have ended it; or nobody listens any more
     another_world,  // the welcome of another world than the last one: what is held of that means nothing here
-    ready,          // the connection opened, and the message, a Ready, is whole
-    for_session,    // none of these: whether it may come in this state is for the session to say
+    ready,        // the connection opened, and the message, a Ready, is whole
+    for_session,  // none of these: whether it may come in this state is for the session to say
   };
   /// Takes hello's answers, pongs once open, and goodbyes; leaves other messages as they are.
-  Heard receive(Message& message, const Arrival& arrival);
+  Dispatch receive(Message& message, const Arrival& arrival);
   /// The server said something sound that did not come by receive().
   void heard(TimeUs now_us) { heard_us_ = now_us; }
 
@@ -93,20 +94,20 @@ class ServerConnection {
   /// The connection should be closed once what is queued is sent.
   bool wants_close() const { return wants_close_; }
   /// What the server says is heard: there is a connection, and it is not to be closed.
-  bool listens() const { return state_ != SessionState::offline && !wants_close_; }
+  bool accepts_input() const { return state_ != SessionState::offline && !wants_close_; }
   const std::optional<SessionEnd>& end() const { return end_; }
   /// Of the current or last connection; empty before the first.
   const std::optional<Welcome>& welcome() const { return welcome_; }
   AuthorId author() const { return author_; }
-  std::uint64_t openings() const { return openings_; }
+  std::uint64_t connect_count() const { return connect_count_; }
   std::uint64_t pongs() const { return pongs_; }
   const ClockOffset& clock() const { return clock_; }
   /// `view` is the wished one; `pinned` has the server keys given, and those of worlds seen for the first time.
   const SessionConfig& config() const { return config_; }
 
  private:
-  Heard on_welcome(Welcome welcome);
-  void on_ready(const Ready& ready, TimeUs now_us);
+  Dispatch on_welcome(Welcome welcome);
+  void on_session_accepted(const SessionAccepted& ready, TimeUs now_us);
 
   SessionConfig config_;
   SessionState state_ = SessionState::offline;
@@ -116,7 +117,7 @@ class ServerConnection {
   Hello hello_;
   std::optional<Welcome> welcome_;
   AuthorId author_ = 0;
-  std::uint64_t openings_ = 0, pongs_ = 0;
+  std::uint64_t connect_count_ = 0, pongs_ = 0;
   ClockOffset clock_;
   std::optional<View> view_sent_;
   Pose pose_;

@@ -37,26 +37,30 @@ struct TrackedChunk {
   struct Pending {
     ClientSequence seq = 0;
     EditDescriptor edit;
-    Sequence decided_at = 0;      // 0: not answered yet
-    bool until_snapshot = false;  // answered while we could not listen: the next snapshot settles it
+    Sequence decided_at = 0;  // 0: not answered yet
+    bool until_snapshot =
+        false;  // answered while we could not listen: the next snapshot settles it
   };
 
-  ChunkPtr confirmed;            // null until the first snapshot, and after a restart that distrusts it
-  ShownPtr shown;                // null until the first snapshot
-  std::uint64_t serial = 0;      // of the picture, see Replica::shown_serial()
+  ChunkPtr confirmed;        // null until the first snapshot, and after a restart that distrusts it
+  ShownPtr shown;            // null until the first snapshot
+  std::uint64_t serial = 0;  // of the picture, see Replica::shown_serial()
   std::vector<Pending> pending;  // ascending by seq
   std::vector<Inbound> inbox;    // ascending by sequence
   Sequence latest = 0;           // newest edit of this chunk seen on this connection
   bool current = false;          // a snapshot of it came on this connection
-  Version audited_at;            // of the newest audit that told of a version above ours, on this connection
-  bool awaiting = false;         // asked for a snapshot: nothing else is taken
-  bool claimed = false;          // the server was told on this connection that it is held
-  bool unavailable = false;  // said the server on this connection; then nothing is held, shown or kept back
+  Version audited_at;  // of the newest audit that told of a version above ours, on this connection
+  bool awaiting = false;  // asked for a snapshot: nothing else is taken
+  bool claimed = false;   // the server was told on this connection that it is held
+  bool unavailable =
+      false;  // said the server on this connection; then nothing is held, shown or kept back
   std::optional<TimeUs> requested_us;
   std::optional<Version> kept;  // of confirmed, as it was last handed over to be kept
 
   /// The server vouches for confirmed, and it is not the copy that was kept last.
-  bool is_to_keep() const { return confirmed && current && !awaiting && kept != confirmed->version; }
+  bool is_to_keep() const {
+    return confirmed && current && !awaiting && kept != confirmed->version;
+  }
 
   /// Puts an own edit into the pending stack, at its place, unless it is there.
   void add_pending(ClientSequence seq, const EditDescriptor& edit);

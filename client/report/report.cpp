@@ -68,7 +68,7 @@ Json replica_json(const Replica& replica) {
   return Json{{"confirmed_chunks", replica.confirmed_count()},
               {"awaiting", replica.awaiting_count()},
               {"unavailable", replica.unavailable_count()},
-              {"own_not_durable", replica.own_edits().all().size()},
+              {"own_not_durable", replica.local_edits().all().size()},
               {"newest", replica.newest()},
               {"durable", replica.durable()},
               {"snapshots_taken", c.snapshots_taken},
@@ -120,9 +120,9 @@ std::string cell(const std::optional<std::int64_t>& us) {
 
 void add_row(std::string& out, const char* way, const char* stage, const Histogram& h) {
   if (h.count() == 0) return;
-  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", way, stage,
-                 h.count(), cell(h.percentile(0.5)), cell(h.percentile(0.9)), cell(h.percentile(0.99)),
-                 cell(h.max()));
+  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", way,
+                 stage, h.count(), cell(h.percentile(0.5)), cell(h.percentile(0.9)),
+                 cell(h.percentile(0.99)), cell(h.max()));
 }
 
 double per_chunk(const ChunkStats& chunks) {
@@ -147,7 +147,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   }
   Json latency;
   for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
-    const auto way = static_cast<LatencyWay>(w);
+    const auto way = static_cast<EditPath>(w);
     latency[to_string(way)] = way_json(report.latency[way]);
   }
   latency["own_durable"] = histogram_json(report.latency.durable);
@@ -171,13 +171,15 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
                      {"whole_ns", histogram_json(chunks.whole_ns)},
                      {"layers_ns", histogram_json(chunks.layers_ns)}};
   out["cache"] = cache_json(report.cache);
-  out["frames"] =
-      Json{{"presented", report.frames.presented}, {"draw_us", histogram_json(report.frames.draw_us)}};
-  out["net"] =
-      Json{{"bytes_received", report.net.bytes_received}, {"bytes_sent", report.net.bytes_sent},
-           {"control_bytes", report.net.control_bytes},   {"edit_bytes", report.net.edit_bytes},
-           {"chunk_bytes", report.net.chunk_bytes},       {"messages_received", report.net.messages_received},
-           {"connections", report.net.connections}};
+  out["frames"] = Json{{"presented", report.frames.presented},
+                       {"draw_us", histogram_json(report.frames.draw_us)}};
+  out["net"] = Json{{"bytes_received", report.net.bytes_received},
+                    {"bytes_sent", report.net.bytes_sent},
+                    {"control_bytes", report.net.control_bytes},
+                    {"edit_bytes", report.net.edit_bytes},
+                    {"chunk_bytes", report.net.chunk_bytes},
+                    {"messages_received", report.net.messages_received},
+                    {"connections", report.net.connections}};
   out["replica"] = replica_json(session.replica());
   out["dense_expansions"] = dense_expansions();
   return out.dump(2) + "\n";
@@ -186,10 +188,10 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
 std::string to_table(const ClientReport& report, const ClientSession& session) {
   std::string out;
   const auto into = std::back_inserter(out);
-  fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until", "count",
-                 "p50", "p90", "p99", "max");
+  fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until",
+                 "count", "p50", "p90", "p99", "max");
   for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
-    const auto way = static_cast<LatencyWay>(w);
+    const auto way = static_cast<EditPath>(w);
     for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
       add_row(out, to_string(way), to_string(static_cast<LatencyStage>(s)),
               report.latency[way].since_submit[s]);
@@ -202,19 +204,24 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
   }
   const ChunkStats& chunks = report.chunks;
   const auto each = [&chunks](std::uint64_t total) {
-    return chunks.snapshots == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(chunks.snapshots);
+    return chunks.snapshots == 0
+               ? 0.0
+               : static_cast<double>(total) / static_cast<double>(chunks.snapshots);
   };
-  const Extent extent = Extent::cube(static_cast<unsigned>(std::max(session.replica().chunk_edge(), 0)));
-  fmt::format_to(
-      into,
-      "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as raw runs, {} as a "
-      "dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
-      chunks.snapshots, chunks.runs.mean().value_or(0), each(chunks.wire_bytes), each(chunks.raw_bytes),
-      extent.volume() * sizeof(Material), chunks.unpack_ns.mean().value_or(0) / 1000,
-      chunks.whole_ns.mean().value_or(0) / 1000);
-  fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks), chunks.mesh_jobs,
-                 chunks.chunks_meshed);
-  fmt::format_to(into, "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
+  const Extent extent =
+      Extent::cube(static_cast<unsigned>(std::max(session.replica().chunk_edge(), 0)));
+  fmt::format_to(into,
+                 "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as "
+                 "raw runs, {} as a "
+                 "dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
+                 chunks.snapshots, chunks.runs.mean().value_or(0), each(chunks.wire_bytes),
+                 each(chunks.raw_bytes), extent.volume() * sizeof(Material),
+                 chunks.unpack_ns.mean().value_or(0) / 1000,
+                 chunks.whole_ns.mean().value_or(0) / 1000);
+  fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks),
+                 chunks.mesh_jobs, chunks.chunks_meshed);
+  fmt::format_to(into,
+                 "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
                  chunks.layers_ns.count(), chunks.layers_ns.mean().value_or(0) / 1000,
                  static_cast<double>(chunks.kept_mesh_bytes) / (1 << 20));
   if (report.frames.presented != 0) {

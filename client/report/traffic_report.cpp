@@ -14,7 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr std::array<std::pair<FrameClass, const char*>, kFrameClassCount> kClasses = {
-    {{FrameClass::control, "control"}, {FrameClass::edits, "edits"}, {FrameClass::chunks, "chunks"}}};
+    {{FrameClass::control, "control"},
+     {FrameClass::edits, "edits"},
+     {FrameClass::chunks, "chunks"}}};
 
 Json json_of(const KindTraffic& traffic) {
   return {{"messages", traffic.messages}, {"bytes", traffic.bytes}, {"frames", traffic.frames}};
@@ -25,16 +27,17 @@ Json json_of(const Traffic& traffic) {
   for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
     if (traffic[kind].messages != 0) kinds[name_of_kind(kind)] = json_of(traffic[kind]);
   }
-  for (const auto& [frame_class, name] : kClasses) classes[name] = json_of(of_class(traffic, frame_class));
+  for (const auto& [frame_class, name] : kClasses)
+    classes[name] = json_of(of_class(traffic, frame_class));
   return {{"by_kind", std::move(kinds)}, {"by_class", std::move(classes)}};
 }
 
 std::string row(const char* way, const char* name, const KindTraffic& traffic) {
   return fmt::format("{:<9} {:<18} {:>9} {:>12} {:>9} {:>10.1f}\n", way, name, traffic.messages,
                      traffic.bytes, traffic.frames,
-                     traffic.messages == 0
-                         ? 0.0
-                         : static_cast<double>(traffic.bytes) / static_cast<double>(traffic.messages));
+                     traffic.messages == 0 ? 0.0
+                                           : static_cast<double>(traffic.bytes) /
+                                                 static_cast<double>(traffic.messages));
 }
 
 void add_rows(const char* way, const Traffic& traffic, std::string& out) {
@@ -66,8 +69,8 @@ Json traffic_json(const FleetTraffic& traffic) {
 }
 
 std::string traffic_table(const FleetTraffic& traffic) {
-  std::string out = fmt::format("{:<9} {:<18} {:>9} {:>12} {:>9} {:>10}\n", "", "message", "messages",
-                                "bytes", "frames", "bytes each");
+  std::string out = fmt::format("{:<9} {:<18} {:>9} {:>12} {:>9} {:>10}\n", "", "message",
+                                "messages", "bytes", "frames", "bytes each");
   add_rows("received", traffic.received, out);
   add_rows("sent", traffic.sent, out);
   return out;

@@ -12,7 +12,8 @@ namespace runstone {
 class Histogram {
  public:
   static constexpr std::int64_t kInfinite = std::numeric_limits<std::int64_t>::max();
-  static constexpr std::int64_t kValueMax = (std::int64_t{1} << 42) - 1;  // larger values count as this one
+  static constexpr std::int64_t kValueMax =
+      (std::int64_t{1} << 42) - 1;  // larger values count as this one
 
   /// Negative values count as 0 (two clocks differ by more than the duration) and in below_zero().
   void add(std::int64_t value);

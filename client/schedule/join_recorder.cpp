@@ -19,7 +19,8 @@ std::size_t chunk_count(const View& view) {
 void count(JoinedPart& part, TimeUs since_us) {
   ++part.done;
   if (!part.first_us) part.first_us = since_us;
-  const auto most = static_cast<std::size_t>(std::ceil(kJoinMost * static_cast<double>(part.chunks)));
+  const auto most =
+      static_cast<std::size_t>(std::ceil(kJoinMost * static_cast<double>(part.chunks)));
   if (part.done == most) part.most_us = since_us;
   if (part.done == part.chunks) part.all_us = since_us;
 }
@@ -37,7 +38,8 @@ void JoinRecorder::begin(const View& view, TimeUs began_us) {
 }
 
 void JoinRecorder::done(const ChunkKey& key, TimeUs at_us) {
-  if (!is_open() || key.lod != 0 || !view_->contains(key.at) || !seen_.insert(key.at).second) return;
+  if (!is_open() || key.lod != 0 || !view_->contains(key.at) || !seen_.insert(key.at).second)
+    return;
   const TimeUs since_us = at_us - began_us_;
   count(report_.view, since_us);
   if (near_.contains(key.at)) count(report_.near, since_us);

@@ -17,22 +17,23 @@ const char* to_string(LatencyStage stage) {
   return kNames[index(stage)];
 }
 
-const char* to_string(LatencyWay way) {
-  constexpr std::array<const char*, kLatencyWayCount> kNames = {"own_predicted", "own_confirmed", "remote"};
+const char* to_string(EditPath way) {
+  constexpr std::array<const char*, kLatencyWayCount> kNames = {"own_predicted", "own_confirmed",
+                                                                "remote"};
   return kNames[static_cast<std::size_t>(way)];
 }
 
 void LatencyRecorder::not_submitted() {
-  for (const LatencyWay way : {LatencyWay::own_predicted, LatencyWay::own_confirmed}) {
+  for (const EditPath way : {EditPath::own_predicted, EditPath::own_confirmed}) {
     WayReport& report = done_.ways[static_cast<std::size_t>(way)];
     ++report.edits;
-    const LatencyStage end = way == LatencyWay::own_confirmed ? LatencyStage::applied : last_;
+    const LatencyStage end = way == EditPath::own_confirmed ? LatencyStage::applied : last_;
     for (std::size_t s = index(LatencyStage::applied); s <= index(end); ++s)
       report.since_submit[s].add_infinite();
   }
 }
 
-void LatencyRecorder::take(const ReplicaNews& news, const ClockOffset& clock, TimeUs now_us) {
+void LatencyRecorder::take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us) {
   std::map<ChunkKey, std::uint64_t> serials;
   for (const ChunkNews& chunk : news.chunks) {
     if (!chunk.removed) {
@@ -64,7 +65,8 @@ void LatencyRecorder::take(const ReplicaNews& news, const ClockOffset& clock, Ti
   }
 }
 
-void LatencyRecorder::take_edit(const EditNews& news, const std::map<ChunkKey, std::uint64_t>& serials,
+void LatencyRecorder::take_edit(const EditNews& news,
+                                const std::map<ChunkKey, std::uint64_t>& serials,
                                 const ClockOffset& clock) {
   const EditKey key{news.op, news.predicted};
   const auto own = news.own ? own_.find(news.op.seq) : own_.end();
@@ -73,9 +75,9 @@ void LatencyRecorder::take_edit(const EditNews& news, const std::map<ChunkKey, s
   const auto [it, fresh] = open_.try_emplace(key);
   OpenEdit& edit = it->second;
   if (fresh) {
-    edit.way = news.predicted ? LatencyWay::own_predicted
-               : news.own     ? LatencyWay::own_confirmed
-                              : LatencyWay::remote;
+    edit.way = news.predicted ? EditPath::own_predicted
+               : news.own     ? EditPath::own_confirmed
+                              : EditPath::remote;
     if (is_own) {
       edit.submitted_us = own->second;
     } else if (news.submitted_us != 0) {
@@ -84,13 +86,14 @@ void LatencyRecorder::take_edit(const EditNews& news, const std::map<ChunkKey, s
     if (news.predicted) {
       unconfirmed_.insert(news.op.seq);
     } else {
-      if (const auto ordered = clock.to_local(news.ordered_us)) reach(edit, LatencyStage::ordered, *ordered);
+      if (const auto ordered = clock.to_local(news.ordered_us))
+        reach(edit, LatencyStage::ordered, *ordered);
       reach(edit, LatencyStage::received, news.received_us);
       reach(edit, LatencyStage::unpacked, news.unpacked_us);
     }
     reach(edit, LatencyStage::applied, news.applied_us);
   }
-  if (edit.way == LatencyWay::own_confirmed) {
+  if (edit.way == EditPath::own_confirmed) {
     unconfirmed_.erase(news.op.seq);
     finish(edit);
     open_.erase(it);
@@ -205,7 +208,8 @@ LatencyReport LatencyRecorder::report() const {
     const bool all_meshed = !unmeshed.contains(key);
     for (std::size_t s = 0; s <= index(last_); ++s) {
       const auto stage = static_cast<LatencyStage>(s);
-      const bool final = stage < LatencyStage::meshed || (stage == LatencyStage::meshed && all_meshed);
+      const bool final =
+          stage < LatencyStage::meshed || (stage == LatencyStage::meshed && all_meshed);
       if (final && edit.reached[s]) {
         if (edit.submitted_us) way.since_submit[s].add(edit.at[s] - *edit.submitted_us);
       } else if (stage >= LatencyStage::meshed) {
@@ -213,10 +217,11 @@ LatencyReport LatencyRecorder::report() const {
       }
     }
   }
-  WayReport& confirmed = report.ways[static_cast<std::size_t>(LatencyWay::own_confirmed)];
+  WayReport& confirmed = report.ways[static_cast<std::size_t>(EditPath::own_confirmed)];
   for (std::size_t i = 0; i < unconfirmed_.size(); ++i) {
     ++confirmed.edits;
-    for (std::size_t s = 0; s <= index(LatencyStage::applied); ++s) confirmed.since_submit[s].add_infinite();
+    for (std::size_t s = 0; s <= index(LatencyStage::applied); ++s)
+      confirmed.since_submit[s].add_infinite();
   }
   for (std::size_t i = 0; i < own_.size(); ++i) report.durable.add_infinite();
   return report;

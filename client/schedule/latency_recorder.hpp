@@ -20,19 +20,27 @@
 #include <vector>
 
 #include "client/replica/clock_offset.hpp"
-#include "client/replica/replica_news.hpp"
+#include "client/replica/replica_changes.hpp"
 #include "client/schedule/histogram.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
 
-enum class LatencyStage : std::uint8_t { ordered, received, unpacked, applied, meshed, uploaded, presented };
+enum class LatencyStage : std::uint8_t {
+  ordered,
+  received,
+  unpacked,
+  applied,
+  meshed,
+  uploaded,
+  presented
+};
 inline constexpr std::size_t kLatencyStageCount = 7;
 const char* to_string(LatencyStage stage);
 
-enum class LatencyWay : std::uint8_t { own_predicted, own_confirmed, remote };
+enum class EditPath : std::uint8_t { own_predicted, own_confirmed, remote };
 inline constexpr std::size_t kLatencyWayCount = 3;
-const char* to_string(LatencyWay way);
+const char* to_string(EditPath way);
 
 struct WayReport {
   /// From submit to the end of each stage; `meshed` is latency-plus-mesh, `presented` is "to pixels".
@@ -49,8 +57,9 @@ struct LatencyReport {
   std::array<WayReport, kLatencyWayCount> ways;
   Histogram durable;           // own edits: submit -> known to be on disk
   std::uint64_t rejected = 0;  // own edits the server refused; in none of the above
-  std::uint64_t unseen = 0;  // own edits decided while we could not listen; not in own_confirmed and durable
-  const WayReport& operator[](LatencyWay way) const { return ways[static_cast<std::size_t>(way)]; }
+  std::uint64_t unseen =
+      0;  // own edits decided while we could not listen; not in own_confirmed and durable
+  const WayReport& operator[](EditPath way) const { return ways[static_cast<std::size_t>(way)]; }
 };
 
 class LatencyRecorder {
@@ -62,7 +71,7 @@ class LatencyRecorder {
   void submitted(ClientSequence seq, TimeUs scheduled_us) { own_[seq] = scheduled_us; }
   /// An own edit was due but could not even be handed in: it is infinitely late.
   void not_submitted();
-  void take(const ReplicaNews& news, const ClockOffset& clock, TimeUs now_us);
+  void take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us);
 
   /// A mesh made from the chunk's shown runs of this serial is ready / on the GPU. Serials:
   /// Replica::shown_serial().
@@ -79,7 +88,7 @@ class LatencyRecorder {
  private:
   using EditKey = std::pair<OperationId, bool>;  // and whether it is the prediction
   struct OpenEdit {
-    LatencyWay way = LatencyWay::remote;
+    EditPath way = EditPath::remote;
     std::optional<TimeUs> submitted_us;
     std::array<TimeUs, kLatencyStageCount> at{};
     std::array<bool, kLatencyStageCount> reached{};

@@ -120,8 +120,8 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
       if (!job.neighbours[i]) open_sides = static_cast<std::uint8_t>(open_sides | 1U << i);
     }
     // The kept mesh and what changed lead to this picture, if all of its changes were told.
-    const bool leads = state.mesh && state.serial == job.serial && state.order == job.chunk->order &&
-                       state.open_sides == open_sides;
+    const bool leads = state.mesh && state.serial == job.serial &&
+                       state.order == job.chunk->order && state.open_sides == open_sides;
     if (leads) {
       job.before = std::move(state.mesh);
       job.changed = state.changed;

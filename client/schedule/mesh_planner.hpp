@@ -27,7 +27,7 @@
 #include <tuple>
 
 #include "client/replica/replica.hpp"
-#include "client/replica/replica_news.hpp"
+#include "client/replica/replica_changes.hpp"
 #include "common/core/coords.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/runs/axis_order.hpp"
@@ -46,7 +46,7 @@ struct MeshJob {
   /// The mesh to start from, and the layers that changed since, as mesh_rdm_layers() wants them. Null: mesh
   /// the whole chunk.
   MeshPtr before;
-  PictureLayers changed;
+  VisibleLayers changed;
 };
 
 enum class JobSize : std::uint8_t {
@@ -90,7 +90,7 @@ class MeshPlanner {
     bool counted = false;        // in chunks_
     std::uint64_t job = 0;       // under way; 0: none
     std::uint64_t serial = 0;    // of the newest news
-    PictureLayers changed;       // since the newest job was made
+    VisibleLayers changed;       // since the newest job was made
     // What that job was made from, and its mesh: null while it is under way, and where nothing is known of it.
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour

@@ -56,7 +56,8 @@ void MeshPool::work(const std::stop_token& stop) {
     MeshJob job;
     {
       std::unique_lock lock(mutex_);
-      if (!work_there_.wait(lock, stop, [this] { return !jobs_.empty(); }) || stop.stop_requested()) return;
+      if (!work_there_.wait(lock, stop, [this] { return !jobs_.empty(); }) || stop.stop_requested())
+        return;
       job = std::move(jobs_.front());
       jobs_.pop_front();
     }

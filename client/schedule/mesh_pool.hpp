@@ -23,10 +23,10 @@ struct MeshResult {
   ChunkKey key;
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
-  MeshPtr mesh;                          // of its own, or the one that all chunks without quads share
-  bool layers_only = false;              // the mesh before served for the rest
-  std::int64_t mesh_ns = 0;              // from the job to the mesh
-  TimeUs meshed_us = 0;                  // when it was done
+  MeshPtr mesh;              // of its own, or the one that all chunks without quads share
+  bool layers_only = false;  // the mesh before served for the rest
+  std::int64_t mesh_ns = 0;  // from the job to the mesh
+  TimeUs meshed_us = 0;      // when it was done
 };
 
 class MeshPool {

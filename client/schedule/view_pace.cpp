@@ -8,8 +8,8 @@ namespace {
 bool has_turned(const View& from, const View& to) {
   if (from.cone != to.cone) return true;
   if (to.cone == 0) return false;
-  const auto yaw =
-      static_cast<std::int16_t>(static_cast<std::uint16_t>(to.yaw - from.yaw));  // the short way round
+  const auto yaw = static_cast<std::int16_t>(
+      static_cast<std::uint16_t>(to.yaw - from.yaw));  // the short way round
   return std::abs(std::int32_t{yaw}) > kViewTurn ||
          std::abs(std::int32_t{to.pitch} - std::int32_t{from.pitch}) > kViewTurn;
 }

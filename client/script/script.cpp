@@ -38,9 +38,10 @@ class Words {
   }
   /// All that follows the last word taken, as it stands, comments too.
   std::string_view rest() {
-    const std::size_t first = next_ == 0 ? 0
-                                         : static_cast<std::size_t>(words_[next_ - 1].data() - line_.data()) +
-                                               words_[next_ - 1].size();
+    const std::size_t first =
+        next_ == 0 ? 0
+                   : static_cast<std::size_t>(words_[next_ - 1].data() - line_.data()) +
+                         words_[next_ - 1].size();
     std::string_view text = line_.substr(first);
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
     text = text.substr(0, text.find_last_not_of(" \t\r") + 1);
@@ -74,7 +75,8 @@ T number(Words& words, const char* what, T low, T high) {
   const std::string_view text = words.word(what);
   const auto value = to_number<T>(text);
   if (!value || *value < low || *value > high) {
-    throw LineError{std::string(what) + ": \"" + std::string(text) + "\" is not a number in its range"};
+    throw LineError{std::string(what) + ": \"" + std::string(text) +
+                    "\" is not a number in its range"};
   }
   return *value;
 }
@@ -84,7 +86,8 @@ ScriptCoordinate coordinate(Words& words, const char* what, bool is_y) {
   ScriptCoordinate out;
   const std::string whole(text);
   if (text.front() == '~' || text.front() == '^') {
-    out.base = text.front() == '~' ? ScriptCoordinate::Base::player : ScriptCoordinate::Base::surface;
+    out.base =
+        text.front() == '~' ? ScriptCoordinate::Base::player : ScriptCoordinate::Base::surface;
     if (out.base == ScriptCoordinate::Base::surface && !is_y) throw LineError{"^ is for y only"};
     text.remove_prefix(1);
     if (text.empty()) return out;
@@ -108,7 +111,9 @@ std::string material(Words& words) { return std::string(words.word("MATERIAL"));
 
 constexpr std::string_view kOnly = "only:";
 
-bool is_mask(std::string_view text) { return text == "empty" || text == "solid" || text.starts_with(kOnly); }
+bool is_mask(std::string_view text) {
+  return text == "empty" || text == "solid" || text.starts_with(kOnly);
+}
 
 ScriptMask mask(Words& words) {
   if (!words.more()) return {};
@@ -127,7 +132,8 @@ script::Step stroke_step(Words& words) {
   stroke.material = material(words);
   while (words.more() && !is_mask(words.peek())) stroke.points.push_back(position(words));
   if (stroke.points.size() < 2) throw LineError{"a stroke needs two positions or more"};
-  if (stroke.points.size() > kStrokePointsMax) throw LineError{"a stroke has at most 256 positions"};
+  if (stroke.points.size() > kStrokePointsMax)
+    throw LineError{"a stroke has at most 256 positions"};
   stroke.mask = mask(words);
   return stroke;
 }
@@ -173,14 +179,14 @@ script::Step paste_step(Words& words) {
 
 script::Step travel_step(Words& words) {
   const std::string_view where = words.word("live, SEQ or -SECONDS");
-  script::Travel travel;
+  script::HistoryRequest travel;
   if (where == "live") return travel;
   if (where.starts_with('-')) {
     const auto seconds = to_number<double>(where.substr(1));
     if (!seconds || *seconds < 0 || *seconds > 1e9) {
       throw LineError{"\"" + std::string(where) + "\" is not a number of seconds ago"};
     }
-    travel.to = TravelTo::time;
+    travel.to = HistoryTarget::time;
     travel.seconds_ago = *seconds;
     return travel;
   }
@@ -188,7 +194,7 @@ script::Step travel_step(Words& words) {
   if (!seq || *seq > kSequenceMax) {
     throw LineError{"\"" + std::string(where) + "\" is none of live, SEQ, -SECONDS"};
   }
-  travel.to = TravelTo::sequence;
+  travel.to = HistoryTarget::sequence;
   travel.seq = *seq;
   return travel;
 }
@@ -200,7 +206,8 @@ script::Step wait_step(Words& words) {
   if (what == "durable") until = script::Until::durable;
   if (what == "synced") until = script::Until::synced;
   if (until) {
-    const double most = words.more() ? number<double>(words, "SECONDS", 0, 1e6) : kScriptWaitSecondsMax;
+    const double most =
+        words.more() ? number<double>(words, "SECONDS", 0, 1e6) : kScriptWaitSecondsMax;
     return script::WaitUntil{*until, most};
   }
   const auto seconds = to_number<double>(what);
@@ -264,7 +271,8 @@ script::Step step_of(std::string_view verb, Words& words) {
     expect.material = material(words);
     return expect;
   }
-  if (verb == "repeat") return script::Repeat{number<std::uint32_t>(words, "N", 0, 1'000'000'000), 0};
+  if (verb == "repeat")
+    return script::Repeat{number<std::uint32_t>(words, "N", 0, 1'000'000'000), 0};
   if (verb == "burst") {
     script::Burst burst;
     burst.count = number<std::uint32_t>(words, "N", 0, 1'000'000'000);

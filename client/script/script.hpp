@@ -118,8 +118,8 @@ struct Burst {
 struct Digests {
   std::string file;
 };
-struct Travel {
-  TravelTo to = TravelTo::live;
+struct HistoryRequest {
+  HistoryTarget to = HistoryTarget::live;
   Sequence seq = 0;        // TravelTo::sequence
   double seconds_ago = 0;  // TravelTo::time
 };
@@ -129,9 +129,9 @@ struct Command {
 };
 struct Quit {};
 
-using Step =
-    std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste, Dig, Place, Wait,
-                 WaitUntil, Screenshot, Expect, Repeat, End, Burst, Digests, Travel, Command, Quit>;
+using Step = std::variant<Move, Walk, Roam, Look, LookAt, Set, Box, Sphere, Stroke, Copy, Paste,
+                          Dig, Place, Wait, WaitUntil, Screenshot, Expect, Repeat, End, Burst,
+                          Digests, HistoryRequest, Command, Quit>;
 
 }  // namespace script
 

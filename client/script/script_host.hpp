@@ -47,7 +47,7 @@ class ScriptHost {
   virtual bool synced(std::uint64_t mark) const = 0;
 
   /// Asks to go to a moment of the past, or back.
-  virtual void travel(const Travel& travel) = 0;
+  virtual void travel(const HistoryRequest& travel) = 0;
   /// Gives the server a command. Empty, or why it cannot be given.
   virtual std::string command(const std::string& text) = 0;
   /// Its answer is not complete.

@@ -10,7 +10,8 @@
 namespace runstone {
 namespace {
 
-constexpr TimeUs kWalkStepUs = 20'000;  // often enough to look smooth to others, of a walk and a roam
+constexpr TimeUs kWalkStepUs =
+    20'000;  // often enough to look smooth to others, of a walk and a roam
 constexpr double kUsPerSecond = 1e6;
 
 VoxelPos voxel_of(const WorldPos& at) {
@@ -35,7 +36,8 @@ void ScriptRunner::step(TimeUs now_us) {
   if (finished_ || !host_.ready()) return;
   roam();
   run_commands();
-  if (roaming_ && !finished_) due_us_ = std::min(due_us_.value_or(INT64_MAX), now_us_ + kWalkStepUs);
+  if (roaming_ && !finished_)
+    due_us_ = std::min(due_us_.value_or(INT64_MAX), now_us_ + kWalkStepUs);
 }
 
 void ScriptRunner::run_commands() {
@@ -61,7 +63,8 @@ void ScriptRunner::run_commands() {
 }
 
 void ScriptRunner::fail(const std::string& what) {
-  failures_.push_back(script_.file + ":" + std::to_string(script_.commands[current_].line) + ": " + what);
+  failures_.push_back(script_.file + ":" + std::to_string(script_.commands[current_].line) + ": " +
+                      what);
 }
 
 ScriptRunner::Progress ScriptRunner::give_up(const std::string& what) {
@@ -89,7 +92,8 @@ std::optional<WorldPos> ScriptRunner::resolve(const ScriptPosition& position) {
     const VoxelPos column = voxel_of(out);
     const auto top = host_.surface(column.x, column.z);
     if (!top) {
-      fail("no surface is shown at x=" + std::to_string(column.x) + " z=" + std::to_string(column.z));
+      fail("no surface is shown at x=" + std::to_string(column.x) +
+           " z=" + std::to_string(column.z));
       return std::nullopt;
     }
     out.y = *top + position[1].offset;
@@ -122,7 +126,8 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
 }
 
 ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
-  if (const auto ok = validate(edit); !ok) return give_up(std::string("not an edit: ") + ok.error().what);
+  if (const auto ok = validate(edit); !ok)
+    return give_up(std::string("not an edit: ") + ok.error().what);
   if (!host_.submit(edit, now_us_, now_us_)) fail("the client refused the edit");
   return Progress::done;
 }
@@ -174,7 +179,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::Roam& c) {
 
 void ScriptRunner::roam() {
   if (!roaming_) return;
-  const double distance = roaming_->speed * static_cast<double>(now_us_ - roaming_->last_us) / kUsPerSecond;
+  const double distance =
+      roaming_->speed * static_cast<double>(now_us_ - roaming_->last_us) / kUsPerSecond;
   roaming_->last_us = now_us_;
   if (go(roaming_->to, distance)) std::swap(roaming_->to, roaming_->back);
 }
@@ -362,7 +368,8 @@ ScriptRunner::Progress ScriptRunner::run(const script::Expect& c) {
   if (!present) {
     fail("expected " + c.material + " at " + text_of(*at) + ", but its chunk is not here");
   } else if (*present != *expected) {
-    fail("expected " + c.material + " at " + text_of(*at) + ", found material " + std::to_string(*present));
+    fail("expected " + c.material + " at " + text_of(*at) + ", found material " +
+         std::to_string(*present));
   }
   return Progress::done;
 }
@@ -372,14 +379,15 @@ ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
   return Progress::done;
 }
 
-ScriptRunner::Progress ScriptRunner::run(const script::Travel& c) {
+ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
   if (!started_) {
     start();
-    Travel travel;
+    HistoryRequest travel;
     travel.to = c.to;
     travel.seq = c.seq;
-    if (c.to == TravelTo::time) {
-      travel.utc_us = host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
+    if (c.to == HistoryTarget::time) {
+      travel.utc_us =
+          host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
     }
     host_.travel(travel);
   }

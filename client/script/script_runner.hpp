@@ -61,7 +61,7 @@ class ScriptRunner {
   Progress run(const script::End& c);
   Progress run(const script::Burst& c);
   Progress run(const script::Digests& c);
-  Progress run(const script::Travel& c);
+  Progress run(const script::HistoryRequest& c);
   Progress run(const script::Command& c);
   Progress run(const script::Quit& c);
 

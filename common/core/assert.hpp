@@ -7,8 +7,9 @@ namespace runstone {
 [[noreturn]] void assertion_failed(const char* expression, const char* file, int line);
 }  // namespace runstone
 
-#define RUNSTONE_ASSERT(expression) \
-  ((expression) ? static_cast<void>(0) : ::runstone::assertion_failed(#expression, __FILE__, __LINE__))
+#define RUNSTONE_ASSERT(expression)    \
+  ((expression) ? static_cast<void>(0) \
+                : ::runstone::assertion_failed(#expression, __FILE__, __LINE__))
 
 #ifdef NDEBUG
 #define RUNSTONE_DASSERT(expression) static_cast<void>(0)

@@ -15,7 +15,8 @@ std::uint64_t ByteReader::little_endian(int count) {
     return 0;
   }
   std::uint64_t v = 0;
-  for (std::size_t i = 0; i < bytes_needed; ++i) v |= static_cast<std::uint64_t>(in_[at_ + i]) << (8 * i);
+  for (std::size_t i = 0; i < bytes_needed; ++i)
+    v |= static_cast<std::uint64_t>(in_[at_ + i]) << (8 * i);
   at_ += bytes_needed;
   return v;
 }

@@ -42,7 +42,8 @@ struct VoxelBox {
   friend auto operator<=>(const VoxelBox&, const VoxelBox&) = default;
   constexpr bool empty() const { return max.x <= min.x || max.y <= min.y || max.z <= min.z; }
   constexpr bool contains(VoxelPos p) const {
-    return p.x >= min.x && p.x < max.x && p.y >= min.y && p.y < max.y && p.z >= min.z && p.z < max.z;
+    return p.x >= min.x && p.x < max.x && p.y >= min.y && p.y < max.y && p.z >= min.z &&
+           p.z < max.z;
   }
 };
 
@@ -61,7 +62,9 @@ constexpr ChunkCoord chunk_of(VoxelPos p, std::int32_t edge) {
 }
 
 /// First voxel of a chunk.
-constexpr VoxelPos origin_of(ChunkCoord c, std::int32_t edge) { return {c.x * edge, c.y * edge, c.z * edge}; }
+constexpr VoxelPos origin_of(ChunkCoord c, std::int32_t edge) {
+  return {c.x * edge, c.y * edge, c.z * edge};
+}
 
 constexpr VoxelBox box_of(ChunkCoord c, std::int32_t edge) {
   const VoxelPos o = origin_of(c, edge);
@@ -75,11 +78,20 @@ constexpr LocalPos local_of(VoxelPos p, std::int32_t edge) {
 }
 
 /// The six directions in which a face can look. Values are frozen: quads and the mesh tables carry them.
-enum class Direction : std::uint8_t { neg_x = 0, pos_x = 1, neg_y = 2, pos_y = 3, neg_z = 4, pos_z = 5 };
+enum class Direction : std::uint8_t {
+  neg_x = 0,
+  pos_x = 1,
+  neg_y = 2,
+  pos_y = 3,
+  neg_z = 4,
+  pos_z = 5
+};
 inline constexpr int kDirectionCount = 6;
 constexpr Axis axis_of(Direction d) { return static_cast<Axis>(static_cast<std::uint8_t>(d) >> 1); }
 constexpr bool is_positive(Direction d) { return (static_cast<std::uint8_t>(d) & 1) != 0; }
-constexpr Direction opposite(Direction d) { return static_cast<Direction>(static_cast<std::uint8_t>(d) ^ 1); }
+constexpr Direction opposite(Direction d) {
+  return static_cast<Direction>(static_cast<std::uint8_t>(d) ^ 1);
+}
 constexpr ChunkCoord neighbour(ChunkCoord c, Direction d) {
   const std::int32_t step = is_positive(d) ? 1 : -1;
   switch (axis_of(d)) {

@@ -14,7 +14,9 @@ constexpr std::uint64_t kMaterialSalt = 0x4d6174657269616cULL;
 constexpr std::uint64_t kWorldSalt = 0x576f726c64466f6cULL;
 
 // A residue that is never 0: a zero factor would hide every voxel it multiplies.
-constexpr std::uint64_t nonzero_residue(std::uint64_t seed) { return 1 + mix64(seed) % (m61::kPrime - 1); }
+constexpr std::uint64_t nonzero_residue(std::uint64_t seed) {
+  return 1 + mix64(seed) % (m61::kPrime - 1);
+}
 
 using PrefixSums = std::array<std::uint64_t, kDigestPrefixCount>;
 static_assert(kDigestPrefixCount == kSideMax + 2);

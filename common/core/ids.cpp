@@ -4,6 +4,8 @@
 
 namespace runstone {
 
-TraceId trace_id(const OperationId& op) { return mix64(mix64(mix64(op.author) ^ op.instance) ^ op.seq); }
+TraceId trace_id(const OperationId& op) {
+  return mix64(mix64(mix64(op.author) ^ op.instance) ^ op.seq);
+}
 
 }  // namespace runstone

@@ -42,7 +42,14 @@ using TraceId = std::uint64_t;
 TraceId trace_id(const OperationId& op);
 
 /// Why an edit is in the log. Values are frozen: they are stored.
-enum class Cause : std::uint8_t { player = 0, console = 1, rollback = 2, undo = 3, redo = 4, import = 5 };
+enum class Cause : std::uint8_t {
+  player = 0,
+  console = 1,
+  rollback = 2,
+  undo = 3,
+  redo = 4,
+  import = 5
+};
 inline constexpr std::uint8_t kCauseMax = 5;
 
 using SessionId = std::uint32_t;  // one connection; never reused while the server runs

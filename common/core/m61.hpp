@@ -17,7 +17,9 @@ constexpr std::uint64_t add(std::uint64_t a, std::uint64_t b) {
   const std::uint64_t s = a + b;
   return s >= kPrime ? s - kPrime : s;
 }
-constexpr std::uint64_t sub(std::uint64_t a, std::uint64_t b) { return a >= b ? a - b : a + kPrime - b; }
+constexpr std::uint64_t sub(std::uint64_t a, std::uint64_t b) {
+  return a >= b ? a - b : a + kPrime - b;
+}
 constexpr std::uint64_t mul(std::uint64_t a, std::uint64_t b) {
   __extension__ using Wide = unsigned __int128;
   const Wide p = static_cast<Wide>(a) * b;

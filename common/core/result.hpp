@@ -30,7 +30,9 @@ struct Error {
   ErrorCode code{};
   const char* what = "";     // static string; names the field and the rule
   std::uint64_t offset = 0;  // byte offset, run index or row, whichever the callee documents
-  friend bool operator==(const Error& a, const Error& b) { return a.code == b.code && a.offset == b.offset; }
+  friend bool operator==(const Error& a, const Error& b) {
+    return a.code == b.code && a.offset == b.offset;
+  }
 };
 
 template <class E>
@@ -49,9 +51,11 @@ class [[nodiscard]] Result {
   template <class U = T>
     requires std::is_convertible_v<U, T> && (!std::is_same_v<std::remove_cvref_t<U>, Result>)
   Result(U&& value)
-      : state_(std::in_place_index<0>, std::forward<U>(value)) {}  // NOLINT(google-explicit-constructor)
+      : state_(std::in_place_index<0>, std::forward<U>(value)) {
+  }  // NOLINT(google-explicit-constructor)
   Result(Unexpected<E> error)
-      : state_(std::in_place_index<1>, std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+      : state_(std::in_place_index<1>, std::move(error.error)) {
+  }  // NOLINT(google-explicit-constructor)
 
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
@@ -87,7 +91,8 @@ template <class E>
 class [[nodiscard]] Result<void, E> {
  public:
   Result() = default;
-  Result(Unexpected<E> error) : error_(std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
+  Result(Unexpected<E> error)
+      : error_(std::move(error.error)) {}  // NOLINT(google-explicit-constructor)
 
   bool has_value() const { return !error_.has_value(); }
   explicit operator bool() const { return has_value(); }

@@ -10,7 +10,9 @@ constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::int64_t kDaySeconds = 86'400;
 constexpr std::size_t kDigitsMax = 6;  // of a number in a duration, and behind a decimal point
 
-constexpr std::int64_t floor_to(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+constexpr std::int64_t floor_to(std::int64_t a, std::int64_t b) {
+  return a / b - (a % b < 0 ? 1 : 0);
+}
 
 /// Days since 1970-01-01 of a date of the Gregorian calendar. Source: H. Hinnant, "chrono-compatible low-level
 /// date algorithms": years that begin in March, in eras of 400.
@@ -81,7 +83,8 @@ std::string utc_text(TimeUs utc_us) {
   const std::int64_t of_day = seconds - days * kDaySeconds;
   const Date date = date_of(days);
   return padded(date.year, 4) + "-" + padded(date.month, 2) + "-" + padded(date.day, 2) + "T" +
-         padded(of_day / 3600, 2) + ":" + padded(of_day / 60 % 60, 2) + ":" + padded(of_day % 60, 2) + "Z";
+         padded(of_day / 3600, 2) + ":" + padded(of_day / 60 % 60, 2) + ":" +
+         padded(of_day % 60, 2) + "Z";
 }
 
 std::optional<TimeUs> parse_utc(std::string_view text) {
@@ -92,7 +95,8 @@ std::optional<TimeUs> parse_utc(std::string_view text) {
   const std::int64_t day = take_number(text, 2);
   const std::int64_t days = days_of(year, month, day);
   const Date back = date_of(days);
-  if (day < 1 || back.month != month || back.day != day) return std::nullopt;  // such as February 30
+  if (day < 1 || back.month != month || back.day != day)
+    return std::nullopt;  // such as February 30
   std::int64_t hour = 0, minute = 0, second = 0, fraction_us = 0;
   if (take(text, 'T')) {
     hour = take_number(text, 2);

@@ -60,8 +60,8 @@ RunChunk assemble_chunk(std::int32_t edge, ChunkCoord at, const BlockLookup& loo
     for (std::int32_t y = 0; y < side; ++y) {
       for (std::int32_t x = 0; x < side; ++x) {
         const RunChunk* block = lookup({at.x * side + x, at.y * side + y, at.z * side + z});
-        RUNSTONE_ASSERT(block == nullptr ||
-                        (block->extent == Extent::cube(kLuantiBlockEdge) && block->order == AxisOrder::xyz));
+        RUNSTONE_ASSERT(block == nullptr || (block->extent == Extent::cube(kLuantiBlockEdge) &&
+                                             block->order == AxisOrder::xyz));
         const Material material = block == nullptr ? kEmpty : block->runs.material(0);
         if (blocks.empty()) only = material;
         uniform = uniform && material == only && (block == nullptr || block->is_uniform());
@@ -76,7 +76,8 @@ RunChunk assemble_chunk(std::int32_t edge, ChunkCoord at, const BlockLookup& loo
   for (std::int32_t z = 0; z < edge; ++z) {
     for (std::int32_t y = 0; y < edge; ++y) {
       const std::int32_t row = side * (y / kLuantiBlockEdge + side * (z / kLuantiBlockEdge));
-      for (std::int32_t x = 0; x < side; ++x) blocks[static_cast<std::size_t>(row + x)].take_line(out);
+      for (std::int32_t x = 0; x < side; ++x)
+        blocks[static_cast<std::size_t>(row + x)].take_line(out);
     }
   }
   return out.finish();

@@ -33,7 +33,8 @@ Result<Bytes> decompress(ByteView in) {
     const std::size_t status = ZSTD_decompressStream(stream.get(), &target, &source);
     const std::uint64_t offset = source.pos + 1;  // the version byte stands before the stream
     if (ZSTD_isError(status) != 0) {
-      return fail(ErrorCode::bad_value, "luanti block: not a zstd stream, or a damaged one", offset);
+      return fail(ErrorCode::bad_value, "luanti block: not a zstd stream, or a damaged one",
+                  offset);
     }
     filled = target.pos;
     if (status == 0) {
@@ -48,7 +49,8 @@ Result<Bytes> decompress(ByteView in) {
       return fail(ErrorCode::truncated, "luanti block: the zstd stream ends early", offset);
     }
     if (out.size() == kLuantiBlockBytesMax) {
-      return fail(ErrorCode::limit_exceeded, "luanti block: decompresses to more than 1 MiB", offset);
+      return fail(ErrorCode::limit_exceeded, "luanti block: decompresses to more than 1 MiB",
+                  offset);
     }
     out.resize(std::min(out.size() * 4, kLuantiBlockBytesMax));
   }
@@ -71,7 +73,8 @@ class BigEndian {
 /// come.
 struct NameTable {
   std::vector<std::string> names;
-  std::vector<std::pair<std::uint16_t, Material>> of_id;  // foreign id and our material, sorted by id
+  std::vector<std::pair<std::uint16_t, Material>>
+      of_id;  // foreign id and our material, sorted by id
 
   std::optional<Material> find(std::uint16_t id) const {
     const auto at = std::lower_bound(of_id.begin(), of_id.end(), std::pair{id, Material{0}});
@@ -83,14 +86,17 @@ struct NameTable {
 NameTable read_names(ByteReader& in) {
   BigEndian big(in);
   NameTable table;
-  if (in.u8() != 0) in.reject(ErrorCode::bad_version, "luanti block: unknown version of the name table");
+  if (in.u8() != 0)
+    in.reject(ErrorCode::bad_version, "luanti block: unknown version of the name table");
   const std::uint16_t count = big.u16();
-  if (count > kNameCountMax) in.reject(ErrorCode::limit_exceeded, "luanti block: more than 4096 names");
+  if (count > kNameCountMax)
+    in.reject(ErrorCode::limit_exceeded, "luanti block: more than 4096 names");
   for (std::uint16_t i = 0; i < count && in.ok(); ++i) {
     const std::uint16_t id = big.u16();
     const ByteView name = in.bytes(big.u16());
     table.names.emplace_back(name.begin(), name.end());
-    table.of_id.emplace_back(id, table.names.back() == "ignore" ? kEmpty : static_cast<Material>(i + 1));
+    table.of_id.emplace_back(
+        id, table.names.back() == "ignore" ? kEmpty : static_cast<Material>(i + 1));
   }
   std::sort(table.of_id.begin(), table.of_id.end());
   for (std::size_t i = 1; i < table.of_id.size(); ++i) {
@@ -114,11 +120,11 @@ ChunkCoord luanti_block_coord(std::int64_t pos) {
   // i64.
   auto rest = static_cast<std::uint64_t>(pos);
   out.x = low_12_bits_signed(static_cast<std::int64_t>(rest));
-  rest =
-      static_cast<std::uint64_t>(static_cast<std::int64_t>(rest - static_cast<std::uint64_t>(out.x)) >> 12);
+  rest = static_cast<std::uint64_t>(
+      static_cast<std::int64_t>(rest - static_cast<std::uint64_t>(out.x)) >> 12);
   out.y = low_12_bits_signed(static_cast<std::int64_t>(rest));
-  rest =
-      static_cast<std::uint64_t>(static_cast<std::int64_t>(rest - static_cast<std::uint64_t>(out.y)) >> 12);
+  rest = static_cast<std::uint64_t>(
+      static_cast<std::int64_t>(rest - static_cast<std::uint64_t>(out.y)) >> 12);
   out.z = low_12_bits_signed(static_cast<std::int64_t>(rest));
   return out;
 }
@@ -137,7 +143,8 @@ Result<LuantiBlock> decode_luanti_block(ByteView data) {
   ByteReader in(*plain);
   in.bytes(1 + 2 + 4);  // flags, lighting, timestamp
   NameTable table = read_names(in);
-  if (in.u8() != kNodeIdBytes) in.reject(ErrorCode::bad_value, "luanti block: node ids are not of 2 bytes");
+  if (in.u8() != kNodeIdBytes)
+    in.reject(ErrorCode::bad_value, "luanti block: node ids are not of 2 bytes");
   if (in.u8() != kNodeParamBytes)
     in.reject(ErrorCode::bad_value, "luanti block: parameters are not of 2 bytes");
   // This plane is the foreign program's own dense form: it is read where it was decompressed, node by node
@@ -156,7 +163,8 @@ Result<LuantiBlock> decode_luanti_block(ByteView data) {
     if (node < kNodeCount && id_at(node) == id_at(first)) continue;
     const auto material = table.find(id_at(first));
     if (!material)
-      return fail(ErrorCode::bad_value, "luanti block: a node id has no name", plane_at + 2 * first);
+      return fail(ErrorCode::bad_value, "luanti block: a node id has no name",
+                  plane_at + 2 * first);
     runs.append(node - first, *material);
     first = node;
   }

@@ -20,9 +20,10 @@ inline constexpr std::int32_t kLuantiBlockEdge = 16;
 inline constexpr std::size_t kLuantiBlockBytesMax = std::size_t{1} << 20;
 
 struct LuantiBlock {
-  RunChunk voxels;                 // 16^3 in AxisOrder::xyz, the node order of the format. Material i + 1 is
-                                   // names[i]; 0 is an `ignore` node: the foreign world has not generated it
-  std::vector<std::string> names;  // node names in the block's own order, e.g. "default:stone", at most 4096
+  RunChunk voxels;  // 16^3 in AxisOrder::xyz, the node order of the format. Material i + 1 is
+                    // names[i]; 0 is an `ignore` node: the foreign world has not generated it
+  std::vector<std::string>
+      names;  // node names in the block's own order, e.g. "default:stone", at most 4096
 };
 
 /// Block coordinate of a row's `pos`, and back. Block coordinates are -2048 .. 2047.

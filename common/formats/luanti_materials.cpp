@@ -211,8 +211,8 @@ std::uint64_t hash_of(std::string_view name) {
 }
 
 const Look* exact(std::string_view name) {
-  const auto* found =
-      std::find_if(std::begin(kNodes), std::end(kNodes), [&](const Look& l) { return l.name == name; });
+  const auto* found = std::find_if(std::begin(kNodes), std::end(kNodes),
+                                   [&](const Look& l) { return l.name == name; });
   return found == std::end(kNodes) ? nullptr : found;
 }
 
@@ -246,7 +246,8 @@ Look look_of(std::string_view name) {
     Look look = word;
     look.rgb = 0;
     for (int shift = 16; shift >= 0; shift -= 8) {
-      const int shade = static_cast<int>(word.rgb >> shift & 255) + static_cast<int>(hash >> shift & 15) - 8;
+      const int shade =
+          static_cast<int>(word.rgb >> shift & 255) + static_cast<int>(hash >> shift & 15) - 8;
       look.rgb |= static_cast<std::uint32_t>(std::clamp(shade, 0, 255)) << shift;
     }
     return look;
@@ -256,7 +257,8 @@ Look look_of(std::string_view name) {
 
 /// A material name out of any bytes. What had to be changed carries the hash of the original.
 std::string material_name(std::string_view name) {
-  const bool printable = std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+  const bool printable =
+      std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });
   if (printable && !name.empty() && name.size() <= kMaterialNameBytesMax) return std::string(name);
   std::string out(name.substr(0, kMaterialNameBytesMax - 17));
   for (char& c : out) {
@@ -271,7 +273,8 @@ std::string material_name(std::string_view name) {
 }  // namespace
 
 MaterialInfo material_of_luanti_node(std::string_view name, bool keep_all) {
-  if (name == "air" || name == "ignore") return {"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt};
+  if (name == "air" || name == "ignore")
+    return {"air", {0, 0, 0, 0}, Visibility::empty, std::nullopt};
   const Look look = look_of(name);
   MaterialInfo out;
   out.name = material_name(name);

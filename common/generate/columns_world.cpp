@@ -69,12 +69,14 @@ Result<std::unique_ptr<ColumnsWorld>> ColumnsWorld::parse(std::string_view csv) 
         return fail(ErrorCode::bad_value, "columns: a line is not x,y,id:length|...", line_number);
       }
       if (count > kBottom + kHeightLimit - y) {
-        return fail(ErrorCode::limit_exceeded, "columns: more than 4096 voxels in a column", line_number);
+        return fail(ErrorCode::limit_exceeded, "columns: more than 4096 voxels in a column",
+                    line_number);
       }
       out.column.paint(y, y + count, static_cast<Material>(id + 1));
       y += count;
     } while (line.take('|'));
-    if (!line.left.empty()) return fail(ErrorCode::bad_value, "columns: bytes after a column", line_number);
+    if (!line.left.empty())
+      return fail(ErrorCode::bad_value, "columns: bytes after a column", line_number);
     if (!read.empty() && y != y_max) {
       return fail(ErrorCode::bad_value, "columns: columns end at different heights", line_number);
     }
@@ -103,9 +105,11 @@ Result<std::unique_ptr<ColumnsWorld>> ColumnsWorld::parse(std::string_view csv) 
   bool full = width > 0 && read.size() == static_cast<std::size_t>(width * depth);
   for (std::size_t i = 0; full && i < read.size(); ++i) {
     const auto place = static_cast<std::int32_t>(i);
-    full = read[i].x == world->x_ + place % world->width_ && read[i].z == world->z_ + place / world->width_;
+    full = read[i].x == world->x_ + place % world->width_ &&
+           read[i].z == world->z_ + place / world->width_;
   }
-  if (!full) return fail(ErrorCode::bad_value, "columns: the columns do not fill a rectangle", line_number);
+  if (!full)
+    return fail(ErrorCode::bad_value, "columns: the columns do not fill a rectangle", line_number);
   world->columns_.reserve(read.size());
   for (ReadColumn& column : read) world->columns_.push_back(std::move(column.column));
   return world;

@@ -7,13 +7,17 @@
 
 namespace runstone {
 
-Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin, const MaterialTable& materials) {
-  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain" && pin.name != "scenario") {
+Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
+                                                  const MaterialTable& materials) {
+  if (pin.name != "empty" && pin.name != "flat" && pin.name != "terrain" &&
+      pin.name != "scenario") {
     return fail(ErrorCode::not_found, "generator name is unknown to this build");
   }
-  if (pin.version != 1) return fail(ErrorCode::bad_version, "generator version is unknown to this build");
+  if (pin.version != 1)
+    return fail(ErrorCode::bad_version, "generator version is unknown to this build");
   if (pin.name == "empty") {
-    if (!pin.parameters.empty()) return fail(ErrorCode::bad_value, "generator \"empty\" takes no parameters");
+    if (!pin.parameters.empty())
+      return fail(ErrorCode::bad_value, "generator \"empty\" takes no parameters");
     return FlatGenerator::make_empty();
   }
   if (pin.name == "flat") {

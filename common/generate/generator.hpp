@@ -39,6 +39,7 @@ class Generator {
 /// Makes the pinned generator; fails with not_found or bad_version for pins this build lacks (it then refuses
 /// to generate), with bad_value for parameters it cannot read, with not_found for parameters that name a
 /// material the table lacks. The table must outlive nothing: rules are copied.
-Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin, const MaterialTable& materials);
+Result<std::unique_ptr<Generator>> make_generator(const GeneratorPin& pin,
+                                                  const MaterialTable& materials);
 
 }  // namespace runstone

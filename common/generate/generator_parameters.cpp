@@ -45,7 +45,8 @@ struct FieldReader {
   std::size_t known = 0;
   std::optional<Error> error;
 
-  void operator()(const char* key, std::int32_t& value, std::int32_t, std::int32_t low, std::int32_t high) {
+  void operator()(const char* key, std::int32_t& value, std::int32_t, std::int32_t low,
+                  std::int32_t high) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return;
     ++known;
@@ -58,7 +59,8 @@ struct FieldReader {
       value = static_cast<std::int32_t>(number->get());
     }
   }
-  void operator()(const char* key, std::string& value, const std::string&, std::int32_t, std::int32_t) {
+  void operator()(const char* key, std::string& value, const std::string&, std::int32_t,
+                  std::int32_t) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return;
     ++known;
@@ -73,11 +75,12 @@ struct FieldReader {
 struct FieldWriter {
   std::string out;
 
-  void operator()(const char* key, std::int32_t value, std::int32_t otherwise, std::int32_t, std::int32_t) {
+  void operator()(const char* key, std::int32_t value, std::int32_t otherwise, std::int32_t,
+                  std::int32_t) {
     if (value != otherwise) out += std::string(key) + " = " + std::to_string(value) + "\n";
   }
-  void operator()(const char* key, const std::string& value, const std::string& otherwise, std::int32_t,
-                  std::int32_t) {
+  void operator()(const char* key, const std::string& value, const std::string& otherwise,
+                  std::int32_t, std::int32_t) {
     if (value == otherwise) return;
     out += std::string(key) + " = \"";
     for (const char c : value) {
@@ -100,7 +103,8 @@ Result<P> parse(std::string_view text) {
   FieldReader reader{table, 0, std::nullopt};
   each_field(out, P{}, reader);
   if (reader.error) return Unexpected<Error>{*reader.error};
-  if (reader.known != table.size()) return fail(ErrorCode::bad_value, "unknown generator parameter");
+  if (reader.known != table.size())
+    return fail(ErrorCode::bad_value, "unknown generator parameter");
   return out;
 }
 

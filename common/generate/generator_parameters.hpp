@@ -28,9 +28,10 @@ struct FlatParameters {
 struct TerrainParameters {
   std::int32_t sea_level =
       38;  // y of the first voxel above the sea; the rules' distances stay relative to y = 0
-  std::int32_t y_min = -64;       // y of the lowest voxel; nothing lies below
-  std::string water = "water";    // fills every empty voxel below sea_level; "" for a dry world
-  std::string beach = "sand";     // covers columns that end at most beach_height above the sea; "" for none
+  std::int32_t y_min = -64;     // y of the lowest voxel; nothing lies below
+  std::string water = "water";  // fills every empty voxel below sea_level; "" for a dry world
+  std::string beach =
+      "sand";  // covers columns that end at most beach_height above the sea; "" for none
   std::int32_t beach_height = 3;  // -1000 .. 1000
   std::string rock = "stone";     // covers columns that end above rock_level; "" for none
   std::int32_t rock_level = 60;

@@ -49,7 +49,8 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
   out->peak_level_ = parameters.peak_level;
 
   const auto surface = [seed](const SurfaceRule& rule) {
-    const std::uint64_t key = mix64(seed) + static_cast<std::uint64_t>(static_cast<std::int64_t>(rule.seed));
+    const std::uint64_t key =
+        mix64(seed) + static_cast<std::uint64_t>(static_cast<std::int64_t>(rule.seed));
     return Surface{rule, ValueNoise(mix64(key), rule.frequency)};
   };
   // Noise stays in [-1, 1] up to rounding; one voxel covers the rounding.
@@ -71,7 +72,8 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
   }
   if (out->layers_.empty())
     return fail(ErrorCode::not_found, "no material of the table has a generation rule");
-  if (out->y_min_ >= y_max) return fail(ErrorCode::bad_value, "terrain parameter y_min is above the terrain");
+  if (out->y_min_ >= y_max)
+    return fail(ErrorCode::bad_value, "terrain parameter y_min is above the terrain");
   out->y_max_ = y_max;
   return std::unique_ptr<Generator>(std::move(out));
 }
@@ -105,7 +107,8 @@ void TerrainGenerator::paint_column(Column& column, Height&& height) const {
 RunChunk TerrainGenerator::generate(VoxelPos origin, Extent extent) const {
   const std::int32_t end = origin.y + extent.y;
   if (end <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
-  if (origin.y >= y_min_ && end <= solid_below_) return uniform_chunk(extent, layers_.back().material);
+  if (origin.y >= y_min_ && end <= solid_below_)
+    return uniform_chunk(extent, layers_.back().material);
 
   const std::size_t columns = std::size_t{extent.x} * extent.z;
   std::vector<double> heights;  // one plane per surface, in layer order
@@ -123,7 +126,8 @@ RunChunk TerrainGenerator::generate(VoxelPos origin, Extent extent) const {
   RunBuilder out(extent, AxisOrder::yxz);
   Column column;
   for (std::size_t i = 0; i < columns; ++i) {
-    paint_column(column, [&](const Surface&, std::size_t plane) { return heights[plane * columns + i]; });
+    paint_column(column,
+                 [&](const Surface&, std::size_t plane) { return heights[plane * columns + i]; });
     column.emit(origin.y, extent.y, out);
   }
   return out.finish();

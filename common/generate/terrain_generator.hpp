@@ -20,7 +20,8 @@ class TerrainGenerator final : public Generator {
  public:
   /// Fails with not_found if a parameter names no material of the table or the table has no generation rule,
   /// with limit_exceeded above kTerrainRuleCountMax rules, with bad_value if y_min is above everything.
-  static Result<std::unique_ptr<Generator>> make(std::uint64_t seed, const TerrainParameters& parameters,
+  static Result<std::unique_ptr<Generator>> make(std::uint64_t seed,
+                                                 const TerrainParameters& parameters,
                                                  const MaterialTable& materials);
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;

@@ -54,7 +54,8 @@ ValueNoise::ValueNoise(std::uint64_t seed, double frequency) : octaves_{} {
 
 void ValueNoise::fill(std::int32_t x, std::int32_t z, std::uint32_t width, std::uint32_t depth,
                       std::span<double> out) const {
-  RUNSTONE_ASSERT(width <= kSideMax && depth <= kSideMax && out.size() == std::size_t{width} * depth);
+  RUNSTONE_ASSERT(width <= kSideMax && depth <= kSideMax &&
+                  out.size() == std::size_t{width} * depth);
   std::fill(out.begin(), out.end(), 0.0);
   for (const Octave& octave : octaves_) add_octave(octave, x, z, width, depth, out);
 }
@@ -65,14 +66,16 @@ double ValueNoise::at(std::int32_t x, std::int32_t z) const {
   return out[0];
 }
 
-void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,
-                            std::uint32_t depth, std::span<double> out) const {
+void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z,
+                            std::uint32_t width, std::uint32_t depth, std::span<double> out) const {
   if (width == 0 || depth == 0) return;
-  std::array<std::uint32_t, kSideMax> corner;  // of each column along x, from the first cell touched
+  std::array<std::uint32_t, kSideMax>
+      corner;  // of each column along x, from the first cell touched
   std::array<double, kSideMax> fade_x;
   const std::int64_t first = place_of(x, octave.frequency, octave.shift_x).cell;
   for (std::uint32_t i = 0; i < width; ++i) {
-    const Place place = place_of(x + static_cast<std::int32_t>(i), octave.frequency, octave.shift_x);
+    const Place place =
+        place_of(x + static_cast<std::int32_t>(i), octave.frequency, octave.shift_x);
     corner[i] = static_cast<std::uint32_t>(place.cell - first);
     fade_x[i] = place.fade;
   }
@@ -84,7 +87,8 @@ void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z
   std::array<double, kCornersMax> near_row, far_row, row;
   std::int64_t loaded = 0;
   for (std::uint32_t k = 0; k < depth; ++k) {
-    const Place place = place_of(z + static_cast<std::int32_t>(k), octave.frequency, octave.shift_z);
+    const Place place =
+        place_of(z + static_cast<std::int32_t>(k), octave.frequency, octave.shift_z);
     if (k == 0 || place.cell != loaded) {
       for (std::size_t c = 0; c < corners; ++c) {
         const std::int64_t i = first + static_cast<std::int64_t>(c);
@@ -93,7 +97,8 @@ void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z
       }
       loaded = place.cell;
     }
-    for (std::size_t c = 0; c < corners; ++c) row[c] = near_row[c] + (far_row[c] - near_row[c]) * place.fade;
+    for (std::size_t c = 0; c < corners; ++c)
+      row[c] = near_row[c] + (far_row[c] - near_row[c]) * place.fade;
     double* line = out.data() + std::size_t{k} * width;
     for (std::uint32_t i = 0; i < width; ++i) {
       const double left = row[corner[i]];

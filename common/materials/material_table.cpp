@@ -14,7 +14,8 @@ const char* broken_rule(const SurfaceRule& rule) {
   // Written so that a NaN fails.
   if (!(std::fabs(rule.elevation) <= kReach)) return "elevation must be within -10000 .. 10000";
   if (!(std::fabs(rule.distance) <= kReach)) return "distance must be within -10000 .. 10000";
-  if (!(rule.frequency > 0 && rule.frequency <= 1)) return "frequency must be above 0 and at most 1";
+  if (!(rule.frequency > 0 && rule.frequency <= 1))
+    return "frequency must be above 0 and at most 1";
   return nullptr;
 }
 
@@ -32,21 +33,27 @@ std::optional<Material> MaterialTable::find(std::string_view name) const {
 }
 
 Result<Material> MaterialTable::add(MaterialInfo info) {
-  if (rows_.size() >= kMaterialCountMax) return fail(ErrorCode::limit_exceeded, "more than 65536 materials");
-  if (info.name.empty() || info.name.size() > kMaterialNameBytesMax || !is_printable_utf8(info.name)) {
-    return fail(ErrorCode::bad_value, "name must be 1 .. 64 bytes of UTF-8 without control characters");
+  if (rows_.size() >= kMaterialCountMax)
+    return fail(ErrorCode::limit_exceeded, "more than 65536 materials");
+  if (info.name.empty() || info.name.size() > kMaterialNameBytesMax ||
+      !is_printable_utf8(info.name)) {
+    return fail(ErrorCode::bad_value,
+                "name must be 1 .. 64 bytes of UTF-8 without control characters");
   }
   if (info.visibility == Visibility::opaque && info.colour[3] != 255) {
     return fail(ErrorCode::bad_value, "colour of an opaque material must not be see-through");
   }
   if (info.generation) {
-    if (const char* what = broken_rule(info.generation->surface)) return fail(ErrorCode::bad_value, what);
+    if (const char* what = broken_rule(info.generation->surface))
+      return fail(ErrorCode::bad_value, what);
     if (info.generation->reversed) {
-      if (const char* what = broken_rule(*info.generation->reversed)) return fail(ErrorCode::bad_value, what);
+      if (const char* what = broken_rule(*info.generation->reversed))
+        return fail(ErrorCode::bad_value, what);
     }
   }
   const auto id = static_cast<Material>(rows_.size());
-  if (!ids_.emplace(info.name, id).second) return fail(ErrorCode::bad_value, "name is already taken");
+  if (!ids_.emplace(info.name, id).second)
+    return fail(ErrorCode::bad_value, "name is already taken");
   rows_.push_back(std::move(info));
   return id;
 }

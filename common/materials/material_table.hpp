@@ -40,7 +40,8 @@ struct GenerationRule {
 
 struct MaterialInfo {
   std::string name;  // unique, 1 .. 64 bytes of UTF-8 without control characters
-  std::array<std::uint8_t, 4> colour{0, 0, 0, 255};  // sRGB and alpha; alpha < 255 only where transparent
+  std::array<std::uint8_t, 4> colour{0, 0, 0,
+                                     255};  // sRGB and alpha; alpha < 255 only where transparent
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;

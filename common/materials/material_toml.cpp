@@ -30,7 +30,8 @@ class TableReader {
   Unexpected<TextError> error() const { return {*error_}; }
 
   void reject(const toml::node& node, std::string key, std::string what) {
-    reject_line(static_cast<std::uint32_t>(node.source().begin.line), std::move(key), std::move(what));
+    reject_line(static_cast<std::uint32_t>(node.source().begin.line), std::move(key),
+                std::move(what));
   }
   void reject_line(std::uint32_t line, std::string key, std::string what) {
     if (!error_) error_ = TextError{file_, line, std::move(key), std::move(what)};
@@ -42,13 +43,14 @@ class TableReader {
       bool found = false;
       for (const auto name : known) found = found || key.str() == name;
       if (!found) {
-        reject_line(static_cast<std::uint32_t>(key.source().begin.line), path + "." + std::string(key.str()),
-                    "unknown key");
+        reject_line(static_cast<std::uint32_t>(key.source().begin.line),
+                    path + "." + std::string(key.str()), "unknown key");
       }
     }
   }
 
-  std::optional<std::string> text(const toml::table& table, const std::string& path, std::string_view key) {
+  std::optional<std::string> text(const toml::table& table, const std::string& path,
+                                  std::string_view key) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return std::nullopt;
     if (const auto* value = node->as_string()) return value->get();
@@ -56,7 +58,8 @@ class TableReader {
     return std::nullopt;
   }
 
-  double number(const toml::table& table, const std::string& path, std::string_view key, double otherwise) {
+  double number(const toml::table& table, const std::string& path, std::string_view key,
+                double otherwise) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return otherwise;
     if (const auto* value = node->as_floating_point()) return value->get();
@@ -78,7 +81,8 @@ class TableReader {
       const auto [end, status] = std::from_chars(&s[i], &s[i] + 2, out[i / 2], 16);
       good = status == std::errc{} && end == &s[i] + 2;
     }
-    if (!good) reject(*table.get("colour"), path + ".colour", "must be \"#rrggbb\" or \"#rrggbbaa\"");
+    if (!good)
+      reject(*table.get("colour"), path + ".colour", "must be \"#rrggbb\" or \"#rrggbbaa\"");
     return out;
   }
 
@@ -88,7 +92,8 @@ class TableReader {
     for (std::uint8_t i = 0; i < 3; ++i) {
       if (*written == kVisibilityNames[i]) return static_cast<Visibility>(i);
     }
-    reject(*table.get("visibility"), path + ".visibility", R"(must be "empty", "opaque" or "transparent")");
+    reject(*table.get("visibility"), path + ".visibility",
+           R"(must be "empty", "opaque" or "transparent")");
     return Visibility::opaque;
   }
 
@@ -161,7 +166,8 @@ void read_row(TableReader& in, const toml::table& row, const std::string& path, 
   info.name = *name;
   if (first) {
     if (info != out[kEmpty]) {
-      in.reject(row, path, R"(the first material must be name = "air", visibility = "empty", nothing else)");
+      in.reject(row, path,
+                R"(the first material must be name = "air", visibility = "empty", nothing else)");
     }
     return;
   }
@@ -189,7 +195,8 @@ std::string decimal(double value) {
 
 std::string surface_text(const SurfaceRule& rule) {
   return "{ seed = " + std::to_string(rule.seed) + ", elevation = " + decimal(rule.elevation) +
-         ", distance = " + decimal(rule.distance) + ", frequency = " + decimal(rule.frequency) + " }";
+         ", distance = " + decimal(rule.distance) + ", frequency = " + decimal(rule.frequency) +
+         " }";
 }
 
 std::string colour_text(const std::array<std::uint8_t, 4>& colour) {
@@ -205,13 +212,15 @@ std::string colour_text(const std::array<std::uint8_t, 4>& colour) {
 
 }  // namespace
 
-Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file) {
+Result<MaterialTable, TextError> parse_material_table(std::string_view toml,
+                                                      std::string_view file) {
   TableReader in(file);
   toml::table root;
   try {
     root = toml::parse(toml);
   } catch (const toml::parse_error& bad) {
-    in.reject_line(static_cast<std::uint32_t>(bad.source().begin.line), "", std::string(bad.description()));
+    in.reject_line(static_cast<std::uint32_t>(bad.source().begin.line), "",
+                   std::string(bad.description()));
     return in.error();
   }
   for (const auto& [key, node] : root) {
@@ -246,11 +255,12 @@ std::string to_toml(const MaterialTable& table) {
     if (!out.empty()) out += '\n';
     out += "[[material]]\nname = " + quoted(row.name) + "\n";
     out += "colour = " + quoted(colour_text(row.colour)) + "\n";
-    out +=
-        std::string("visibility = \"") + kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
+    out += std::string("visibility = \"") +
+           kVisibilityNames[static_cast<std::size_t>(row.visibility)] + "\"\n";
     if (!row.generation) continue;
     out += "[material.generate]\nsurface = " + surface_text(row.generation->surface) + "\n";
-    if (row.generation->reversed) out += "reversed = " + surface_text(*row.generation->reversed) + "\n";
+    if (row.generation->reversed)
+      out += "reversed = " + surface_text(*row.generation->reversed) + "\n";
   }
   return out;
 }

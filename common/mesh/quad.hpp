@@ -30,22 +30,30 @@ struct Quad {
 };
 static_assert(sizeof(Quad) == 8);
 
-constexpr Axis u_axis_of(Axis axis) { return static_cast<Axis>((static_cast<unsigned>(axis) + 1) % 3); }
-constexpr Axis v_axis_of(Axis axis) { return static_cast<Axis>((static_cast<unsigned>(axis) + 2) % 3); }
+constexpr Axis u_axis_of(Axis axis) {
+  return static_cast<Axis>((static_cast<unsigned>(axis) + 1) % 3);
+}
+constexpr Axis v_axis_of(Axis axis) {
+  return static_cast<Axis>((static_cast<unsigned>(axis) + 2) % 3);
+}
 
 constexpr Quad pack(const QuadFields& q) {
   return {static_cast<std::uint64_t>(q.x) | static_cast<std::uint64_t>(q.y) << 7 |
           static_cast<std::uint64_t>(q.z) << 14 | static_cast<std::uint64_t>(q.width - 1) << 21 |
-          static_cast<std::uint64_t>(q.height - 1) << 28 | static_cast<std::uint64_t>(q.direction) << 35 |
+          static_cast<std::uint64_t>(q.height - 1) << 28 |
+          static_cast<std::uint64_t>(q.direction) << 35 |
           static_cast<std::uint64_t>(q.material) << 38};
 }
 
 constexpr QuadFields unpack(Quad quad) {
-  const auto field = [bits = quad.bits](int shift, std::uint64_t mask) { return (bits >> shift) & mask; };
-  return {static_cast<std::uint8_t>(field(0, 127)),      static_cast<std::uint8_t>(field(7, 127)),
-          static_cast<std::uint8_t>(field(14, 127)),     static_cast<std::uint8_t>(field(21, 127) + 1),
-          static_cast<std::uint8_t>(field(28, 127) + 1), static_cast<Direction>(field(35, 7)),
-          static_cast<Material>(field(38, 65535))};
+  const auto field = [bits = quad.bits](int shift, std::uint64_t mask) {
+    return (bits >> shift) & mask;
+  };
+  return {
+      static_cast<std::uint8_t>(field(0, 127)),      static_cast<std::uint8_t>(field(7, 127)),
+      static_cast<std::uint8_t>(field(14, 127)),     static_cast<std::uint8_t>(field(21, 127) + 1),
+      static_cast<std::uint8_t>(field(28, 127) + 1), static_cast<Direction>(field(35, 7)),
+      static_cast<Material>(field(38, 65535))};
 }
 
 }  // namespace runstone

@@ -10,7 +10,8 @@ namespace runstone {
 
 class VisibilityTable {
  public:
-  explicit VisibilityTable(const MaterialTable& materials) : of_(kMaterialCountMax, Visibility::opaque) {
+  explicit VisibilityTable(const MaterialTable& materials)
+      : of_(kMaterialCountMax, Visibility::opaque) {
     for (std::size_t id = 0; id < materials.size(); ++id) {
       of_[id] = materials[static_cast<Material>(id)].visibility;
     }

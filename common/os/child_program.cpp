@@ -41,7 +41,8 @@ struct SpawnSettings {
 
 }  // namespace
 
-std::string sibling_program(const std::string& wanted, const char* variable, const std::string& name) {
+std::string sibling_program(const std::string& wanted, const char* variable,
+                            const std::string& name) {
   if (!wanted.empty()) return wanted;
   if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') return named;
   std::error_code unknown;
@@ -70,8 +71,8 @@ Result<pid_t, int> start_program(ChildProgram program) {
   for (std::string& word : program.words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t pid = -1;
-  const int wrong =
-      ::posix_spawnp(&pid, arguments[0], &settings.files, &settings.attributes, arguments.data(), environ);
+  const int wrong = ::posix_spawnp(&pid, arguments[0], &settings.files, &settings.attributes,
+                                   arguments.data(), environ);
   if (wrong != 0) return Unexpected<int>{wrong};
   return pid;
 }

@@ -17,7 +17,8 @@ struct ChildProgram {
 
 /// Which program to start: `wanted` if it is not empty, else what the environment's `variable` names, else the one
 /// called `name` in the folder of the running program.
-std::string sibling_program(const std::string& wanted, const char* variable, const std::string& name);
+std::string sibling_program(const std::string& wanted, const char* variable,
+                            const std::string& name);
 
 /// Starts it and returns its process id, or an error number. It has our environment and standard error, no other file or
 /// socket of ours, and no signal is blocked or ignored in it. Whoever started it has to wait for it.

@@ -14,7 +14,8 @@ std::string parse_host_port(const std::string& text, std::string& host, std::uin
     return "the port is not a number of 1 to 65535";
   }
   host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+    host = host.substr(1, host.size() - 2);
   port = static_cast<std::uint16_t>(number);
   return {};
 }

@@ -13,7 +13,8 @@ void lower_priority() {
 #ifdef __linux__
   constexpr int kNice = 10;
   const auto self = static_cast<id_t>(::gettid());
-  static_cast<void>(::setpriority(PRIO_PROCESS, self, std::max(kNice, ::getpriority(PRIO_PROCESS, self))));
+  static_cast<void>(
+      ::setpriority(PRIO_PROCESS, self, std::max(kNice, ::getpriority(PRIO_PROCESS, self))));
 #endif
 }
 

@@ -11,7 +11,8 @@ std::string progress_text(const std::string& what, std::uint64_t first, std::uin
                           std::uint64_t last, double seconds) {
   std::string text = what + ": " + std::to_string(done) + " of " + std::to_string(last);
   if (done <= first || done > last || seconds < 1) return text;
-  const double left = seconds * static_cast<double>(last - done) / static_cast<double>(done - first);
+  const double left =
+      seconds * static_cast<double>(last - done) / static_cast<double>(done - first);
   const auto whole = static_cast<std::uint64_t>(left + 0.5);
   if (whole < 120) return text + ", " + std::to_string(whole) + " s left";
   return text + ", " + std::to_string((whole + 30) / 60) + " min left";

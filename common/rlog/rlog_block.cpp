@@ -10,10 +10,13 @@ constexpr std::size_t kChecksummedBytes = kRlogHeaderBytes - sizeof(std::uint64_
 
 Result<void> check_bounds(const RlogBlock& block) {
   const auto bad = [](const char* what) { return fail(ErrorCode::bad_value, what); };
-  if (block.raw_bytes > kRlogRawBytesMax) return fail(ErrorCode::limit_exceeded, "block is too long");
-  if (block.count > kRlogCountMax) return fail(ErrorCode::limit_exceeded, "block has too many entries");
+  if (block.raw_bytes > kRlogRawBytesMax)
+    return fail(ErrorCode::limit_exceeded, "block is too long");
+  if (block.count > kRlogCountMax)
+    return fail(ErrorCode::limit_exceeded, "block has too many entries");
   if (block.stored_bytes > block.raw_bytes) return bad("block is longer packed than unpacked");
-  if (block.first == 0 || block.first > kSequenceMax) return bad("block begins at an impossible sequence");
+  if (block.first == 0 || block.first > kSequenceMax)
+    return bad("block begins at an impossible sequence");
   const bool has_entries = block.kind == RlogKind::edits || block.kind == RlogKind::players;
   if (has_entries != (block.count != 0)) return bad("block of this kind cannot have this count");
   if ((block.kind == RlogKind::end) != (block.stored_bytes == 0)) {
@@ -23,7 +26,8 @@ Result<void> check_bounds(const RlogBlock& block) {
   if (block.kind == RlogKind::edits && block.count - 1 > kSequenceMax - block.first) {
     return bad("block ends at an impossible sequence");
   }
-  if (block.last_us < block.first_us || (block.kind != RlogKind::edits && block.last_us != block.first_us)) {
+  if (block.last_us < block.first_us ||
+      (block.kind != RlogKind::edits && block.last_us != block.first_us)) {
     return bad("block ends before it begins");
   }
   return {};
@@ -48,12 +52,14 @@ void write_header(RlogBlock& block, std::uint64_t checksum_before, Bytes& out) {
   w.u64(static_cast<std::uint64_t>(block.last_us));
   w.u64(block.position);
   w.u64(block.payload_checksum);
-  block.header_checksum = XXH3_64bits_withSeed(out.data() + begin, kChecksummedBytes, checksum_before);
+  block.header_checksum =
+      XXH3_64bits_withSeed(out.data() + begin, kChecksummedBytes, checksum_before);
   w.u64(block.header_checksum);
 }
 
 Result<RlogBlock> read_header(ByteView in, std::uint64_t checksum_before) {
-  if (in.size() < kRlogHeaderBytes) return fail(ErrorCode::truncated, "file ends inside a block header");
+  if (in.size() < kRlogHeaderBytes)
+    return fail(ErrorCode::truncated, "file ends inside a block header");
   ByteReader r(in.first(kRlogHeaderBytes));
   const std::uint32_t kind = r.u32();
   RlogBlock block;
@@ -66,7 +72,8 @@ Result<RlogBlock> read_header(ByteView in, std::uint64_t checksum_before) {
   block.position = r.u64();
   block.payload_checksum = r.u64();
   block.header_checksum = r.u64();
-  if (block.header_checksum != XXH3_64bits_withSeed(in.data(), kChecksummedBytes, checksum_before)) {
+  if (block.header_checksum !=
+      XXH3_64bits_withSeed(in.data(), kChecksummedBytes, checksum_before)) {
     return fail(ErrorCode::bad_checksum, "checksum of the block header is wrong");
   }
   if (kind < 1 || kind > static_cast<std::uint32_t>(RlogKind::end)) {
@@ -77,7 +84,9 @@ Result<RlogBlock> read_header(ByteView in, std::uint64_t checksum_before) {
   return block;
 }
 
-std::uint64_t rlog_payload_checksum(ByteView stored) { return XXH3_64bits(stored.data(), stored.size()); }
+std::uint64_t rlog_payload_checksum(ByteView stored) {
+  return XXH3_64bits(stored.data(), stored.size());
+}
 
 void pack_rlog_payload(ByteView raw, int level, Bytes& out) {
   if (level != 0 && raw.size() > 1) {

@@ -16,7 +16,8 @@
 namespace runstone {
 
 /// Stands at the start of every .rlog; the bytes around the name break when a file was sent as text.
-inline constexpr std::array<std::uint8_t, 8> kRlogMark = {0x89, 'R', 'L', 'O', 'G', '\r', '\n', 0x1a};
+inline constexpr std::array<std::uint8_t, 8> kRlogMark = {0x89, 'R',  'L',  'O',
+                                                          'G',  '\r', '\n', 0x1a};
 inline constexpr std::uint32_t kRlogVersion = 1;
 inline constexpr std::size_t kRlogFileHeadBytes = 12;  // mark and version
 inline constexpr std::size_t kRlogHeaderBytes = 64;
@@ -29,13 +30,14 @@ enum class RlogKind : std::uint32_t { world = 1, players = 2, edits = 3, end = 4
 
 struct RlogBlock {
   RlogKind kind = RlogKind::end;
-  std::uint32_t stored_bytes = 0;  // of the payload in the file; fewer than raw_bytes: one zstd frame
-  std::uint32_t raw_bytes = 0;     // of the payload unpacked
-  std::uint32_t count = 0;         // edits or players
-  Sequence first = 1;              // of the first edit in or behind this block
-  TimeUs first_us = 0;             // UTC, of the first edit in it; where it has none, of the edit before it
-  TimeUs last_us = 0;              // of the last one
-  std::uint64_t position = 0;      // of this header in the file
+  std::uint32_t stored_bytes =
+      0;                        // of the payload in the file; fewer than raw_bytes: one zstd frame
+  std::uint32_t raw_bytes = 0;  // of the payload unpacked
+  std::uint32_t count = 0;      // edits or players
+  Sequence first = 1;           // of the first edit in or behind this block
+  TimeUs first_us = 0;  // UTC, of the first edit in it; where it has none, of the edit before it
+  TimeUs last_us = 0;   // of the last one
+  std::uint64_t position = 0;          // of this header in the file
   std::uint64_t payload_checksum = 0;  // XXH3-64 of the stored payload
   std::uint64_t header_checksum =
       0;  // XXH3-64 of the rest of the header, seeded with that of the block before
@@ -44,8 +46,8 @@ struct RlogBlock {
 
 /// What is wrong with an .rlog, and where. Everything before `seq` stands.
 struct RlogError {
-  Error error;                  // its offset is a byte of the unpacked payload, where that is what is wrong
-  Sequence seq = 0;             // first edit that cannot be had
+  Error error;       // its offset is a byte of the unpacked payload, where that is what is wrong
+  Sequence seq = 0;  // first edit that cannot be had
   std::uint64_t position = 0;   // byte of the file where the block begins
   std::string message() const;  // one line: "edit 9121 at byte 123456: WHAT"
 };

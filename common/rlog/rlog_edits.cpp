@@ -10,7 +10,16 @@ namespace runstone {
 namespace {
 
 constexpr std::uint64_t kU32Max = std::numeric_limits<std::uint32_t>::max();
-enum Column : std::size_t { kClient, kEpoch, kClientSeq, kTime, kCause, kSubject, kLength, kDescriptor };
+enum Column : std::size_t {
+  kClient,
+  kEpoch,
+  kClientSeq,
+  kTime,
+  kCause,
+  kSubject,
+  kLength,
+  kDescriptor
+};
 static_assert(kDescriptor + 1 == kRlogColumns);
 
 /// A client counts on by one; what differs from that is stored. Modulo 2^64, so that nothing overflows.
@@ -35,7 +44,8 @@ void RlogEditsWriter::add(const EditRecord& record) {
   RUNSTONE_ASSERT(record.version.seq == first_ + count_ && record.version.epoch >= epoch_ &&
                   record.time_us >= last_us_ && count_ < kRlogCountMax);
   const RlogClient client{record.op.author, record.op.instance};
-  const auto [known, is_new] = index_.try_emplace(client, static_cast<std::uint32_t>(clients_.size()));
+  const auto [known, is_new] =
+      index_.try_emplace(client, static_cast<std::uint32_t>(clients_.size()));
   if (is_new) clients_.emplace_back(client, 0);
   ClientSequence& before = clients_[known->second].second;
   const Bytes descriptor = encode(record.edit);
@@ -45,7 +55,8 @@ void RlogEditsWriter::add(const EditRecord& record) {
   ByteWriter(columns_[kTime])
       .varint(static_cast<std::uint64_t>(record.time_us) - static_cast<std::uint64_t>(last_us_));
   ByteWriter(columns_[kCause]).u8(static_cast<std::uint8_t>(record.cause));
-  ByteWriter(columns_[kSubject]).varint(record.subject == 0 ? 0 : record.version.seq - record.subject);
+  ByteWriter(columns_[kSubject])
+      .varint(record.subject == 0 ? 0 : record.version.seq - record.subject);
   ByteWriter(columns_[kLength]).varint(descriptor.size());
   ByteWriter(columns_[kDescriptor]).bytes(descriptor);
   before = record.op.seq;
@@ -80,7 +91,8 @@ Bytes RlogEditsWriter::take(RlogBlock& block) {
   return out;
 }
 
-Result<RlogEditsReader> RlogEditsReader::open(ByteView payload, const RlogBlock& block, Epoch epoch) {
+Result<RlogEditsReader> RlogEditsReader::open(ByteView payload, const RlogBlock& block,
+                                              Epoch epoch) {
   RlogEditsReader out(block, epoch);
   ByteReader r(payload);
   const std::uint64_t clients = r.varint_max(block.count, "more clients than edits");
@@ -93,7 +105,8 @@ Result<RlogEditsReader> RlogEditsReader::open(ByteView payload, const RlogBlock&
   }
   std::array<std::size_t, kRlogColumns> lengths{};
   for (std::size_t& length : lengths) {
-    length = static_cast<std::size_t>(r.varint_max(kRlogRawBytesMax, "column is longer than a block"));
+    length =
+        static_cast<std::size_t>(r.varint_max(kRlogRawBytesMax, "column is longer than a block"));
   }
   for (std::size_t i = 0; i < kRlogColumns; ++i) {
     out.begins_[i] = r.offset();
@@ -127,13 +140,15 @@ Result<EditRecord> RlogEditsReader::next() {
   const std::int64_t client_step = at(kClientSeq).svarint();
   const std::uint64_t time_step = at(kTime).varint();
   const auto time_us = static_cast<TimeUs>(static_cast<std::uint64_t>(time_us_) + time_step);
-  if (at(kTime).ok() && (time_us < time_us_ || time_us > block_.last_us || (is_first && time_step != 0))) {
+  if (at(kTime).ok() &&
+      (time_us < time_us_ || time_us > block_.last_us || (is_first && time_step != 0))) {
     at(kTime).reject(ErrorCode::bad_value, "time is not within the block's");
   }
   const std::uint8_t cause = at(kCause).u8();
   if (cause > kCauseMax) at(kCause).reject(ErrorCode::bad_value, "unknown cause");
   const std::uint64_t back = at(kSubject).varint_max(seq_ - 1, "subject is not an earlier edit");
-  const std::uint64_t length = at(kLength).varint_max(kRecordDescriptorBytesMax, "descriptor too long");
+  const std::uint64_t length =
+      at(kLength).varint_max(kRecordDescriptorBytesMax, "descriptor too long");
   for (std::size_t i = 0; i < kDescriptor; ++i) {
     if (!columns_[i].ok()) return failure(i);
   }
@@ -152,7 +167,8 @@ Result<EditRecord> RlogEditsReader::next() {
   record.cause = static_cast<Cause>(cause);
   record.edit = *std::move(edit);
   record.subject = back == 0 ? 0 : seq_ - back;
-  if (const auto numbers = validate_numbers(record); !numbers) return Unexpected<Error>{numbers.error()};
+  if (const auto numbers = validate_numbers(record); !numbers)
+    return Unexpected<Error>{numbers.error()};
   clients_seen_ = std::max(clients_seen_, static_cast<std::size_t>(client) + 1);
   last = record.op.seq;
   epoch_ = record.version.epoch;
@@ -168,7 +184,8 @@ Result<void> RlogEditsReader::finish() {
   }
   if (clients_seen_ != clients_.size())
     return fail(ErrorCode::not_canonical, "a client is named for no edit");
-  if (time_us_ != block_.last_us) return fail(ErrorCode::bad_value, "the last time is not the header's");
+  if (time_us_ != block_.last_us)
+    return fail(ErrorCode::bad_value, "the last time is not the header's");
   return {};
 }
 

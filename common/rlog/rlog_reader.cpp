@@ -24,7 +24,8 @@ RlogResult<RlogBlock> RlogReader::read_any_header() {
   std::array<std::uint8_t, kRlogHeaderBytes> bytes{};
   const auto got = source_(position_, bytes);
   if (!got) return failure(unreadable(), seq, position_);
-  if (*got == 0) return failure({ErrorCode::truncated, "file ends without its end block", 0}, seq, position_);
+  if (*got == 0)
+    return failure({ErrorCode::truncated, "file ends without its end block", 0}, seq, position_);
   const auto block = read_header(ByteView(bytes).first(*got), checksum_);
   if (!block) return failure(block.error(), seq, position_);
   const auto bad = [&](const char* what) {
@@ -46,7 +47,8 @@ RlogResult<void> RlogReader::read_payload(const RlogBlock& block) {
   const auto got = source_(at, stored_);
   if (!got) return failure(unreadable(), block.first, block.position);
   if (*got < stored_.size()) {
-    return failure({ErrorCode::truncated, "file ends inside a block", 0}, block.first, block.position);
+    return failure({ErrorCode::truncated, "file ends inside a block", 0}, block.first,
+                   block.position);
   }
   if (rlog_payload_checksum(stored_) != block.payload_checksum) {
     return failure({ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, block.first,
@@ -64,16 +66,19 @@ RlogResult<void> RlogReader::read_head() {
   if (!std::equal(kRlogMark.begin(), kRlogMark.end(), head.begin())) {
     return failure({ErrorCode::bad_value, "is not an .rlog file", 0}, 1, 0);
   }
-  if (*got < head.size()) return failure({ErrorCode::truncated, "file ends inside its mark", 0}, 1, 0);
+  if (*got < head.size())
+    return failure({ErrorCode::truncated, "file ends inside its mark", 0}, 1, 0);
   if (ByteReader(ByteView(head).subspan(kRlogMark.size())).u32() != kRlogVersion) {
-    return failure({ErrorCode::bad_version, "is an .rlog of another version than this program knows", 0}, 1,
-                   0);
+    return failure(
+        {ErrorCode::bad_version, "is an .rlog of another version than this program knows", 0}, 1,
+        0);
   }
   position_ = head.size();
   const auto first = read_any_header();
   if (!first) return Unexpected<RlogError>{first.error()};
   if (first->kind != RlogKind::world) {
-    return failure({ErrorCode::broken_invariant, "the first block is not the world", 0}, 1, position_);
+    return failure({ErrorCode::broken_invariant, "the first block is not the world", 0}, 1,
+                   position_);
   }
   if (const auto read = read_payload(*first); !read) return read;
   auto world = decode_rlog_world(raw_);
@@ -109,12 +114,13 @@ RlogResult<std::optional<RlogBlock>> RlogReader::next_block() {
     const auto got = source_(behind, more);
     if (!got) return failure(unreadable(), next_, behind);
     if (*got != 0)
-      return failure({ErrorCode::trailing_bytes, "something follows the end block", 0}, next_, behind);
+      return failure({ErrorCode::trailing_bytes, "something follows the end block", 0}, next_,
+                     behind);
     return std::optional<RlogBlock>{};
   }
   if (header->kind != RlogKind::edits) {
-    return failure({ErrorCode::broken_invariant, "world or players stand among the edits", 0}, next_,
-                   position_);
+    return failure({ErrorCode::broken_invariant, "world or players stand among the edits", 0},
+                   next_, position_);
   }
   current_ = *header;
   position_ += kRlogHeaderBytes + header->stored_bytes;
@@ -140,7 +146,8 @@ RlogResult<bool> RlogReader::read_block(const std::function<bool(const EditRecor
   return true;
 }
 
-RlogResult<void> RlogReader::read(const RlogFrom& from, const std::function<bool(const EditRecord&)>& each) {
+RlogResult<void> RlogReader::read(const RlogFrom& from,
+                                  const std::function<bool(const EditRecord&)>& each) {
   for (;;) {
     const auto block = next_block();
     if (!block) return Unexpected<RlogError>{block.error()};

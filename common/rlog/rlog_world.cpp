@@ -19,7 +19,8 @@ void write_text(ByteWriter& w, std::string_view text) {
 }
 
 std::string read_text(ByteReader& r, std::uint64_t bytes_max) {
-  const ByteView text = r.bytes(static_cast<std::size_t>(r.varint_max(bytes_max, "text is too long")));
+  const ByteView text =
+      r.bytes(static_cast<std::size_t>(r.varint_max(bytes_max, "text is too long")));
   return {text.begin(), text.end()};
 }
 
@@ -58,7 +59,8 @@ Result<RlogWorld> decode_rlog_world(ByteView in) {
   }
   world.chunk_edge = static_cast<std::uint16_t>(edge);
   world.generator.name = read_text(r, kRlogRawBytesMax);
-  world.generator.version = static_cast<std::uint32_t>(r.varint_max(kU32Max, "version exceeds 32 bits"));
+  world.generator.version =
+      static_cast<std::uint32_t>(r.varint_max(kU32Max, "version exceeds 32 bits"));
   world.generator.seed = r.u64();
   world.generator.parameters = read_text(r, kRlogRawBytesMax);
   for (double& coordinate : world.spawn) {
@@ -91,7 +93,8 @@ Result<void> decode_rlog_players(ByteView in, std::uint32_t count, AuthorId auth
   for (std::uint32_t i = 0; i < count; ++i) {
     RlogPlayer player;
     player.author = static_cast<AuthorId>(r.varint_max(kU32Max, "author exceeds 32 bits"));
-    if (r.ok() && player.author <= author_before) r.reject(ErrorCode::bad_value, "authors do not ascend");
+    if (r.ok() && player.author <= author_before)
+      r.reject(ErrorCode::bad_value, "authors do not ascend");
     player.key = read_array<32>(r);
     player.name = read_text(r, kRlogNameBytesMax);
     if (!r.ok()) break;

@@ -24,7 +24,8 @@ struct RlogWorld {
   /// Whether the world holds base chunks that no generator makes (imported, or compacted edits). Edits alone
   /// then do not give the world again: they belong on a copy of it.
   bool has_base = false;
-  Version head;        // the edit before the first one of the file; (0, 0): the file begins at the beginning
+  Version
+      head;  // the edit before the first one of the file; (0, 0): the file begins at the beginning
   TimeUs head_us = 0;  // UTC, of that edit
   friend bool operator==(const RlogWorld&, const RlogWorld&) = default;
 };

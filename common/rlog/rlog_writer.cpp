@@ -13,7 +13,8 @@ static_assert(kBlockBytes * 2 + kRecordDescriptorBytesMax < kRlogRawBytesMax);
 
 }  // namespace
 
-RlogWriter::RlogWriter(RlogSink sink, RlogOptions options) : sink_(std::move(sink)), options_(options) {
+RlogWriter::RlogWriter(RlogSink sink, RlogOptions options)
+    : sink_(std::move(sink)), options_(options) {
   RUNSTONE_ASSERT(options.edits_per_block >= 1 && options.edits_per_block <= kRlogCountMax);
 }
 
@@ -68,7 +69,9 @@ RlogResult<void> RlogWriter::begin(const RlogWorld& world, std::span<const RlogP
 }
 
 RlogResult<void> RlogWriter::add(const EditRecord& record) {
-  const auto bad = [&](const char* what) { return failure(ErrorCode::bad_value, what, record.version.seq); };
+  const auto bad = [&](const char* what) {
+    return failure(ErrorCode::bad_value, what, record.version.seq);
+  };
   if (const auto numbers = validate_numbers(record); !numbers) return bad(numbers.error().what);
   if (record.log != 0) return bad("belongs to another log");
   if (record.version.seq != next_) return bad("does not continue the log");
@@ -80,7 +83,8 @@ RlogResult<void> RlogWriter::add(const EditRecord& record) {
   epoch_ = record.version.epoch;
   last_us_ = record.time_us;
   is_first_ = false;
-  if (edits_.count() == options_.edits_per_block || edits_.bytes() >= kBlockBytes) return write_edits();
+  if (edits_.count() == options_.edits_per_block || edits_.bytes() >= kBlockBytes)
+    return write_edits();
   return {};
 }
 

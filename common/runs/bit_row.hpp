@@ -33,7 +33,9 @@ constexpr unsigned bit_count(Row128 row) {
 }
 
 /// Place of the highest set bit. Requires row != 0.
-constexpr unsigned highest_bit(Row64 row) { return 63u - static_cast<unsigned>(std::countl_zero(row)); }
+constexpr unsigned highest_bit(Row64 row) {
+  return 63u - static_cast<unsigned>(std::countl_zero(row));
+}
 constexpr unsigned highest_bit(Row128 row) {
   const auto high = static_cast<Row64>(row >> 64);
   return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<Row64>(row));

@@ -21,7 +21,8 @@ void append_forward(RunCursor<Runs>& cursor, VoxelIndex first, VoxelIndex last, 
 
 // The cursor stands at the run of voxel last - 1.
 template <class Runs>
-void append_backward(const Runs& runs, std::size_t run, VoxelIndex first, VoxelIndex last, RunBuilder& out) {
+void append_backward(const Runs& runs, std::size_t run, VoxelIndex first, VoxelIndex last,
+                     RunBuilder& out) {
   for (VoxelIndex stop = last; stop > first; --run) {
     const VoxelIndex begin = run == 0 ? 0 : runs.end(run - 1);
     const VoxelIndex at = std::max(begin, first);

@@ -17,7 +17,8 @@ struct Extent {
   friend auto operator<=>(const Extent&, const Extent&) = default;
 
   constexpr std::uint32_t volume() const {
-    return static_cast<std::uint32_t>(x) * static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(z);
+    return static_cast<std::uint32_t>(x) * static_cast<std::uint32_t>(y) *
+           static_cast<std::uint32_t>(z);
   }
   constexpr std::array<std::uint8_t, 3> sides() const { return {x, y, z}; }
   /// Of a chunk.

@@ -4,7 +4,8 @@
 
 namespace runstone {
 
-void read_layer(const RunChunk& chunk, Axis axis, std::uint32_t at, Axis u_axis, std::span<Material> out) {
+void read_layer(const RunChunk& chunk, Axis axis, std::uint32_t at, Axis u_axis,
+                std::span<Material> out) {
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   const std::array<std::uint32_t, 3> sides = {e.f, e.m, e.s};
   const int rank = rank_of(axis, chunk.order);
@@ -26,7 +27,8 @@ void read_layer(const RunChunk& chunk, Axis axis, std::uint32_t at, Axis u_axis,
     }
     walk_layer(runs, e, rank, at,
                [&](std::uint32_t slow, std::uint32_t a, std::uint32_t b, Material material) {
-                 for (std::uint32_t v = a; v < b; ++v) out[slow + std::size_t{v} * slower_side] = material;
+                 for (std::uint32_t v = a; v < b; ++v)
+                   out[slow + std::size_t{v} * slower_side] = material;
                });
   });
 }

@@ -16,7 +16,8 @@ Bits bit_range(std::uint32_t first, std::uint32_t last) {
 
 /// Places that a stretch touches which begins at place `first` of a turn of `size` places and ends at `last`
 /// of the same or the next turn. `full_turn`: it is a turn long or longer.
-Bits ring_range(std::uint32_t first, std::uint32_t last, std::uint32_t size, bool same_turn, bool full_turn) {
+Bits ring_range(std::uint32_t first, std::uint32_t last, std::uint32_t size, bool same_turn,
+                bool full_turn) {
   if (full_turn) return bit_range(0, size - 1);
   if (same_turn) return bit_range(first, last);
   return bit_range(first, size - 1) | bit_range(0, last);
@@ -36,8 +37,8 @@ class SpanMarker {
     const std::uint32_t slow_first = line_first / extent_.m;
     const std::uint32_t slow_last = line_last / extent_.m;
     dirty(2) |= bit_range(slow_first, slow_last);
-    dirty(1) |= ring_range(line_first % extent_.m, line_last % extent_.m, extent_.m, slow_first == slow_last,
-                           line_last - line_first + 1 >= extent_.m);
+    dirty(1) |= ring_range(line_first % extent_.m, line_last % extent_.m, extent_.m,
+                           slow_first == slow_last, line_last - line_first + 1 >= extent_.m);
     dirty(0) |= ring_range(begin % extent_.f, last % extent_.f, extent_.f, line_first == line_last,
                            count >= extent_.f);
   }
@@ -86,7 +87,8 @@ DirtyLayers changed_layers(const RunChunk& before, const RunChunk& after) {
     return digest_of(before) == digest_of(after) ? DirtyLayers{} : all_layers(after.extent);
   }
   SpanMarker marker(after);
-  before.runs.visit([&](const auto& a) { after.runs.visit([&](const auto& b) { walk(a, b, marker); }); });
+  before.runs.visit(
+      [&](const auto& a) { after.runs.visit([&](const auto& b) { walk(a, b, marker); }); });
   return marker.result();
 }
 

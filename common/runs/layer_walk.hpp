@@ -42,7 +42,8 @@ void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stre
     }
     return;
   }
-  for (std::uint32_t s = 0; s < e.s; ++s) {  // one voxel of every line; a long run covers many lines at once
+  for (std::uint32_t s = 0; s < e.s;
+       ++s) {  // one voxel of every line; a long run covers many lines at once
     const std::uint32_t base = s * e.layer() + at;
     for (std::uint32_t m = 0; m < e.m;) {
       const std::uint32_t voxel = base + m * e.f;

@@ -67,7 +67,8 @@ void for_each_start(Runs runs, OrderedExtent e, int rank, F&& start) {
     }
   };
   const std::uint32_t behind = rank == 1 ? e.f : e.layer();
-  const std::uint32_t block = rank == 1 ? e.layer() : e.volume();  // predecessors never cross a block
+  const std::uint32_t block =
+      rank == 1 ? e.layer() : e.volume();  // predecessors never cross a block
   RunCursor<Runs> first(runs);
   Lookback<Runs> rest(runs, behind);
   for (std::uint32_t base = 0; base < e.volume(); base += block) {
@@ -91,7 +92,9 @@ struct LineStart {
 template <class Runs>
 RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uint32_t volume) {
   const std::array<std::uint32_t, 3> sides = {e.f, e.m, e.s};
-  const auto rank = [&](int i) { return static_cast<std::size_t>(ranks[static_cast<std::size_t>(i)]); };
+  const auto rank = [&](int i) {
+    return static_cast<std::size_t>(ranks[static_cast<std::size_t>(i)]);
+  };
   const std::uint32_t side = sides[rank(0)];
   const std::uint32_t lines = volume / side;
   std::array<std::uint32_t, 3> step{};  // in line numbers of the new order, by old rank
@@ -100,10 +103,11 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
 
   // A counting sort of the starts by new line. They arrive ascending within each, so two sweeps suffice.
   std::vector<std::uint32_t> place(lines + 1, 0);
-  for_each_start(runs, e, ranks[0], [&](std::uint32_t line, std::uint32_t f0, std::uint32_t f1, Material) {
-    std::uint32_t at = line % e.m * step[1] + line / e.m * step[2] + f0 * step[0];
-    for (std::uint32_t f = f0; f < f1; ++f, at += step[0]) ++place[at];
-  });
+  for_each_start(runs, e, ranks[0],
+                 [&](std::uint32_t line, std::uint32_t f0, std::uint32_t f1, Material) {
+                   std::uint32_t at = line % e.m * step[1] + line / e.m * step[2] + f0 * step[0];
+                   for (std::uint32_t f = f0; f < f1; ++f, at += step[0]) ++place[at];
+                 });
   std::exclusive_scan(place.begin(), place.end(), place.begin(), 0U);
   std::vector<LineStart> starts(place.back());
   for_each_start(runs, e, ranks[0],
@@ -111,13 +115,16 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
                    const std::uint32_t m = line % e.m;
                    const std::uint32_t s = line / e.m;
                    const std::array<std::uint32_t, 3> coords = {f0, m, s};
-                   const auto start = LineStart{static_cast<std::uint16_t>(coords[rank(0)]), material};
+                   const auto start =
+                       LineStart{static_cast<std::uint16_t>(coords[rank(0)]), material};
                    std::uint32_t at = m * step[1] + s * step[2] + f0 * step[0];
-                   for (std::uint32_t f = f0; f < f1; ++f, at += step[0]) starts[place[at]++] = start;
+                   for (std::uint32_t f = f0; f < f1; ++f, at += step[0])
+                     starts[place[at]++] = start;
                  });
 
   std::size_t count = 1;
-  for (std::size_t i = 1; i < starts.size(); ++i) count += starts[i].material != starts[i - 1].material;
+  for (std::size_t i = 1; i < starts.size(); ++i)
+    count += starts[i].material != starts[i - 1].material;
   RunList out(volume);
   out.reserve(count);  // exact: chunks are made once and kept long
   Material open = starts[0].material;
@@ -145,9 +152,10 @@ Seams seams(Runs runs, OrderedExtent e, int rank, std::span<Material> begins) {
   const std::uint32_t n = rank == 0 ? e.m : e.f;  // along the faster of the other axes
   const std::uint32_t k = rank == 2 ? e.m : e.s;  // along the slower one
   const std::uint32_t side = rank == 0 ? e.f : rank == 1 ? e.m : e.s;
-  walk_layer(runs, e, rank, 0, [&](std::uint32_t slow, std::uint32_t a, std::uint32_t b, Material material) {
-    std::fill(begins.begin() + slow * n + a, begins.begin() + slow * n + b, material);
-  });
+  walk_layer(runs, e, rank, 0,
+             [&](std::uint32_t slow, std::uint32_t a, std::uint32_t b, Material material) {
+               std::fill(begins.begin() + slow * n + a, begins.begin() + slow * n + b, material);
+             });
   Seams out;
   walk_layer(runs, e, rank, side - 1,
              [&](std::uint32_t slow, std::uint32_t a, std::uint32_t b, Material ending) {
@@ -155,10 +163,12 @@ Seams seams(Runs runs, OrderedExtent e, int rank, std::span<Material> begins) {
                // next slot.
                const std::uint32_t row = slow * n;
                const std::uint32_t stop = std::min(row + b + 1, n * k);
-               for (std::uint32_t i = row + a + 1; i < stop; ++i) out.faster_next += begins[i] != ending;
+               for (std::uint32_t i = row + a + 1; i < stop; ++i)
+                 out.faster_next += begins[i] != ending;
                // In the other order by (slow + 1, v), or from the last row by (0, v + 1).
                if (slow + 1 < k) {
-                 for (std::uint32_t v = a; v < b; ++v) out.slower_next += begins[row + n + v] != ending;
+                 for (std::uint32_t v = a; v < b; ++v)
+                   out.slower_next += begins[row + n + v] != ending;
                } else {
                  for (std::uint32_t v = a; v < b && v + 1 < n; ++v)
                    out.slower_next += begins[v + 1] != ending;
@@ -224,7 +234,8 @@ std::array<std::uint32_t, kAxisOrderCount> runs_per_order(const RunChunk& chunk)
 
 AxisOrder cheapest_order(const RunChunk& chunk) {
   const auto runs = runs_per_order(chunk);
-  return kAxisOrders[static_cast<std::size_t>(std::min_element(runs.begin(), runs.end()) - runs.begin())];
+  return kAxisOrders[static_cast<std::size_t>(std::min_element(runs.begin(), runs.end()) -
+                                              runs.begin())];
 }
 
 RunChunk in_cheapest_order(RunChunk chunk) {

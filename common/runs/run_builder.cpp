@@ -4,7 +4,8 @@
 
 namespace runstone {
 
-RunBuilder::RunBuilder(Extent extent, AxisOrder order) : chunk_{extent, order, RunList{extent.volume()}} {
+RunBuilder::RunBuilder(Extent extent, AxisOrder order)
+    : chunk_{extent, order, RunList{extent.volume()}} {
   RUNSTONE_ASSERT(extent.valid_part());
 }
 

@@ -68,10 +68,11 @@ Material material_at(const RunChunk& chunk, LocalPos at) {
   return chunk.runs.material(find_run(chunk, index_of(at, chunk.extent, chunk.order)));
 }
 
-bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material, EditArea* area) {
+bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material,
+          EditArea* area) {
   RUNSTONE_ASSERT(count > 0 && first <= chunk.volume() && count <= chunk.volume() - first);
-  const FillPlan plan =
-      chunk.runs.visit([&](const auto& runs) { return plan_fill(runs, first, first + count, material); });
+  const FillPlan plan = chunk.runs.visit(
+      [&](const auto& runs) { return plan_fill(runs, first, first + count, material); });
   if (plan.after == 0) return false;
   chunk.runs.splice(plan.from, plan.before, std::span<const Run>(plan.with.data(), plan.after));
   if (area != nullptr) {
@@ -97,8 +98,10 @@ Result<void> validate_runs(const RunChunk& chunk) {
     if (runs.size() == 0) return fail(ErrorCode::broken_invariant, "chunk has no runs");
     std::uint32_t begin = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs.end(i) <= begin) return fail(ErrorCode::broken_invariant, "run ends do not ascend", i);
-      if (runs.end(i) > volume) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
+      if (runs.end(i) <= begin)
+        return fail(ErrorCode::broken_invariant, "run ends do not ascend", i);
+      if (runs.end(i) > volume)
+        return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
       if (i > 0 && runs.material(i) == runs.material(i - 1)) {
         return fail(ErrorCode::broken_invariant, "neighbouring runs have one material", i);
       }
@@ -154,8 +157,8 @@ class PrefixDigest {
     const std::uint32_t m = line - s * e_.m;
     for (Lane& lane : lanes_) {
       const std::uint64_t of_s = m61::sub(lane.s[s + 1], lane.s[s]);
-      lane.before =
-          m61::add(m61::mul(lane.s[s], lane.layer), m61::mul(of_s, m61::mul(lane.f[e_.f], lane.m[m])));
+      lane.before = m61::add(m61::mul(lane.s[s], lane.layer),
+                             m61::mul(of_s, m61::mul(lane.f[e_.f], lane.m[m])));
       lane.factor = m61::mul(of_s, m61::sub(lane.m[m + 1], lane.m[m]));
     }
   }

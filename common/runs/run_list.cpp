@@ -61,7 +61,8 @@ namespace {
 
 // Overwrites what both have, then inserts or erases the difference: one move of the tail.
 template <class Vector, class Get>
-void splice_vector(Vector& v, std::size_t first, std::size_t count, std::span<const Run> with, Get get) {
+void splice_vector(Vector& v, std::size_t first, std::size_t count, std::span<const Run> with,
+                   Get get) {
   const std::size_t shared = std::min(count, with.size());
   for (std::size_t i = 0; i < shared; ++i) v[first + i] = get(with[i]);
   const auto tail = v.begin() + static_cast<std::ptrdiff_t>(first + shared);
@@ -70,7 +71,8 @@ void splice_vector(Vector& v, std::size_t first, std::size_t count, std::span<co
   } else if (with.size() > shared) {
     const std::size_t extra = with.size() - shared;
     const auto at = v.insert(tail, extra, typename Vector::value_type{});
-    for (std::size_t i = 0; i < extra; ++i) at[static_cast<std::ptrdiff_t>(i)] = get(with[shared + i]);
+    for (std::size_t i = 0; i < extra; ++i)
+      at[static_cast<std::ptrdiff_t>(i)] = get(with[shared + i]);
   }
 }
 
@@ -79,8 +81,9 @@ void splice_vector(Vector& v, std::size_t first, std::size_t count, std::span<co
 void RunList::splice(std::size_t first, std::size_t count, std::span<const Run> with) {
   RUNSTONE_DASSERT(first + count <= size());
   if (auto* narrow = std::get_if<Narrow>(&form_)) {
-    splice_vector(*narrow, first, count, with,
-                  [](const Run& r) { return PackedRun{static_cast<std::uint16_t>(r.end), r.material}; });
+    splice_vector(*narrow, first, count, with, [](const Run& r) {
+      return PackedRun{static_cast<std::uint16_t>(r.end), r.material};
+    });
     return;
   }
   auto& wide = *std::get_if<Wide>(&form_);
@@ -89,9 +92,11 @@ void RunList::splice(std::size_t first, std::size_t count, std::span<const Run> 
 }
 
 std::size_t RunList::byte_capacity() const {
-  if (const auto* narrow = std::get_if<Narrow>(&form_)) return narrow->capacity() * sizeof(PackedRun);
+  if (const auto* narrow = std::get_if<Narrow>(&form_))
+    return narrow->capacity() * sizeof(PackedRun);
   const auto& wide = *std::get_if<Wide>(&form_);
-  return wide.ends.capacity() * sizeof(std::uint32_t) + wide.materials.capacity() * sizeof(Material);
+  return wide.ends.capacity() * sizeof(std::uint32_t) +
+         wide.materials.capacity() * sizeof(Material);
 }
 
 void RunList::shrink_to_fit() {

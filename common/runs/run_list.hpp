@@ -89,7 +89,8 @@ class RunList {
   /// Calls f with NarrowRuns or WideRuns; the view dies with the call.
   template <class F>
   decltype(auto) visit(F&& f) const {
-    if (const auto* narrow = std::get_if<Narrow>(&form_)) return std::forward<F>(f)(NarrowRuns{*narrow});
+    if (const auto* narrow = std::get_if<Narrow>(&form_))
+      return std::forward<F>(f)(NarrowRuns{*narrow});
     const auto& wide = *std::get_if<Wide>(&form_);
     return std::forward<F>(f)(WideRuns{wide.ends, wide.materials});
   }

@@ -21,7 +21,8 @@ void for_each_box(OrderedExtent e, VoxelIndex first, VoxelIndex last, F&& f) {
     const std::uint32_t line = first / e.f;
     const std::uint32_t at = first - line * e.f;
     const std::uint32_t m = line % e.m, s = line / e.m;
-    const std::uint32_t lines = (last - first) / e.f;  // whole ones, if the stretch begins with a line
+    const std::uint32_t lines =
+        (last - first) / e.f;  // whole ones, if the stretch begins with a line
     VoxelIndex end = 0;
     if (at != 0 || lines == 0) {
       end = std::min(last, first - at + e.f);

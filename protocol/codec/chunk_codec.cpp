@@ -134,7 +134,8 @@ Result<RunChunk> decode_raw(ByteReader& r, const Extent* expected) {
   std::vector<Material> materials(count);
   std::memcpy(ends.data(), runs.data(), 4 * count);
   std::memcpy(materials.data(), runs.data() + 4 * count, 2 * count);
-  return validated({head.extent, head.order, RunList::of_wide(std::move(ends), std::move(materials))});
+  return validated(
+      {head.extent, head.order, RunList::of_wide(std::move(ends), std::move(materials))});
 }
 
 /// At most `colours_max` ids, all there before memory is taken for them. Look at r.ok() before use.
@@ -160,7 +161,8 @@ std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
 Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_t body_at) {
   if (!runs) {
     const Error& e = runs.error();
-    return fail(e.code, e.what, e.code == ErrorCode::broken_invariant ? e.offset : body_at + e.offset);
+    return fail(e.code, e.what,
+                e.code == ErrorCode::broken_invariant ? e.offset : body_at + e.offset);
   }
   return validated({head.extent, head.order, *std::move(runs)});
 }
@@ -176,7 +178,8 @@ Result<RunChunk> decode_packed_v1(ByteReader& r, const Head& head) {
     r.reject(ErrorCode::bad_value, "body size does not fit the run count");
   if (!r.ok()) return Unexpected<Error>{r.error()};
   const std::size_t body_at = r.offset();
-  return packed_chunk(head, unpack_v1(r.bytes(r.left()), head.zstd, shape, palette, volume), body_at);
+  return packed_chunk(head, unpack_v1(r.bytes(r.left()), head.zstd, shape, palette, volume),
+                      body_at);
 }
 
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
@@ -213,7 +216,8 @@ Result<RunChunk> decode(ByteView in, const Extent* expected) {
   const std::uint8_t encoding = r.u8();
   if (!r.ok()) return Unexpected<Error>{r.error()};
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::raw)) return decode_raw(r, expected);
-  if (encoding == static_cast<std::uint8_t>(ChunkEncoding::packed)) return decode_packed(r, expected);
+  if (encoding == static_cast<std::uint8_t>(ChunkEncoding::packed))
+    return decode_packed(r, expected);
   if (encoding == static_cast<std::uint8_t>(ChunkEncoding::coded)) return decode_coded(r, expected);
   return fail(ErrorCode::unknown_kind, "unknown chunk encoding");
 }
@@ -240,7 +244,8 @@ Result<RunChunk> decode_chunk(ByteView in, Extent expected) { return decode(in, 
 std::size_t raw_bytes(const RunChunk& chunk) { return kChunkHeaderBytes + chunk.runs.byte_size(); }
 
 std::size_t chunk_bytes_about(const RunChunk& chunk, ChunkEncoding encoding) {
-  return encoding == ChunkEncoding::raw ? raw_bytes(chunk) : kChunkHeaderBytes + chunk.runs.size() / 2;
+  return encoding == ChunkEncoding::raw ? raw_bytes(chunk)
+                                        : kChunkHeaderBytes + chunk.runs.size() / 2;
 }
 
 }  // namespace runstone

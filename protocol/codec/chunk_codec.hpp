@@ -28,7 +28,9 @@ enum class ChunkEncoding : std::uint8_t { raw = 1, packed = 2, coded = 3 };
 inline constexpr std::uint8_t kEncodingsKnown = 7;
 /// As options and reports call it.
 constexpr const char* name_of(ChunkEncoding encoding) {
-  return encoding == ChunkEncoding::raw ? "raw" : encoding == ChunkEncoding::packed ? "packed" : "coded";
+  return encoding == ChunkEncoding::raw      ? "raw"
+         : encoding == ChunkEncoding::packed ? "packed"
+                                             : "coded";
 }
 constexpr bool encoding_known(unsigned value) { return value >= 1 && value <= 3; }
 

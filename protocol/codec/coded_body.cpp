@@ -9,7 +9,7 @@
 #include "protocol/codec/codec_scratch.hpp"
 #include "protocol/codec/range_coder.hpp"
 #include "protocol/codec/read_runs.hpp"
-#include "protocol/codec/run_palette.hpp"
+#include "protocol/codec/wire_palette.hpp"
 
 namespace runstone {
 namespace {
@@ -30,12 +30,12 @@ struct NumberModel {
 };
 
 struct Models {
-  std::array<AdaptiveBit, 256> start;         // by what meets where a stretch begins, and its length
-  std::array<AdaptiveBit, 64 * 6> inside;     // by what meets within, and how much is left
-  std::array<NumberModel, 4> distance;        // by whether the material goes on above and behind
-  std::array<AdaptiveBit, 3> above;           // a new material is the one above
-  AdaptiveBit behind, follower;               // it is the one behind; the one that followed last
-  std::array<AdaptiveBit, 256> material;      // the first eight bits of an index, by prefix
+  std::array<AdaptiveBit, 256> start;      // by what meets where a stretch begins, and its length
+  std::array<AdaptiveBit, 64 * 6> inside;  // by what meets within, and how much is left
+  std::array<NumberModel, 4> distance;     // by whether the material goes on above and behind
+  std::array<AdaptiveBit, 3> above;        // a new material is the one above
+  AdaptiveBit behind, follower;            // it is the one behind; the one that followed last
+  std::array<AdaptiveBit, 256> material;   // the first eight bits of an index, by prefix
   std::array<AdaptiveBit, 16> material_deep;  // the others, by place
 };
 
@@ -44,7 +44,7 @@ struct Scratch {
   std::vector<IndexRun> runs;
   std::vector<std::uint16_t> follower;  // by palette index
   std::vector<std::uint8_t> used;       // likewise
-  RunPalette palette;
+  WirePalette palette;
   Bytes bytes;
 };
 
@@ -57,14 +57,14 @@ Scratch& scratch() {
 template <class Runs>
 class Known {
  public:
-  Known(const Runs& runs, const RunPalette& palette) : runs_(runs), palette_(palette) {}
+  Known(const Runs& runs, const WirePalette& palette) : runs_(runs), palette_(palette) {}
   std::uint32_t end() const { return runs_.end(at_); }
   std::uint32_t index() const { return palette_.index_of(runs_.material(at_)); }
   void next() { ++at_; }
 
  private:
   const Runs& runs_;
-  const RunPalette& palette_;
+  const WirePalette& palette_;
   std::size_t at_ = 0;
 };
 
@@ -106,10 +106,10 @@ class RunCoder {
       look(at);
       std::uint32_t stop = stretch_end();
       if (at > 0) {
-        const std::uint32_t meets = same(now_, above_) | same(now_, behind_) << 1 |
-                                    same(above_, behind_) << 2 | same(now_, above_before) << 3 |
-                                    same(now_, behind_before) << 4 | same(above_, above_before) << 5 |
-                                    same(behind_, behind_before) << 6;
+        const std::uint32_t meets =
+            same(now_, above_) | same(now_, behind_) << 1 | same(above_, behind_) << 2 |
+            same(now_, above_before) << 3 | same(now_, behind_before) << 4 |
+            same(above_, above_before) << 5 | same(behind_, behind_before) << 6;
         const std::uint32_t context = meets << 1 | (stop - at > 1 ? 1 : 0);
         if (coder_.code(m_.start[context], truth_.end() == at)) {
           truth_.next();
@@ -207,7 +207,8 @@ class RunCoder {
       return true;
     }
     now_ = code_material();
-    if (now_ >= materials_ || now_ == before || now_ == above_ || now_ == behind_ || now_ == follower)
+    if (now_ >= materials_ || now_ == before || now_ == above_ || now_ == behind_ ||
+        now_ == follower)
       return false;
     follower_[before] = static_cast<std::uint16_t>(now_);
     return true;
@@ -229,8 +230,8 @@ class RunCoder {
     NumberModel& model = m_.distance[same(now_, above_) | same(now_, behind_) << 1];
     std::uint32_t prefix = 1;
     for (unsigned bit = bits; bit-- > 0;) {
-      AdaptiveBit& one =
-          bits <= NumberModel::kTreeBitsMax ? model.tree[(1u << bits) - 1 + prefix] : model.deep[bit];
+      AdaptiveBit& one = bits <= NumberModel::kTreeBitsMax ? model.tree[(1u << bits) - 1 + prefix]
+                                                           : model.deep[bit];
       prefix = prefix << 1 | (coder_.code(one, (truth >> bit & 1) != 0) ? 1 : 0);
     }
     return prefix - (1u << bits);
@@ -265,7 +266,8 @@ CodedBody code_runs(const RunList& runs, OrderedExtent extent) {
   runs.visit([&](const auto& list) {
     s.palette.find(list);
     if (list.size() == 1) return;
-    RunCoder coder(RangeEncoder(s.bytes), Known(list, s.palette), s, extent, s.palette.ids().size());
+    RunCoder coder(RangeEncoder(s.bytes), Known(list, s.palette), s, extent,
+                   s.palette.ids().size());
     const auto coded = coder.run();
     RUNSTONE_ASSERT(coded.has_value());
     coder.finish();
@@ -273,7 +275,8 @@ CodedBody code_runs(const RunList& runs, OrderedExtent extent) {
   return {s.palette.ids(), s.bytes};
 }
 
-Result<RunList> decode_runs(ByteView body, std::span<const Material> palette, OrderedExtent extent) {
+Result<RunList> decode_runs(ByteView body, std::span<const Material> palette,
+                            OrderedExtent extent) {
   RUNSTONE_ASSERT(palette.size() >= 2);
   Scratch& s = scratch();
   keep_small(s);

@@ -15,8 +15,9 @@
 namespace runstone {
 
 struct CodedBody {
-  std::span<const Material> palette;  // ascending; of this thread's scratch, until its next code_runs()
-  ByteView bytes;                     // likewise; empty if there is one run
+  std::span<const Material>
+      palette;     // ascending; of this thread's scratch, until its next code_runs()
+  ByteView bytes;  // likewise; empty if there is one run
 };
 
 /// Requires canonical runs that tile the extent. O(runs + largest id / 64).

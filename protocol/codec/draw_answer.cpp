@@ -41,8 +41,9 @@ std::string to_line(const DrawAnswer& answer) {
     return as_line("ready " + std::to_string(ready->version) + " " + ready->renderer);
   }
   if (const auto* done = std::get_if<PictureDrawn>(&answer)) {
-    return as_line("drawn quads=" + std::to_string(done->quads) + " chunks=" + std::to_string(done->chunks) +
-                   " us=" + std::to_string(done->us) + " " + done->file);
+    return as_line("drawn quads=" + std::to_string(done->quads) +
+                   " chunks=" + std::to_string(done->chunks) + " us=" + std::to_string(done->us) +
+                   " " + done->file);
   }
   if (const auto* unwritten = std::get_if<PictureUnwritten>(&answer)) {
     return as_line("unwritten " + unwritten->file);
@@ -60,9 +61,9 @@ std::optional<DrawAnswer> parse_draw_answer(std::string_view line) {
     return ready;
   }
   PictureDrawn done;
-  if (!take_word(line, "drawn quads=") || !take_number(line, done.quads) || !take_word(line, "chunks=") ||
-      !take_number(line, done.chunks) || !take_word(line, "us=") || !take_number(line, done.us) ||
-      line.empty()) {
+  if (!take_word(line, "drawn quads=") || !take_number(line, done.quads) ||
+      !take_word(line, "chunks=") || !take_number(line, done.chunks) || !take_word(line, "us=") ||
+      !take_number(line, done.us) || line.empty()) {
     return std::nullopt;
   }
   done.file = line;

@@ -40,12 +40,15 @@ ChunkKey read_key(ByteReader& r, std::int32_t edge) {
   const std::int32_t reach = kWorldLimit / edge;
   for (std::int32_t* c : {&key.at.x, &key.at.y, &key.at.z}) {
     *c = static_cast<std::int32_t>(r.u32());
-    if (*c < -reach || *c >= reach) r.reject(ErrorCode::bad_value, "draw order: chunk outside the world");
+    if (*c < -reach || *c >= reach)
+      r.reject(ErrorCode::bad_value, "draw order: chunk outside the world");
   }
   return key;
 }
 
-constexpr bool is_edge(std::int32_t edge) { return edge == 16 || edge == 32 || edge == 64 || edge == 128; }
+constexpr bool is_edge(std::int32_t edge) {
+  return edge == 16 || edge == 32 || edge == 64 || edge == 128;
+}
 
 void write_f64(ByteWriter& w, double v) { w.u64(std::bit_cast<std::uint64_t>(v)); }
 double read_f64(ByteReader& r) { return std::bit_cast<double>(r.u64()); }
@@ -63,11 +66,14 @@ Result<DrawOrder> decode_world(ByteReader& r) {
   const ByteView toml = r.bytes(r.left());
   if (!r.ok()) return Unexpected<Error>{r.error()};
   if (version != kDrawVersion) {
-    return fail(ErrorCode::bad_version, "draw order: the orders are of another version of Runstone");
+    return fail(ErrorCode::bad_version,
+                "draw order: the orders are of another version of Runstone");
   }
-  if (!is_edge(edge)) return fail(ErrorCode::bad_value, "draw order: chunk edge is not 16, 32, 64 or 128");
+  if (!is_edge(edge))
+    return fail(ErrorCode::bad_value, "draw order: chunk edge is not 16, 32, 64 or 128");
   auto materials = parse_material_table(text_of(toml), "materials");
-  if (!materials) return fail(ErrorCode::bad_value, "draw order: the materials are no material table");
+  if (!materials)
+    return fail(ErrorCode::bad_value, "draw order: the materials are no material table");
   return DrawOrder{DrawWorld{edge, *std::move(materials)}};
 }
 
@@ -83,7 +89,8 @@ Result<DrawOrder> decode_chunk_order(ByteReader& r, std::int32_t edge) {
 Result<DrawOrder> decode_picture(ByteReader& r) {
   DrawPicture picture;
   DrawCamera& c = picture.camera;
-  for (double* v : {&c.x, &c.y, &c.z, &c.yaw, &c.pitch, &c.fov_y, &c.near, &c.far}) *v = read_f64(r);
+  for (double* v : {&c.x, &c.y, &c.z, &c.yaw, &c.pitch, &c.fov_y, &c.near, &c.far})
+    *v = read_f64(r);
   picture.size.width = r.u16();
   picture.size.height = r.u16();
   picture.file = text_of(r.bytes(r.left()));
@@ -104,17 +111,21 @@ Result<void> validate(const DrawPicture& picture) {
     if (!inside(v, -kReach, kReach)) return bad("draw order: the eye is outside the world");
   }
   for (const double v : {c.yaw, c.pitch}) {
-    if (!inside(v, -kDrawAngleMax, kDrawAngleMax)) return bad("draw order: yaw or pitch is no angle");
+    if (!inside(v, -kDrawAngleMax, kDrawAngleMax))
+      return bad("draw order: yaw or pitch is no angle");
   }
-  if (!inside(c.fov_y, 0.01, 3.1)) return bad("draw order: field of view is not 0.01 to 3.1 radians");
+  if (!inside(c.fov_y, 0.01, 3.1))
+    return bad("draw order: field of view is not 0.01 to 3.1 radians");
   if (!inside(c.near, kDrawDistanceMin, kDrawDistanceMax) ||
       !inside(c.far, c.near * 1.01, kDrawDistanceMax)) {
     return bad("draw order: near and far are not 0.01 to 1e6 voxels, one after the other");
   }
   for (const std::uint16_t side : {picture.size.width, picture.size.height}) {
-    if (side < kDrawSideMin || side > kDrawSideMax) return bad("draw order: a side is not 16 to 8192 pixels");
+    if (side < kDrawSideMin || side > kDrawSideMax)
+      return bad("draw order: a side is not 16 to 8192 pixels");
   }
-  if (picture.file.empty() || picture.file.size() > kDrawFileBytesMax || !is_printable_utf8(picture.file)) {
+  if (picture.file.empty() || picture.file.size() > kDrawFileBytesMax ||
+      !is_printable_utf8(picture.file)) {
     return bad("draw order: the file name is not 1 to 4096 bytes of printable UTF-8");
   }
   return {};
@@ -179,7 +190,8 @@ Result<void> DrawOrderReader::finish() {
 
 Result<void> DrawOrderReader::advance(ByteView bytes, const OnOrder& on_order) {
   while (!bytes.empty()) {
-    if (ended_) return fail(ErrorCode::trailing_bytes, "draw order: bytes after the last order", offset_);
+    if (ended_)
+      return fail(ErrorCode::trailing_bytes, "draw order: bytes after the last order", offset_);
     if (header_have_ < kDrawHeaderBytes) {
       if (header_have_ == 0) frame_at_ = offset_;
       const std::size_t take = std::min(bytes.size(), kDrawHeaderBytes - header_have_);
@@ -218,7 +230,8 @@ Result<void> DrawOrderReader::open_frame() {
     return fail(ErrorCode::limit_exceeded, "draw order: longer than 16 MiB", frame_at_);
   }
   if ((kind == Kind::world) != (edge_ == 0)) {
-    return fail(ErrorCode::broken_invariant, "draw order: the world comes first, and once", frame_at_);
+    return fail(ErrorCode::broken_invariant, "draw order: the world comes first, and once",
+                frame_at_);
   }
   return {};
 }

@@ -39,8 +39,9 @@ inline constexpr double kDrawAngleMax = 628;  // radians either way: a hundred t
 struct DrawCamera {
   double x = 0, y = 0, z = 0;  // eye, within +-2 kWorldLimit
   double yaw = 0, pitch = 0;
-  double fov_y = 1.2;             // 0.01 .. 3.1
-  double near = 0.1, far = 1000;  // what is nearer is cut away; towards `far` all fades into the sky
+  double fov_y = 1.2;  // 0.01 .. 3.1
+  double near = 0.1,
+         far = 1000;  // what is nearer is cut away; towards `far` all fades into the sky
   friend bool operator==(const DrawCamera&, const DrawCamera&) = default;
 };
 

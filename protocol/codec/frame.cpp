@@ -107,12 +107,16 @@ Result<void> FrameReader::open_frame() {
   if (length == 0 || length > kFragmentBytesMax) {
     return fail(ErrorCode::limit_exceeded, "frame length outside 1..16384", at);
   }
-  if (frame_class >= kFrameClassCount) return fail(ErrorCode::unknown_kind, "unknown frame class", at);
+  if (frame_class >= kFrameClassCount)
+    return fail(ErrorCode::unknown_kind, "unknown frame class", at);
   if ((flags & ~kFlagMore) != 0) return fail(ErrorCode::bad_value, "unknown frame flags", at);
-  if (reserved != 0) return fail(ErrorCode::bad_value, "reserved bytes of a frame are not zero", at);
-  if (counter != counter_) return fail(ErrorCode::broken_invariant, "frame counter is out of order", at);
+  if (reserved != 0)
+    return fail(ErrorCode::bad_value, "reserved bytes of a frame are not zero", at);
+  if (counter != counter_)
+    return fail(ErrorCode::broken_invariant, "frame counter is out of order", at);
   const std::size_t bytes_max = message_bytes_max(sender_, static_cast<FrameClass>(frame_class));
-  if (bytes_max == 0) return fail(ErrorCode::unknown_kind, "frame class not allowed from this side", at);
+  if (bytes_max == 0)
+    return fail(ErrorCode::unknown_kind, "frame class not allowed from this side", at);
   if (length > bytes_max - partial_[frame_class].size()) {
     return fail(ErrorCode::limit_exceeded, "message exceeds the limit of its class", at);
   }

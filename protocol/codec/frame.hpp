@@ -24,7 +24,8 @@ inline constexpr int kFrameClassCount = 3;
 
 /// Whose bytes are read: decides which classes, sizes and messages are allowed.
 enum class Sender : std::uint8_t { client, server };
-std::size_t message_bytes_max(Sender sender, FrameClass frame_class);  // 0: this sender may not use the class
+std::size_t message_bytes_max(Sender sender,
+                              FrameClass frame_class);  // 0: this sender may not use the class
 
 /// A serialised message: made once, shared by every session that sends it.
 struct EncodedMessage {

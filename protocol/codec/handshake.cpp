@@ -105,7 +105,8 @@ Signature sign(const KeyPair& keys, ByteView transcript) {
 
 bool verify(const PublicKey& key, ByteView transcript, const Signature& signature) {
   need_sodium();
-  return crypto_sign_verify_detached(signature.data(), transcript.data(), transcript.size(), key.data()) == 0;
+  return crypto_sign_verify_detached(signature.data(), transcript.data(), transcript.size(),
+                                     key.data()) == 0;
 }
 
 }  // namespace runstone

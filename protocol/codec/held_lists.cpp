@@ -34,7 +34,8 @@ class KeyReader {
     at.x = next(in, last_.x);
     at.y = next(in, last_.y);
     at.z = next(in, last_.z);
-    if (!is_first_ && in.ok() && at <= last_) in.reject(ErrorCode::not_canonical, "chunk keys do not ascend");
+    if (!is_first_ && in.ok() && at <= last_)
+      in.reject(ErrorCode::not_canonical, "chunk keys do not ascend");
     is_first_ = false;
     last_ = at;
     return {0, at};
@@ -44,7 +45,8 @@ class KeyReader {
   std::int32_t next(ByteReader& in, std::int32_t before) const {
     const std::int64_t low = -std::int64_t{reach_} - before;
     const std::int64_t high = std::int64_t{reach_} - 1 - before;
-    return static_cast<std::int32_t>(before + in.svarint_in(low, high, "chunk key is outside the world"));
+    return static_cast<std::int32_t>(before +
+                                     in.svarint_in(low, high, "chunk key is outside the world"));
   }
   std::int32_t reach_;
   ChunkCoord last_;
@@ -131,7 +133,8 @@ Result<std::vector<HeldChunk>> decode_held(ByteView bytes, std::int32_t edge) {
     HeldChunk chunk;
     chunk.key = keys.take(in);
     chunk.version.epoch = static_cast<Epoch>(in.varint_max(0xffff'ffff, "epoch exceeds 32 bits"));
-    if (chunk.version.epoch != 0) chunk.version.seq = in.varint_max(kSequenceMax, "sequence exceeds 63 bits");
+    if (chunk.version.epoch != 0)
+      chunk.version.seq = in.varint_max(kSequenceMax, "sequence exceeds 63 bits");
     if (chunk.version.epoch != 0 && chunk.version.seq == 0) {
       in.reject(ErrorCode::bad_value, "version is half zero");
     }

@@ -20,7 +20,8 @@ using MaterialRows = flatbuffers::Vector<flatbuffers::Offset<wire::MaterialRow>>
 
 bool take_row(const wire::MaterialRow& row, MaterialInfo& info) {
   if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
-  for (unsigned c = 0; c < 4; ++c) info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
+  for (unsigned c = 0; c < 4; ++c)
+    info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
   if (row.visibility() > static_cast<std::uint8_t>(Visibility::transparent)) return false;
   info.visibility = static_cast<Visibility>(row.visibility());
   return true;
@@ -47,7 +48,9 @@ struct BodyReader {
   std::size_t message_bytes;  // bounds what tables that share their bytes may add up to
 
   /// Before welcome, what suits every world.
-  std::int32_t key_edge() const { return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax); }
+  std::int32_t key_edge() const {
+    return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax);
+  }
 
   /// 1 .. count_max keys, each inside the world.
   bool take_keys(const flatbuffers::Vector<const wire::Key*>* from, std::size_t count_max,
@@ -73,7 +76,8 @@ struct BodyReader {
     if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name))
       return bad("hello.name is not 1 .. 32 bytes of text");
     // Unknown bits are encodings of the future, and no harm.
-    if ((m.encodings & kEncodingsKnown) == 0) return bad("hello.encodings names none that is known");
+    if ((m.encodings & kEncodingsKnown) == 0)
+      return bad("hello.encodings names none that is known");
     return m;
   }
 
@@ -103,17 +107,20 @@ struct BodyReader {
     if (!validate(m.heights)) return bad("welcome.y_min .. y_max");
     if (!encoding_known(t.encoding())) return bad("welcome.encoding is unknown");
     if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
-    if (const auto ok = take_materials(t.materials(), m.materials); !ok) return Unexpected<Error>{ok.error()};
+    if (const auto ok = take_materials(t.materials(), m.materials); !ok)
+      return Unexpected<Error>{ok.error()};
     return m;
   }
 
-  Result<Message> read(const wire::Proof& t) const {
-    Proof m;
+  Result<Message> read(const wire::ClientAuth& t) const {
+    ClientAuth m;
     if (!take_exact(t.signature(), m.signature)) return bad("proof.signature is not 64 bytes");
     return m;
   }
 
-  Result<Message> read(const wire::Ready& t) const { return Ready{t.author(), t.decided()}; }
+  Result<Message> read(const wire::SessionAccepted& t) const {
+    return SessionAccepted{t.author(), t.resolved()};
+  }
 
   Result<Message> read(const wire::View& t) const {
     View m{{}, t.radius_h(), t.radius_v(), t.yaw(), t.pitch(), t.cone()};
@@ -135,12 +142,16 @@ struct BodyReader {
 
   Result<Message> read(const wire::Chunk& t) const {
     ChunkSnapshot m;
-    if (!take_key(t.key(), key_edge(), m.key)) return bad("chunk key is missing or outside the world");
-    if (!take_version(t.version(), m.chunk.version)) return bad("chunk version is missing or half zero");
-    if (!take_digest(t.digest(), m.chunk.digest)) return bad("chunk digest is missing or not reduced");
+    if (!take_key(t.key(), key_edge(), m.key))
+      return bad("chunk key is missing or outside the world");
+    if (!take_version(t.version(), m.chunk.version))
+      return bad("chunk version is missing or half zero");
+    if (!take_digest(t.digest(), m.chunk.digest))
+      return bad("chunk digest is missing or not reduced");
     const ByteView data = view_of(t.data());
-    auto voxels = chunk_edge == 0 ? decode_chunk(data)
-                                  : decode_chunk(data, Extent::cube(static_cast<unsigned>(chunk_edge)));
+    auto voxels = chunk_edge == 0
+                      ? decode_chunk(data)
+                      : decode_chunk(data, Extent::cube(static_cast<unsigned>(chunk_edge)));
     if (!voxels) return Unexpected<Error>{voxels.error()};
     m.chunk.voxels = *std::move(voxels);
     return Message{std::move(m)};
@@ -156,54 +167,58 @@ struct BodyReader {
     return m;
   }
 
-  Result<Message> read(const wire::Held& t) const {
+  Result<Message> read(const wire::CachedChunks& t) const {
     auto chunks = decode_held(view_of(t.chunks()), key_edge());
     if (!chunks) return Unexpected<Error>{chunks.error()};
-    return Message{Held{*std::move(chunks)}};
+    return Message{CachedChunks{*std::move(chunks)}};
   }
 
-  Result<Message> read(const wire::Same& t) const {
+  Result<Message> read(const wire::ChunksNotModified& t) const {
     auto chunks = decode_same(view_of(t.chunks()), key_edge());
     if (!chunks) return Unexpected<Error>{chunks.error()};
-    return Message{Same{*std::move(chunks)}};
+    return Message{ChunksNotModified{*std::move(chunks)}};
   }
 
   Result<Message> read(const wire::ChunkEdits& t) const {
     ChunkEdits m;
-    if (!take_key(t.key(), key_edge(), m.key)) return bad("chunk key is missing or outside the world");
+    if (!take_key(t.key(), key_edge(), m.key))
+      return bad("chunk key is missing or outside the world");
     if (!take_version(t.to(), m.to)) return bad("chunk version is missing or half zero");
     if (!take_digest(t.digest(), m.digest)) return bad("chunk digest is missing or not reduced");
     m.from = t.from();
-    if (m.from >= m.to.seq || m.to.seq > kSequenceMax) return bad("missing edits lead back, or too far");
+    if (m.from >= m.to.seq || m.to.seq > kSequenceMax)
+      return bad("missing edits lead back, or too far");
     auto edits = decode_missing(view_of(t.edits()), m.from);
     if (!edits) return Unexpected<Error>{edits.error()};
     m.edits = *std::move(edits);
-    if (m.edits.back().seq != m.to.seq) return bad("missing edits end elsewhere than the chunk's version");
+    if (m.edits.back().seq != m.to.seq)
+      return bad("missing edits end elsewhere than the chunk's version");
     return Message{std::move(m)};
   }
 
-  Result<Message> read(const wire::Travel& t) const {
+  Result<Message> read(const wire::HistoryRequest& t) const {
     if (t.request() == 0) return bad("travel requests start at 1");
-    if (t.to() > kTravelToMax)
+    if (t.to() > kHistoryTargetMax)
       return bad("travel goes neither to the live world, nor to a sequence, nor to a time");
-    const auto to = static_cast<TravelTo>(t.to());
-    if (t.seq() > kSequenceMax || (to != TravelTo::sequence && t.seq() != 0)) {
+    const auto to = static_cast<HistoryTarget>(t.to());
+    if (t.seq() > kSequenceMax || (to != HistoryTarget::sequence && t.seq() != 0)) {
       return bad("travel sequence exceeds 63 bits, or is given without being asked for");
     }
-    if (!is_time(t.utc_us()) || (to != TravelTo::time && t.utc_us() != 0)) {
+    if (!is_time(t.utc_us()) || (to != HistoryTarget::time && t.utc_us() != 0)) {
       return bad("travel time is out of range, or is given without being asked for");
     }
-    return Travel{t.request(), to, t.seq(), t.utc_us()};
+    return HistoryRequest{t.request(), to, t.seq(), t.utc_us()};
   }
 
-  Result<Message> read(const wire::Moment& t) const {
-    Moment m;
+  Result<Message> read(const wire::HistoryState& t) const {
+    HistoryState m;
     if (t.request() == 0) return bad("moment answers no request");
-    if (t.phase() == 0 || t.phase() > kMomentPhaseMax) return bad("moment phase is unknown");
-    if (t.seq() > kSequenceMax || (!t.past() && t.seq() != 0)) return bad("moment sequence is out of range");
+    if (t.phase() == 0 || t.phase() > kHistoryPhaseMax) return bad("moment phase is unknown");
+    if (t.seq() > kSequenceMax || (!t.past() && t.seq() != 0))
+      return bad("moment sequence is out of range");
     if (!is_time(t.utc_us())) return bad("moment time is out of range");
     m.request = t.request();
-    m.phase = static_cast<MomentPhase>(t.phase());
+    m.phase = static_cast<HistoryPhase>(t.phase());
     m.past = t.past();
     m.seq = t.seq();
     m.utc_us = t.utc_us();
@@ -229,7 +244,8 @@ struct BodyReader {
     Commit m;
     m.epoch = t.epoch();
     m.first = t.first();
-    m.edits.reserve(t.edits() == nullptr ? 0 : std::min<std::size_t>(t.edits()->size(), kCommitEditsMax));
+    m.edits.reserve(
+        t.edits() == nullptr ? 0 : std::min<std::size_t>(t.edits()->size(), kCommitEditsMax));
     OrderedEdit edit;
     std::vector<ChunkCoord> touched;
     const auto ok = read_edits(t, edit, touched, [&m, &edit](Sequence) -> Result<void> {
@@ -243,8 +259,8 @@ struct BodyReader {
   /// Reads each edit into `edit`, the chunks it touches into `touched` (none before welcome), and calls `take` with its
   /// sequence, which may move from both.
   template <class F>
-  Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit, std::vector<ChunkCoord>& touched,
-                          F&& take) const {
+  Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit,
+                          std::vector<ChunkCoord>& touched, F&& take) const {
     const auto count = count_of(t.edits(), kCommitEditsMax);
     if (!count || *count == 0) return bad("commit has not 1 .. 4096 edits");
     if (t.epoch() == 0) return bad("commit epoch is 0");
@@ -260,7 +276,8 @@ struct BodyReader {
       edit.cause = static_cast<Cause>(e.cause());
       edit.submitted_us = e.submitted_us();
       edit.ordered_us = e.ordered_us();
-      if (!is_time(edit.submitted_us) || !is_time(edit.ordered_us)) return bad("commit time is out of range");
+      if (!is_time(edit.submitted_us) || !is_time(edit.ordered_us))
+        return bad("commit time is out of range");
       edit.subject = e.subject();
       if (edit.subject >= first + i) return bad("commit subject is not an earlier edit");
       auto descriptor = decode_descriptor(view_of(e.edit()));
@@ -269,7 +286,8 @@ struct BodyReader {
       const ByteView previous = view_of(e.previous());
       previous_bytes += previous.size();
       // Tables may point at one list again and again; what is decoded would outgrow the message.
-      if (previous_bytes > message_bytes) return bad("commit shares its lists of previous sequences");
+      if (previous_bytes > message_bytes)
+        return bad("commit shares its lists of previous sequences");
       if (const auto ok = read_previous(previous, first + i, edit, touched); !ok) return ok;
       if (const auto ok = take(first + i); !ok) return ok;
     }
@@ -307,7 +325,8 @@ struct BodyReader {
     if (t.reason() == 0 || t.reason() > kRejectReasonMax) return bad("reject reason is unknown");
     m.reason = static_cast<RejectReason>(t.reason());
     m.seq = t.seq();
-    if (m.seq != 0 && m.reason != RejectReason::already_decided) return bad("reject names a sequence");
+    if (m.seq != 0 && m.reason != RejectReason::already_resolved)
+      return bad("reject names a sequence");
     if (!take_text(t.detail(), 0, kTextBytesMax, m.detail))
       return bad("reject detail is not 0 .. 256 bytes of text");
     return m;
@@ -318,14 +337,14 @@ struct BodyReader {
     return Durable{t.epoch(), t.seq()};
   }
 
-  Result<Message> read(const wire::Audit& t) const {
+  Result<Message> read(const wire::DigestCheck& t) const {
     const auto count = count_of(t.entries(), kAuditEntriesMax);
     if (!count) return bad("audit has too many entries");
-    Audit m;
+    DigestCheck m;
     m.entries.resize(*count);
     for (std::uint32_t i = 0; i < *count; ++i) {
-      const wire::AuditEntry& e = *t.entries()->Get(i);
-      AuditEntry& out = m.entries[i];
+      const wire::DigestCheckEntry& e = *t.entries()->Get(i);
+      DigestCheckEntry& out = m.entries[i];
       if (!take_key(e.key(), key_edge(), out.key) || !take_version(e.version(), out.version) ||
           !take_digest(e.digest(), out.digest)) {
         return bad("audit entry has a bad key, version or digest");
@@ -348,15 +367,16 @@ struct BodyReader {
     for (std::uint32_t i = 0; i < *count; ++i) {
       const wire::PlayerPose& p = *t.players()->Get(i);
       m.players[i].author = p.author();
-      if (!take_pose(p.pose(), m.players[i].pose)) return bad("pose is missing or outside the world");
+      if (!take_pose(p.pose(), m.players[i].pose))
+        return bad("pose is missing or outside the world");
     }
     return m;
   }
 
-  Result<Message> read(const wire::Roster& t) const {
+  Result<Message> read(const wire::PlayerList& t) const {
     const auto count = count_of(t.players(), kPlayersMax);
     if (!count) return bad("too many players");
-    Roster m;
+    PlayerList m;
     m.players.resize(*count);
     for (std::uint32_t i = 0; i < *count; ++i) {
       const wire::PlayerName& p = *t.players()->Get(i);
@@ -366,8 +386,10 @@ struct BodyReader {
       }
     }
     m.is_change = t.change();
-    const auto gone = t.left() == nullptr ? std::optional<std::uint32_t>(0) : count_of(t.left(), kPlayersMax);
-    if (!gone || (*gone != 0 && !m.is_change)) return bad("too many players left, or from a whole roster");
+    const auto gone =
+        t.left() == nullptr ? std::optional<std::uint32_t>(0) : count_of(t.left(), kPlayersMax);
+    if (!gone || (*gone != 0 && !m.is_change))
+      return bad("too many players left, or from a whole roster");
     if (*gone != 0) m.left.assign(t.left()->begin(), t.left()->end());
     return m;
   }
@@ -412,9 +434,9 @@ struct BodyReader {
     }
     return m;
   }
-  Result<Message> read(const wire::Received& t) const {
+  Result<Message> read(const wire::ReceiveAck& t) const {
     if (t.chunk_bytes() == 0) return bad("received counts no bytes");
-    return Received{t.chunk_bytes()};
+    return ReceiveAck{t.chunk_bytes()};
   }
   Result<Message> read(const wire::UniformChunks& t) const {
     auto chunks = decode_uniform(view_of(t.data()), key_edge());
@@ -433,35 +455,35 @@ struct Route {
 std::optional<Route> route_of(wire::Body body) {
   switch (body) {
     case wire::Body::Hello:
-    case wire::Body::Proof:
+    case wire::Body::ClientAuth:
     case wire::Body::View:
     case wire::Body::ChunkRequest:
     case wire::Body::Move:
     case wire::Body::Ping:
-    case wire::Body::Travel:
+    case wire::Body::HistoryRequest:
     case wire::Body::CommandRequest:
-    case wire::Body::Received:
-    case wire::Body::Held:
+    case wire::Body::ReceiveAck:
+    case wire::Body::CachedChunks:
       return Route{true, false, FrameClass::control};
     case wire::Body::EditRequest:
       return Route{true, false, FrameClass::edits};
     case wire::Body::Welcome:
-    case wire::Body::Audit:
+    case wire::Body::DigestCheck:
     case wire::Body::PlayerPoses:
-    case wire::Body::Roster:
+    case wire::Body::PlayerList:
     case wire::Body::Pong:
     case wire::Body::CommandOutput:
       return Route{false, true, FrameClass::control};
-    case wire::Body::Ready:
+    case wire::Body::SessionAccepted:
     case wire::Body::Commit:
     case wire::Body::Reject:
     case wire::Body::Durable:
       return Route{false, true, FrameClass::edits};
     case wire::Body::Chunk:
     case wire::Body::ChunkUnavailable:
-    case wire::Body::Moment:
+    case wire::Body::HistoryState:
     case wire::Body::UniformChunks:
-    case wire::Body::Same:
+    case wire::Body::ChunksNotModified:
     case wire::Body::ChunkEdits:
       return Route{false, true, FrameClass::chunks};
     case wire::Body::Goodbye:
@@ -478,10 +500,10 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Hello());
     case wire::Body::Welcome:
       return reader.read(*message.body_as_Welcome());
-    case wire::Body::Proof:
-      return reader.read(*message.body_as_Proof());
-    case wire::Body::Ready:
-      return reader.read(*message.body_as_Ready());
+    case wire::Body::ClientAuth:
+      return reader.read(*message.body_as_ClientAuth());
+    case wire::Body::SessionAccepted:
+      return reader.read(*message.body_as_SessionAccepted());
     case wire::Body::View:
       return reader.read(*message.body_as_View());
     case wire::Body::ChunkRequest:
@@ -496,14 +518,14 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Reject());
     case wire::Body::Durable:
       return reader.read(*message.body_as_Durable());
-    case wire::Body::Audit:
-      return reader.read(*message.body_as_Audit());
+    case wire::Body::DigestCheck:
+      return reader.read(*message.body_as_DigestCheck());
     case wire::Body::Move:
       return reader.read(*message.body_as_Move());
     case wire::Body::PlayerPoses:
       return reader.read(*message.body_as_PlayerPoses());
-    case wire::Body::Roster:
-      return reader.read(*message.body_as_Roster());
+    case wire::Body::PlayerList:
+      return reader.read(*message.body_as_PlayerList());
     case wire::Body::Ping:
       return reader.read(*message.body_as_Ping());
     case wire::Body::Pong:
@@ -512,22 +534,22 @@ Result<Message> read_body(const wire::Message& message, const BodyReader& reader
       return reader.read(*message.body_as_Goodbye());
     case wire::Body::ChunkUnavailable:
       return reader.read(*message.body_as_ChunkUnavailable());
-    case wire::Body::Travel:
-      return reader.read(*message.body_as_Travel());
-    case wire::Body::Moment:
-      return reader.read(*message.body_as_Moment());
+    case wire::Body::HistoryRequest:
+      return reader.read(*message.body_as_HistoryRequest());
+    case wire::Body::HistoryState:
+      return reader.read(*message.body_as_HistoryState());
     case wire::Body::CommandRequest:
       return reader.read(*message.body_as_CommandRequest());
     case wire::Body::CommandOutput:
       return reader.read(*message.body_as_CommandOutput());
-    case wire::Body::Received:
-      return reader.read(*message.body_as_Received());
+    case wire::Body::ReceiveAck:
+      return reader.read(*message.body_as_ReceiveAck());
     case wire::Body::UniformChunks:
       return reader.read(*message.body_as_UniformChunks());
-    case wire::Body::Held:
-      return reader.read(*message.body_as_Held());
-    case wire::Body::Same:
-      return reader.read(*message.body_as_Same());
+    case wire::Body::CachedChunks:
+      return reader.read(*message.body_as_CachedChunks());
+    case wire::Body::ChunksNotModified:
+      return reader.read(*message.body_as_ChunksNotModified());
     case wire::Body::ChunkEdits:
       return reader.read(*message.body_as_ChunkEdits());
     case wire::Body::NONE:
@@ -574,7 +596,8 @@ Result<bool> CommitWalk::read(ByteView bytes, std::uint16_t chunk_edge, const On
   if (commit == nullptr) return false;
   const Epoch epoch = commit->epoch();
   const auto ok = BodyReader{chunk_edge, bytes.size()}.read_edits(
-      *commit, edit_, chunks_, [&](Sequence seq) { return on_edit({{epoch, seq}, edit_, chunks_}); });
+      *commit, edit_, chunks_,
+      [&](Sequence seq) { return on_edit({{epoch, seq}, edit_, chunks_}); });
   if (!ok) return Unexpected<Error>{ok.error()};
   return true;
 }

@@ -49,7 +49,8 @@ struct BodyBuilder {
       std::uint32_t rgba = 0;
       for (unsigned i = 0; i < 4; ++i) rgba |= static_cast<std::uint32_t>(c[i]) << (8 * i);
       const auto name = b.CreateString(row.name);
-      rows.push_back(wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
+      rows.push_back(
+          wire::CreateMaterialRow(b, name, rgba, static_cast<std::uint8_t>(row.visibility)));
     }
     const auto materials = b.CreateVector(rows);
     const auto world_id = bytes_of(b, m.world_id);
@@ -58,15 +59,19 @@ struct BodyBuilder {
     const auto signature = bytes_of(b, m.signature);
     const wire::Position spawn = position_of(m.spawn);
     return wire::CreateWelcome(b, m.protocol, world_id, m.epoch, m.durable, m.head, m.chunk_edge,
-                               m.heights.y_min, m.heights.y_max, &spawn, materials, server_key, challenge,
-                               signature, static_cast<std::uint8_t>(m.encoding), m.edit_volume_max,
-                               m.view_radius_max, m.features);
+                               m.heights.y_min, m.heights.y_max, &spawn, materials, server_key,
+                               challenge, signature, static_cast<std::uint8_t>(m.encoding),
+                               m.edit_volume_max, m.view_radius_max, m.features);
   }
-  Offset<wire::Proof> operator()(const Proof& m) { return wire::CreateProof(b, bytes_of(b, m.signature)); }
-  Offset<wire::Ready> operator()(const Ready& m) { return wire::CreateReady(b, m.author, m.decided); }
+  Offset<wire::ClientAuth> operator()(const ClientAuth& m) {
+    return wire::CreateClientAuth(b, bytes_of(b, m.signature));
+  }
+  Offset<wire::SessionAccepted> operator()(const SessionAccepted& m) {
+    return wire::CreateSessionAccepted(b, m.author, m.resolved);
+  }
   Offset<wire::View> operator()(const View& m) {
-    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v, m.yaw, m.pitch,
-                            m.cone);
+    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v, m.yaw,
+                            m.pitch, m.cone);
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
@@ -79,11 +84,11 @@ struct BodyBuilder {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kUnavailableKeysMax);
     return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
   }
-  Offset<wire::Held> operator()(const Held& m) {
-    return wire::CreateHeld(b, bytes_of(b, encode_held(m.chunks)));
+  Offset<wire::CachedChunks> operator()(const CachedChunks& m) {
+    return wire::CreateCachedChunks(b, bytes_of(b, encode_held(m.chunks)));
   }
-  Offset<wire::Same> operator()(const Same& m) {
-    return wire::CreateSame(b, bytes_of(b, encode_same(m.chunks)));
+  Offset<wire::ChunksNotModified> operator()(const ChunksNotModified& m) {
+    return wire::CreateChunksNotModified(b, bytes_of(b, encode_same(m.chunks)));
   }
   Offset<wire::ChunkEdits> operator()(const ChunkEdits& m) {
     RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kChunkEditsMax);
@@ -94,12 +99,13 @@ struct BodyBuilder {
     const wire::Digest digest = digest_bytes(m.digest);
     return wire::CreateChunkEdits(b, &key, m.from, &to, &digest, edits);
   }
-  Offset<wire::Travel> operator()(const Travel& m) {
-    return wire::CreateTravel(b, m.request, static_cast<std::uint8_t>(m.to), m.seq, m.utc_us);
+  Offset<wire::HistoryRequest> operator()(const HistoryRequest& m) {
+    return wire::CreateHistoryRequest(b, m.request, static_cast<std::uint8_t>(m.to), m.seq,
+                                      m.utc_us);
   }
-  Offset<wire::Moment> operator()(const Moment& m) {
-    return wire::CreateMoment(b, m.request, static_cast<std::uint8_t>(m.phase), m.past, m.seq, m.utc_us,
-                              text(m.text));
+  Offset<wire::HistoryState> operator()(const HistoryState& m) {
+    return wire::CreateHistoryState(b, m.request, static_cast<std::uint8_t>(m.phase), m.past, m.seq,
+                                    m.utc_us, text(m.text));
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
@@ -120,27 +126,30 @@ struct BodyBuilder {
         w.varint(m.first + i - seq);
       }
       const auto edit = bytes_of(b, encode(e.edit));
-      edits.push_back(wire::CreateOrderedEdit(b, e.op.author, e.op.instance, e.op.seq,
-                                              static_cast<std::uint8_t>(e.cause), e.submitted_us,
-                                              e.ordered_us, edit, bytes_of(b, previous), e.subject));
+      edits.push_back(wire::CreateOrderedEdit(
+          b, e.op.author, e.op.instance, e.op.seq, static_cast<std::uint8_t>(e.cause),
+          e.submitted_us, e.ordered_us, edit, bytes_of(b, previous), e.subject));
     }
     return wire::CreateCommit(b, m.epoch, m.first, b.CreateVector(edits));
   }
   Offset<wire::Reject> operator()(const Reject& m) {
-    return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail), m.seq);
+    return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail),
+                              m.seq);
   }
-  Offset<wire::Durable> operator()(const Durable& m) { return wire::CreateDurable(b, m.epoch, m.seq); }
-  Offset<wire::Audit> operator()(const Audit& m) {
+  Offset<wire::Durable> operator()(const Durable& m) {
+    return wire::CreateDurable(b, m.epoch, m.seq);
+  }
+  Offset<wire::DigestCheck> operator()(const DigestCheck& m) {
     RUNSTONE_ASSERT(m.entries.size() <= kAuditEntriesMax);
-    std::vector<Offset<wire::AuditEntry>> entries;
+    std::vector<Offset<wire::DigestCheckEntry>> entries;
     entries.reserve(m.entries.size());
-    for (const AuditEntry& e : m.entries) {
+    for (const DigestCheckEntry& e : m.entries) {
       const wire::Key key = key_of(e.key);
       const wire::Version version = version_of(e.version);
       const wire::Digest digest = digest_bytes(e.digest);
-      entries.push_back(wire::CreateAuditEntry(b, &key, &version, &digest));
+      entries.push_back(wire::CreateDigestCheckEntry(b, &key, &version, &digest));
     }
-    return wire::CreateAudit(b, b.CreateVector(entries));
+    return wire::CreateDigestCheck(b, b.CreateVector(entries));
   }
   Offset<wire::Move> operator()(const Move& m) {
     const wire::Pose pose = pose_of(m.pose);
@@ -155,16 +164,18 @@ struct BodyBuilder {
     }
     return wire::CreatePlayerPoses(b, b.CreateVector(players));
   }
-  Offset<wire::Roster> operator()(const Roster& m) {
+  Offset<wire::PlayerList> operator()(const PlayerList& m) {
     std::vector<Offset<wire::PlayerName>> players;
     players.reserve(m.players.size());
     for (const PlayerName& p : m.players)
       players.push_back(wire::CreatePlayerName(b, p.author, b.CreateString(p.name)));
-    return wire::CreateRoster(b, b.CreateVector(players), m.is_change,
-                              m.is_change ? b.CreateVector(m.left) : 0);
+    return wire::CreatePlayerList(b, b.CreateVector(players), m.is_change,
+                                  m.is_change ? b.CreateVector(m.left) : 0);
   }
   Offset<wire::Ping> operator()(const Ping& m) { return wire::CreatePing(b, m.sent_us); }
-  Offset<wire::Pong> operator()(const Pong& m) { return wire::CreatePong(b, m.sent_us, m.server_us); }
+  Offset<wire::Pong> operator()(const Pong& m) {
+    return wire::CreatePong(b, m.sent_us, m.server_us);
+  }
   Offset<wire::Goodbye> operator()(const Goodbye& m) {
     return wire::CreateGoodbye(b, static_cast<std::uint16_t>(m.reason), text(m.text));
   }
@@ -180,7 +191,9 @@ struct BodyBuilder {
     for (const std::string& line : m.lines) lines.push_back(b.CreateString(shown_line(line)));
     return wire::CreateCommandOutput(b, m.id, b.CreateVector(lines), m.is_done, m.is_ok);
   }
-  Offset<wire::Received> operator()(const Received& m) { return wire::CreateReceived(b, m.chunk_bytes); }
+  Offset<wire::ReceiveAck> operator()(const ReceiveAck& m) {
+    return wire::CreateReceiveAck(b, m.chunk_bytes);
+  }
   Offset<wire::UniformChunks> operator()(const UniformChunks& m) {
     return wire::CreateUniformChunks(b, bytes_of(b, encode_uniform(m.chunks)));
   }
@@ -225,10 +238,12 @@ template <class Table>
 EncodedMessage finish(FlatBufferBuilder& b, FrameClass frame_class, Offset<Table> body) {
   b.Finish(wire::CreateMessage(b, wire::BodyTraits<Table>::enum_value, body.Union()),
            wire::MessageIdentifier());
-  RUNSTONE_ASSERT(b.GetSize() <= message_bytes_max(Sender::server, frame_class));  // the wider of both limits
+  RUNSTONE_ASSERT(b.GetSize() <=
+                  message_bytes_max(Sender::server, frame_class));  // the wider of both limits
   const std::uint8_t* first = b.GetBufferPointer();
   auto bytes = std::make_shared<const Bytes>(first, first + b.GetSize());
-  if (bytes->size() > kBuilderBytesKept) b.Reset();  // one huge message must not hold memory for ever
+  if (bytes->size() > kBuilderBytesKept)
+    b.Reset();  // one huge message must not hold memory for ever
   return {frame_class, std::move(bytes)};
 }
 
@@ -237,7 +252,8 @@ EncodedMessage finish(FlatBufferBuilder& b, FrameClass frame_class, Offset<Table
 EncodedMessage encode_message(const Message& message) {
   FlatBufferBuilder& b = cleared_builder();
   const FrameClass frame_class = frame_class_of(message);
-  return std::visit([&](const auto& m) { return finish(b, frame_class, BodyBuilder{b}(m)); }, message);
+  return std::visit([&](const auto& m) { return finish(b, frame_class, BodyBuilder{b}(m)); },
+                    message);
 }
 
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {

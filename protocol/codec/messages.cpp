@@ -12,11 +12,12 @@ FrameClass frame_class_of(const Message& message) {
       []<class T>(const T&) {
         constexpr bool kOrder = std::is_same_v<T, EditRequest> || std::is_same_v<T, Commit> ||
                                 std::is_same_v<T, Reject> || std::is_same_v<T, Durable> ||
-                                std::is_same_v<T, Ready>;
+                                std::is_same_v<T, SessionAccepted>;
         if constexpr (kOrder) return FrameClass::edits;
-        constexpr bool kChunk = std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
-                                std::is_same_v<T, UniformChunks> || std::is_same_v<T, Moment> ||
-                                std::is_same_v<T, Same> || std::is_same_v<T, ChunkEdits>;
+        constexpr bool kChunk =
+            std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
+            std::is_same_v<T, UniformChunks> || std::is_same_v<T, HistoryState> ||
+            std::is_same_v<T, ChunksNotModified> || std::is_same_v<T, ChunkEdits>;
         return kChunk ? FrameClass::chunks : FrameClass::control;
       },
       message);
@@ -26,7 +27,8 @@ std::vector<Message> held_messages(std::span<const HeldChunk> chunks) {
   std::vector<Message> out;
   while (!chunks.empty()) {
     const std::size_t count = held_that_fit(chunks);
-    out.push_back(Held{{chunks.begin(), chunks.begin() + static_cast<std::ptrdiff_t>(count)}});
+    out.push_back(
+        CachedChunks{{chunks.begin(), chunks.begin() + static_cast<std::ptrdiff_t>(count)}});
     chunks = chunks.subspan(count);
   }
   return out;
@@ -36,7 +38,7 @@ const char* to_string(RejectReason reason) {
   switch (reason) {
     case RejectReason::busy:
       return "busy";
-    case RejectReason::already_decided:
+    case RejectReason::already_resolved:
       return "already_decided";
     case RejectReason::unknown_material:
       return "unknown_material";

@@ -68,14 +68,14 @@ struct Welcome {
   std::uint64_t features = 0;  // of hello's, those in force
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
-struct Proof {
+struct ClientAuth {
   Signature signature{};
-  friend bool operator==(const Proof&, const Proof&) = default;
+  friend bool operator==(const ClientAuth&, const ClientAuth&) = default;
 };
-struct Ready {
+struct SessionAccepted {
   AuthorId author = 0;
-  ClientSequence decided = 0;
-  friend bool operator==(const Ready&, const Ready&) = default;
+  ClientSequence resolved = 0;
+  friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
 
 /// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`; and where it
@@ -92,7 +92,8 @@ struct View {
     const std::int64_t dx = std::int64_t{c.x} - centre.x;
     const std::int64_t dy = std::int64_t{c.y} - centre.y;
     const std::int64_t dz = std::int64_t{c.z} - centre.z;
-    return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v && -dy <= radius_v;
+    return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v &&
+           -dy <= radius_v;
   }
   /// Whether the same chunks are in both, wherever they look.
   bool same_chunks(const View& other) const {
@@ -117,7 +118,8 @@ struct UniformChunk {
   friend bool operator==(const UniformChunk&, const UniformChunk&) = default;
 };
 struct UniformChunks {
-  std::vector<UniformChunk> chunks;  // 1 .. kUniformChunksMax of lod 0, ascending by is_before_in_list()
+  std::vector<UniformChunk>
+      chunks;  // 1 .. kUniformChunksMax of lod 0, ascending by is_before_in_list()
   friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
 };
 /// Column by column: by x, then z, then y.
@@ -127,7 +129,8 @@ constexpr bool is_before_in_list(const ChunkCoord& a, const ChunkCoord& b) {
 
 /// Why a chunk cannot be had. Values are on the wire; readers take reasons they do not know.
 enum class UnavailableReason : std::uint8_t {
-  damaged = 1,  // its row in the server's database is damaged: until that is repaired and the server restarts
+  damaged =
+      1,  // its row in the server's database is damaged: until that is repaired and the server restarts
 };
 const char* to_string(UnavailableReason reason);
 
@@ -150,9 +153,9 @@ inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0];
 
 /// Chunks of the view that follows, and of those in force: the server need not send what is held. Strictly ascending by
 /// key, all of level 0.
-struct Held {
+struct CachedChunks {
   std::vector<HeldChunk> chunks;
-  friend bool operator==(const Held&, const Held&) = default;
+  friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
 };
 /// The client's copy at this sequence is the chunk as it stood when the session was subscribed.
 struct SameChunk {
@@ -161,9 +164,9 @@ struct SameChunk {
   friend bool operator==(const SameChunk&, const SameChunk&) = default;
 };
 /// Strictly ascending by key, all of level 0.
-struct Same {
+struct ChunksNotModified {
   std::vector<SameChunk> chunks;
-  friend bool operator==(const Same&, const Same&) = default;
+  friend bool operator==(const ChunksNotModified&, const ChunksNotModified&) = default;
 };
 struct MissingEdit {
   Sequence seq = 0;
@@ -182,31 +185,31 @@ struct ChunkEdits {
 };
 
 /// What a session looks at. Values are on the wire.
-enum class TravelTo : std::uint8_t { live = 0, sequence = 1, time = 2 };
-inline constexpr std::uint8_t kTravelToMax = 2;
+enum class HistoryTarget : std::uint8_t { live = 0, sequence = 1, time = 2 };
+inline constexpr std::uint8_t kHistoryTargetMax = 2;
 
 /// A wish to see the view as it was. A later one replaces those before it.
-struct Travel {
+struct HistoryRequest {
   std::uint32_t request = 1;  // from 1, ascending
-  TravelTo to = TravelTo::live;
+  HistoryTarget to = HistoryTarget::live;
   Sequence seq = 0;   // TravelTo::sequence: the last edit to be seen; 0: before the first one
   TimeUs utc_us = 0;  // TravelTo::time: edits up to here are seen
-  friend bool operator==(const Travel&, const Travel&) = default;
+  friend bool operator==(const HistoryRequest&, const HistoryRequest&) = default;
 };
 
 /// begins: the chunks that follow are of this moment. complete: all chunks of the view that differ from what the
 /// client holds were sent. refused: nothing changed, and `text` says why. Values are on the wire.
-enum class MomentPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
-inline constexpr std::uint8_t kMomentPhaseMax = 3;
+enum class HistoryPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
+inline constexpr std::uint8_t kHistoryPhaseMax = 3;
 
-struct Moment {
+struct HistoryState {
   std::uint32_t request = 1;
-  MomentPhase phase = MomentPhase::begins;
+  HistoryPhase phase = HistoryPhase::begins;
   bool past = false;  // false: the live world
   Sequence seq = 0;   // of a past moment: its last edit; 0 before the first one
   TimeUs utc_us = 0;  // when that was ordered
   std::string text;
-  friend bool operator==(const Moment&, const Moment&) = default;
+  friend bool operator==(const HistoryState&, const HistoryState&) = default;
 };
 struct EditRequest {
   ClientSequence client_seq = 0;
@@ -219,8 +222,9 @@ struct OrderedEdit {
   Cause cause = Cause::player;
   TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
   EditDescriptor edit;
-  std::vector<Sequence> previous;  // sequence each touched chunk stood at before, in touched_chunks() order
-  Sequence subject = 0;            // as in EditRecord: the earlier edit this one answers; 0: none
+  std::vector<Sequence>
+      previous;          // sequence each touched chunk stood at before, in touched_chunks() order
+  Sequence subject = 0;  // as in EditRecord: the earlier edit this one answers; 0: none
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 struct Commit {
@@ -230,11 +234,11 @@ struct Commit {
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 
-/// Values are on the wire. Every reason but already_decided uses up the client sequence: another attempt
+/// Values are on the wire. Every reason but already_resolved uses up the client sequence: another attempt
 /// takes a new one.
 enum class RejectReason : std::uint8_t {
-  busy = 1,             // the log is full
-  already_decided = 2,  // this client sequence was applied or rejected before: see the chunks
+  busy = 1,              // the log is full
+  already_resolved = 2,  // this client sequence was applied or rejected before: see the chunks
   unknown_material = 3,
   too_large = 4,  // volume or touched chunks over the limit
   out_of_reach = 5,
@@ -251,7 +255,8 @@ struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
-  Sequence seq = 0;  // already_decided: if the edit was applied, its sequence is at most this; else 0
+  Sequence seq =
+      0;  // already_resolved: if the edit was applied, its sequence is at most this; else 0
   friend bool operator==(const Reject&, const Reject&) = default;
 };
 struct Durable {
@@ -259,15 +264,15 @@ struct Durable {
   Sequence seq = 0;
   friend bool operator==(const Durable&, const Durable&) = default;
 };
-struct AuditEntry {
+struct DigestCheckEntry {
   ChunkKey key;
   Version version;
   Digest digest;
-  friend bool operator==(const AuditEntry&, const AuditEntry&) = default;
+  friend bool operator==(const DigestCheckEntry&, const DigestCheckEntry&) = default;
 };
-struct Audit {
-  std::vector<AuditEntry> entries;
-  friend bool operator==(const Audit&, const Audit&) = default;
+struct DigestCheck {
+  std::vector<DigestCheckEntry> entries;
+  friend bool operator==(const DigestCheck&, const DigestCheck&) = default;
 };
 struct Move {
   Pose pose;
@@ -288,11 +293,11 @@ struct PlayerName {
   friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
 /// Who is here: everybody, or what changed since the last roster.
-struct Roster {
+struct PlayerList {
   std::vector<PlayerName> players;  // of a change: who came or has another name
   bool is_change = false;
   std::vector<AuthorId> left;  // of a change only
-  friend bool operator==(const Roster&, const Roster&) = default;
+  friend bool operator==(const PlayerList&, const PlayerList&) = default;
 };
 struct Ping {
   TimeUs sent_us = 0;
@@ -342,16 +347,19 @@ struct CommandOutput {
 };
 
 /// How much terrain the client has read, so that the server can pace what follows.
-struct Received {
-  std::uint64_t chunk_bytes = 1;  // of frames of the class chunks, headers included, since the stream began
-  friend bool operator==(const Received&, const Received&) = default;
+struct ReceiveAck {
+  std::uint64_t chunk_bytes =
+      1;  // of frames of the class chunks, headers included, since the stream began
+  friend bool operator==(const ReceiveAck&, const ReceiveAck&) = default;
 };
 
 /// Order follows the union of the schema.
 using Message =
-    std::variant<Hello, Welcome, Proof, Ready, View, ChunkRequest, ChunkSnapshot, EditRequest, Commit, Reject,
-                 Durable, Audit, Move, PlayerPoses, Roster, Ping, Pong, Goodbye, ChunkUnavailable, Travel,
-                 Moment, CommandRequest, CommandOutput, Received, UniformChunks, Held, Same, ChunkEdits>;
+    std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, ChunkSnapshot,
+                 EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
+                 Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, HistoryState,
+                 CommandRequest, CommandOutput, ReceiveAck, UniformChunks, CachedChunks,
+                 ChunksNotModified, ChunkEdits>;
 
 /// Whether the snapshot's digest is that of its voxels. O(runs).
 inline bool digest_holds(const ChunkSnapshot& snapshot) {

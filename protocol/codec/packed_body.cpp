@@ -13,7 +13,7 @@
 #include "common/core/assert.hpp"
 #include "protocol/codec/codec_scratch.hpp"
 #include "protocol/codec/read_runs.hpp"
-#include "protocol/codec/run_palette.hpp"
+#include "protocol/codec/wire_palette.hpp"
 #include "protocol/codec/zstd_frame.hpp"
 
 namespace runstone {
@@ -29,7 +29,8 @@ static_assert(ZSTD_MAGICNUMBER == 0xfd2fb528);
 // Tokens of the plane of lengths.
 constexpr std::uint32_t kLongLength = 0;   // a varint of the last plane tells the length
 constexpr std::uint32_t kLengthEnd = 192;  // a token below is the length itself
-constexpr std::uint32_t kToLineEnd = 255;  // to the end of the line it begins in; one less: of the line after
+constexpr std::uint32_t kToLineEnd =
+    255;  // to the end of the line it begins in; one less: of the line after
 constexpr std::uint32_t kLineEndTokens = 64;
 static_assert(kLengthEnd + kLineEndTokens == kToLineEnd + 1);
 
@@ -52,7 +53,7 @@ struct FreeContext {
 };
 
 struct Scratch {
-  RunPalette palette;
+  WirePalette palette;
   std::vector<std::uint32_t> next;  // token of each material, by palette index
   Bytes body, long_lengths;
   Bytes frame;  // a whole zstd frame
@@ -112,7 +113,8 @@ ByteView compress(Scratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
   RUNSTONE_ASSERT(s.compressor != nullptr);
-  s.frame.resize(kZstdMagic.size() + s.body.size() - 1);  // zstd stops when it runs out of room: no gain
+  s.frame.resize(kZstdMagic.size() + s.body.size() -
+                 1);  // zstd stops when it runs out of room: no gain
   const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.frame.data(), s.frame.size(),
                                              s.body.data(), s.body.size(), kZstdLevel);
   if (ZSTD_isError(size) != 0) return {};
@@ -140,7 +142,8 @@ Result<void> read_indices(const std::uint8_t* indices, std::size_t count, std::s
   Index index = 0;
   for (std::size_t i = 0; i < count; ++i) {
     std::memcpy(&index, indices + i * sizeof(Index), sizeof(Index));
-    if (index >= materials) return fail(ErrorCode::broken_invariant, "palette index behind the palette", i);
+    if (index >= materials)
+      return fail(ErrorCode::broken_invariant, "palette index behind the palette", i);
     ++next[index];
   }
   if (std::find(next.begin(), next.end(), 0) != next.end()) {
@@ -171,7 +174,8 @@ Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<cons
   const std::uint8_t* const tokens = indices + count * sizeof(Index);
   const std::uint8_t* at = tokens + count - 1;
   const std::uint8_t* const stop = body.data() + body.size();
-  if (const auto read = read_indices<Index>(indices, count, palette.size(), next_of); !read) return read;
+  if (const auto read = read_indices<Index>(indices, count, palette.size(), next_of); !read)
+    return read;
   std::uint32_t* const next = next_of.data();
   const Line line(shape.side);
   std::uint32_t end = 0;
@@ -183,7 +187,8 @@ Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<cons
     if (token == kLongLength) {
       length = read_long_length(at, stop);
       if (length < kLengthEnd)
-        return fail(ErrorCode::broken_invariant, "long run length is cut, longer than needed or short", i);
+        return fail(ErrorCode::broken_invariant,
+                    "long run length is cut, longer than needed or short", i);
     }
     // Which of the two it is cannot be foretold, so both are made.
     const std::uint32_t line_end = (begin & ~line.mask) + ((kToLineEnd + 1 - token) << line.bits);
@@ -191,7 +196,8 @@ Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<cons
     end = to_line_end ? line_end : begin + length;
     if ((line.ends_at(end) && line.count(begin, end) <= kLineEndTokens) != to_line_end)
       return fail(ErrorCode::broken_invariant, "run to the end of a line is spelt as a length", i);
-    if (end >= shape.volume) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
+    if (end >= shape.volume)
+      return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
     put(i, end, palette[index]);
   }
   std::memcpy(&index, indices + (count - 1) * sizeof(Index), sizeof(Index));
@@ -236,7 +242,8 @@ PackedBody pack(const RunList& runs, std::uint32_t side) {
 
 Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
                        std::span<const Material> palette) {
-  RUNSTONE_ASSERT(shape.runs >= 1 && shape.runs <= shape.volume && shape.materials == palette.size());
+  RUNSTONE_ASSERT(shape.runs >= 1 && shape.runs <= shape.volume &&
+                  shape.materials == palette.size());
   Scratch& s = scratch();
   if (zstd) {
     const auto unpacked = decompress(body, shape, s);

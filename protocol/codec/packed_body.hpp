@@ -17,7 +17,7 @@ inline constexpr std::size_t kNarrowPaletteMax = 256;  // beyond, an index takes
 /// Views of this thread's scratch: they live until the next pack() or unpack() of the thread.
 struct PackedBody {
   std::span<const Material> palette;  // ascending
-  ByteView body;                      // palette indices, tokens of lengths by material, long lengths
+  ByteView body;        // palette indices, tokens of lengths by material, long lengths
   ByteView compressed;  // one zstd frame without its magic; empty where that would not be smaller
 };
 
@@ -39,6 +39,7 @@ struct PackedShape {
 /// Runs of a body. Requires an ascending palette of at most `runs` ids, and at least one run, at most `volume`.
 /// The ends ascend inside the volume and the palette is used up; the rest is for validate(). broken_invariant
 /// names a run, the other errors a byte of the body. O(runs).
-Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape, std::span<const Material> palette);
+Result<RunList> unpack(ByteView body, bool zstd, const PackedShape& shape,
+                       std::span<const Material> palette);
 
 }  // namespace runstone

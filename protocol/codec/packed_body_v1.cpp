@@ -28,17 +28,22 @@ Result<void> read_planes(ByteView body, std::size_t count, std::span<const Mater
     if (i + 1 == count) {
       end = volume;
     } else {
-      if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
+      if (at == stop)
+        return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
       std::uint32_t length = *at++;
-      for (unsigned shift = 7; length >> shift != 0; shift += 7) {  // the last byte read said "more"
-        if (at == stop) return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
+      for (unsigned shift = 7; length >> shift != 0;
+           shift += 7) {  // the last byte read said "more"
+        if (at == stop)
+          return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
         const std::uint32_t byte = *at++;
-        if (byte == 0) return fail(ErrorCode::broken_invariant, "run length is longer than needed", i);
+        if (byte == 0)
+          return fail(ErrorCode::broken_invariant, "run length is longer than needed", i);
         length = (length & ((1u << shift) - 1)) | byte << shift;
         if (shift == 14 && byte >= 0x80)
           return fail(ErrorCode::broken_invariant, "run length exceeds 21 bits", i);
       }
-      if (length > volume - end) return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
+      if (length > volume - end)
+        return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
       end += length;
     }
     put(i, end, palette[index]);
@@ -53,7 +58,8 @@ Result<void> read_planes(ByteView body, std::size_t count, std::span<const Mater
 template <class Put>
 Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
                          std::uint32_t volume, std::uint8_t* used, Put&& put) {
-  if (palette.size() > 256) return read_planes<std::uint16_t>(body, count, palette, volume, used, put);
+  if (palette.size() > 256)
+    return read_planes<std::uint16_t>(body, count, palette, volume, used, put);
   return read_planes<std::uint8_t>(body, count, palette, volume, used, put);
 }
 

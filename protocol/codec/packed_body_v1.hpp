@@ -20,7 +20,8 @@ struct PackedShapeV1 {
   /// three bytes (lengths stay below 2^21).
   bool plausible(std::size_t palette) const {
     const std::size_t indices = runs * (palette > 256 ? 2 : 1);
-    return runs >= 1 && body_bytes >= indices + (runs - 1) && body_bytes <= indices + 3 * (runs - 1);
+    return runs >= 1 && body_bytes >= indices + (runs - 1) &&
+           body_bytes <= indices + 3 * (runs - 1);
   }
 };
 

@@ -92,7 +92,8 @@ class RangeDecoder {
   /// Whether these are the bytes that an encoder of the same bits writes, and all of them.
   Result<void> finish() const {
     if (overrun()) return fail(ErrorCode::truncated, "body ends inside its runs");
-    if (at_ != end_ || zeros_ != kZeros) return fail(ErrorCode::trailing_bytes, "bytes follow the runs");
+    if (at_ != end_ || zeros_ != kZeros)
+      return fail(ErrorCode::trailing_bytes, "bytes follow the runs");
     if (above_ || code_ >= kRangeMin)
       return fail(ErrorCode::not_canonical, "body is not what an encoder ends with");
     return {};

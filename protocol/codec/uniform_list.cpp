@@ -19,7 +19,8 @@ Bytes encode_uniform(const std::vector<UniformChunk>& chunks) {
     while (first + count < chunks.size()) {
       const UniformChunk& next = chunks[first + count];
       const ChunkCoord above{c.x, c.y + static_cast<std::int32_t>(count), c.z};
-      if (next.key.at != above || next.material != chunk.material || next.version != chunk.version) break;
+      if (next.key.at != above || next.material != chunk.material || next.version != chunk.version)
+        break;
       ++count;
     }
     w.svarint(std::int64_t{c.x} - at.x);
@@ -47,13 +48,16 @@ Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::int32_t ed
     const std::int32_t x = axis(at.x, "uniform chunk lies outside the world");
     const std::int32_t z = axis(at.z, "uniform chunk lies outside the world");
     const std::int32_t y = axis(at.y, "uniform chunk lies outside the world");
-    const std::uint64_t more = in.varint_max(kUniformChunksMax - 1, "too many uniform chunks in one entry");
+    const std::uint64_t more =
+        in.varint_max(kUniformChunksMax - 1, "too many uniform chunks in one entry");
     UniformChunk chunk;
-    chunk.material = static_cast<Material>(in.varint_max(kMaterialCountMax - 1, "material exceeds 16 bits"));
+    chunk.material =
+        static_cast<Material>(in.varint_max(kMaterialCountMax - 1, "material exceeds 16 bits"));
     chunk.version.epoch = static_cast<Epoch>(in.varint_max(0xffff'ffff, "epoch exceeds 32 bits"));
     if (chunk.version.epoch != 0) {
       chunk.version.seq = in.varint_max(kSequenceMax, "sequence exceeds 63 bits");
-      if (chunk.version.seq == 0) in.reject(ErrorCode::bad_value, "uniform chunk's version is half zero");
+      if (chunk.version.seq == 0)
+        in.reject(ErrorCode::bad_value, "uniform chunk's version is half zero");
     }
     if (!in.ok()) break;
     at = {x, y, z};

@@ -42,7 +42,8 @@ inline bool take_text(const flatbuffers::String* from, std::size_t bytes_min, st
 }
 
 /// Whether a chunk of this coordinate has a voxel inside the world, so that its voxels' positions fit i32.
-inline bool take_coord(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t edge, ChunkCoord& to) {
+inline bool take_coord(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t edge,
+                       ChunkCoord& to) {
   to = {x, y, z};
   const std::int32_t reach = kWorldLimit / edge;
   const auto inside = [reach](std::int32_t c) { return c >= -reach && c < reach; };
@@ -71,7 +72,9 @@ inline bool take_digest(const wire::Digest* from, Digest& to) {
 inline bool take_position(const wire::Position* from, WorldPos& to) {
   if (from == nullptr) return false;
   to = {from->x(), from->y(), from->z()};
-  const auto inside = [](double c) { return std::fabs(c) <= kWorldLimit; };  // so written, a NaN is outside
+  const auto inside = [](double c) {
+    return std::fabs(c) <= kWorldLimit;
+  };  // so written, a NaN is outside
   return inside(to.x) && inside(to.y) && inside(to.z);
 }
 

@@ -35,7 +35,8 @@ Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes) {
   s.body.resize(bytes);
   const std::size_t size =
       ZSTD_decompressDCtx(s.decompressor.get(), s.body.data(), bytes, frame.data(), frame.size());
-  if (ZSTD_isError(size) != 0 || size != bytes) return fail(ErrorCode::bad_checksum, "zstd frame is damaged");
+  if (ZSTD_isError(size) != 0 || size != bytes)
+    return fail(ErrorCode::bad_checksum, "zstd frame is damaged");
   return ByteView(s.body);
 }
 

@@ -57,7 +57,8 @@ std::optional<Number> number_of(std::string_view text) {
 /// Takes the words of a command one after another; remembers the first mistake.
 class Reader {
  public:
-  Reader(const Words& words, std::size_t next, TimeUs now_us) : words_(words), next_(next), now_us_(now_us) {}
+  Reader(const Words& words, std::size_t next, TimeUs now_us)
+      : words_(words), next_(next), now_us_(now_us) {}
 
   /// Whether the next word is this one, which is taken then.
   bool take_word(std::string_view word) {
@@ -126,8 +127,9 @@ bool take_filter(Reader& reader, CommandFilter& filter) {
     reader.take("", "");
     std::array<std::int32_t, 6> c{};
     for (std::int32_t& number : c) number = reader.coordinate();
-    filter.box = VoxelBox{{std::min(c[0], c[3]), std::min(c[1], c[4]), std::min(c[2], c[5])},
-                          {std::max(c[0], c[3]) + 1, std::max(c[1], c[4]) + 1, std::max(c[2], c[5]) + 1}};
+    filter.box =
+        VoxelBox{{std::min(c[0], c[3]), std::min(c[1], c[4]), std::min(c[2], c[5])},
+                 {std::max(c[0], c[3]) + 1, std::max(c[1], c[4]) + 1, std::max(c[2], c[5]) + 1}};
   } else if (word == "cause") {
     reader.take("", "");
     const std::string name = reader.take(word, "player, console, rollback, undo, redo or import");
@@ -171,13 +173,15 @@ Result<Command, std::string> preview_command(Reader reader) {
       continue;
     }
     if (take_filter(reader, preview.filter)) continue;
-    return mistake("rollback preview \"" + reader.peek() + "\": author, since, until, box, cause or picture");
+    return mistake("rollback preview \"" + reader.peek() +
+                   "\": author, since, until, box, cause or picture");
   }
   if (!reader.error().empty()) return mistake("rollback preview " + reader.error());
   // A slip of the finger must not select the whole world.
   if (preview.filter == CommandFilter{}) {
     return mistake(
-        "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
+        "rollback preview: say whose edits, when, where or why: author, since, until, box or "
+        "cause");
   }
   return Command(preview);
 }
@@ -188,7 +192,8 @@ Result<Command, std::string> rollback_command(const Words& words, TimeUs now_us)
   const std::string& verb = words[1];
   if (verb == "preview") return preview_command(Reader(words, 2, now_us));
   if (verb == "list") {
-    if (words.size() > 2) return mistake("rollback list \"" + words[2] + "\": nothing comes after list");
+    if (words.size() > 2)
+      return mistake("rollback list \"" + words[2] + "\": nothing comes after list");
     return Command(RollbackListCommand{});
   }
   RollbackCommand command;
@@ -224,12 +229,14 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
   if (name == "undo") plain = UndoCommand{false};
   if (name == "redo") plain = UndoCommand{true};
   if (!plain) return mistake("\"" + name + "\" is no command: `help` names them");
-  if (words->size() > 1) return mistake(name + " \"" + (*words)[1] + "\": nothing comes after " + name);
+  if (words->size() > 1)
+    return mistake(name + " \"" + (*words)[1] + "\": nothing comes after " + name);
   return *plain;
 }
 
 bool is_for_everybody(const Command& command) {
-  return std::holds_alternative<HelpCommand>(command) || std::holds_alternative<UndoCommand>(command);
+  return std::holds_alternative<HelpCommand>(command) ||
+         std::holds_alternative<UndoCommand>(command);
 }
 
 std::string command_help(bool is_operator) {
@@ -243,7 +250,8 @@ std::string command_help(bool is_operator) {
          "players                   who is here, and who has ever built\n"
          "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
          "rollback preview FILTERS [picture]\n"
-         "                          what taking these edits back would do; draws the area before and after\n"
+         "                          what taking these edits back would do; draws the area before "
+         "and after\n"
          "rollback apply ID         do it; people go on playing, and what they built since stays\n"
          "rollback cancel ID        stop it, or forget a preview\n"
          "rollback undo ID          take a rollback back\n"

@@ -67,8 +67,9 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, StopCommand, UndoCommand, LogCommand,
-                             RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
+using Command =
+    std::variant<HelpCommand, StatusCommand, PlayersCommand, StopCommand, UndoCommand, LogCommand,
+                 RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
 
 /// One line without its line break, kCommandBytesMax at most. Words are parted by blanks; a word with blanks in it stands in double
 /// quotes. `now_us`: UTC, what "since 1h" counts from. The error is one line for whoever typed it.

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "common/os/progress_line.hpp"
-#include "server/store/world_folder.hpp"
 #include "server/history/keyframe_maker.hpp"
+#include "server/store/world_folder.hpp"
 
 namespace runstone {
 namespace {
@@ -16,9 +16,9 @@ constexpr TimeUs kDayUs = 86'400'000'000;
 
 Unexpected<std::string> failure(const StoreError& error) {
   if (error.kind != StoreError::Kind::full) return {error.message()};
-  return {
-      error.message() +
-      ". The disk is full: nothing was lost, and the world stands as before; make room and compact again"};
+  return {error.message() +
+          ". The disk is full: nothing was lost, and the world stands as before; make room and "
+          "compact again"};
 }
 
 std::uint64_t bytes_of(const std::string& file) {
@@ -29,8 +29,8 @@ std::uint64_t bytes_of(const std::string& file) {
 
 }  // namespace
 
-Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us, std::ostream& out,
-                                        const SqliteOptions& options) {
+Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us,
+                                        std::ostream& out, const SqliteOptions& options) {
   auto opened = open_sqlite_world(request.world, StoreAccess::read_write, options);
   if (!opened) return failure(opened.error());
   Store& store = **opened;
@@ -42,17 +42,20 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
   const auto head = store.log_head();
   if (!head) return failure(head.error());
   const bool is_any_older = range->first <= range->last.version.seq && cut_us >= head->time_us;
-  const auto found = is_any_older ? store.sequence_at(cut_us) : StoreResult<Sequence>(range->first - 1);
+  const auto found =
+      is_any_older ? store.sequence_at(cut_us) : StoreResult<Sequence>(range->first - 1);
   if (!found) return failure(found.error());
   const Sequence at = *found;
   if (at < range->first) {
-    out << "nothing to compact: no edit of the log is older than " << request.keep_days << " days\n";
+    out << "nothing to compact: no edit of the log is older than " << request.keep_days
+        << " days\n";
     return {};
   }
   const auto keyframes = store.keyframes();
   if (!keyframes) return failure(keyframes.error());
-  const bool is_there = std::any_of(keyframes->begin(), keyframes->end(),
-                                    [&](const Keyframe& keyframe) { return keyframe.at.version.seq == at; });
+  const bool is_there =
+      std::any_of(keyframes->begin(), keyframes->end(),
+                  [&](const Keyframe& keyframe) { return keyframe.at.version.seq == at; });
   if (!is_there) {
     ProgressLine line("edits read", request.progress);
     KeyframeMaker maker(store, **generator, {});
@@ -73,10 +76,11 @@ Result<void, std::string> compact_world(const CompactRequest& request, TimeUs no
       << range->last.version.seq - at << " edits stay\n";
   if (!request.shrink) return {};
   if (const auto shrunk = store.shrink(); !shrunk) {
-    return Unexpected<std::string>{shrunk.error().message() +
-                                   ". The world is compacted and sound, but its file keeps the free space, "
-                                   "which new edits will use; to give it back, make room for "
-                                   "a second copy of the world and run VACUUM"};
+    return Unexpected<std::string>{
+        shrunk.error().message() +
+        ". The world is compacted and sound, but its file keeps the free space, "
+        "which new edits will use; to give it back, make room for "
+        "a second copy of the world and run VACUUM"};
   }
   out << "file        " << before << " bytes before, " << bytes_of(store.file()) << " now\n";
   return {};

@@ -18,7 +18,7 @@ struct CompactRequest {
 
 /// `now_us`: UTC. Prints what it did, or that there is nothing to do. The error is one line; the world then stands as before, or, if
 /// only the space could not be given back, compacted, which is said.
-Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us, std::ostream& out,
-                                        const SqliteOptions& options = {});
+Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us,
+                                        std::ostream& out, const SqliteOptions& options = {});
 
 }  // namespace runstone

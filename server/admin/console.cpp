@@ -30,20 +30,22 @@ void Console::close() {
 }
 
 void Console::read() {
-  input_.async_read_some(
-      asio::buffer(in_), [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
-        if (error == asio::error::operation_aborted || !self->input_.is_open()) return;
-        if (error == asio::error::eof) {
-          // It may have been cut off: half a command could be another one.
-          if (!self->line_.empty()) self->out_ << "the last line has no end, and is left out" << std::endl;
-          return;
-        }
-        if (error) {  // EIO: a terminal that is gone, or that this program is in the background of
-          return self->on_failure_("console: standard input cannot be read any more: " + error.message());
-        }
-        self->take(std::string_view(self->in_.data(), bytes));
-        self->read();
-      });
+  input_.async_read_some(asio::buffer(in_), [self = shared_from_this()](
+                                                const asio::error_code& error, std::size_t bytes) {
+    if (error == asio::error::operation_aborted || !self->input_.is_open()) return;
+    if (error == asio::error::eof) {
+      // It may have been cut off: half a command could be another one.
+      if (!self->line_.empty())
+        self->out_ << "the last line has no end, and is left out" << std::endl;
+      return;
+    }
+    if (error) {  // EIO: a terminal that is gone, or that this program is in the background of
+      return self->on_failure_("console: standard input cannot be read any more: " +
+                               error.message());
+    }
+    self->take(std::string_view(self->in_.data(), bytes));
+    self->read();
+  });
 }
 
 void Console::take(std::string_view bytes) {
@@ -55,7 +57,8 @@ void Console::take(std::string_view bytes) {
     if (!is_too_long_ && line_.size() + part.size() > kCommandBytesMax) {
       is_too_long_ = true;
       line_.clear();
-      out_ << "a command has at most " << kCommandBytesMax << " bytes: this line is left out" << std::endl;
+      out_ << "a command has at most " << kCommandBytesMax << " bytes: this line is left out"
+           << std::endl;
     }
     if (!is_too_long_) line_ += part;
     if (!ends) continue;

@@ -14,13 +14,13 @@
 #include <string_view>
 
 #include "common/core/result.hpp"
-#include "server/rollback/desk_reply.hpp"
+#include "server/rollback/command_reply.hpp"
 
 namespace runstone {
 
 class Console : public std::enable_shared_from_this<Console> {
  public:
-  using Handler = std::function<void(const std::string& line, DeskReply reply)>;
+  using Handler = std::function<void(const std::string& line, CommandReply reply)>;
   /// Is told, once, why nothing more is read although the input has not ended.
   using OnFailure = std::function<void(const std::string& line)>;
 

@@ -33,7 +33,8 @@ constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 /// One connection: reads a line, has it carried out, writes the answer, reads the next.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler, std::shared_ptr<int> slot)
+  Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler,
+             std::shared_ptr<int> slot)
       : socket_(std::move(socket)),
         strand_(std::move(strand)),
         handler_(std::move(handler)),
@@ -52,16 +53,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read() {
     asio::async_read_until(
         socket_, asio::dynamic_buffer(in_, kCommandBytesMax + 1), '\n',
-        asio::bind_executor(strand_,
-                            [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
-                              if (error) return;  // gone, or a line without end
-                              const std::string line = self->in_.substr(0, bytes - 1);
-                              self->in_.erase(0, bytes);
-                              self->is_busy_ = true;
-                              self->handler_(line, [self](const DeskAnswer& answer) {
-                                asio::post(self->strand_, [self, answer] { self->answer(answer); });
-                              });
-                            }));
+        asio::bind_executor(
+            strand_, [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
+              if (error) return;  // gone, or a line without end
+              const std::string line = self->in_.substr(0, bytes - 1);
+              self->in_.erase(0, bytes);
+              self->is_busy_ = true;
+              self->handler_(line, [self](const DeskAnswer& answer) {
+                asio::post(self->strand_, [self, answer] { self->answer(answer); });
+              });
+            }));
   }
 
  private:
@@ -79,16 +80,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void write() {
-    asio::async_write(socket_, asio::buffer(out_.front()),
-                      asio::bind_executor(strand_, [self = shared_from_this()](const asio::error_code& error,
-                                                                               std::size_t /*bytes*/) {
-                        if (error) return;
-                        self->out_.pop_front();
-                        if (!self->out_.empty()) return self->write();
-                        if (!std::exchange(self->is_done_, false)) return;
-                        self->is_busy_ = false;
-                        self->is_finishing_ ? self->close() : self->read();
-                      }));
+    asio::async_write(
+        socket_, asio::buffer(out_.front()),
+        asio::bind_executor(strand_, [self = shared_from_this()](const asio::error_code& error,
+                                                                 std::size_t /*bytes*/) {
+          if (error) return;
+          self->out_.pop_front();
+          if (!self->out_.empty()) return self->write();
+          if (!std::exchange(self->is_done_, false)) return;
+          self->is_busy_ = false;
+          self->is_finishing_ ? self->close() : self->read();
+        }));
   }
 
   Local::socket socket_;
@@ -119,8 +121,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
           if (error) return self->accept_later();  // too many open files, for one
           // More than so many programs of one user at a time are a mistake: the next one is turned away.
           if (self->slots.use_count() <= static_cast<long>(kConnectionsMax)) {
-            const auto connection =
-                std::make_shared<Connection>(std::move(socket), self->strand, self->handler, self->slots);
+            const auto connection = std::make_shared<Connection>(std::move(socket), self->strand,
+                                                                 self->handler, self->slots);
             std::erase_if(self->connections, [](const auto& gone) { return gone.expired(); });
             self->connections.push_back(connection);
             connection->read();
@@ -131,9 +133,10 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
 
   void accept_later() {
     retry.expires_after(kRetryInterval);
-    retry.async_wait(asio::bind_executor(strand, [self = shared_from_this()](const asio::error_code& error) {
-      if (!error) self->accept();
-    }));
+    retry.async_wait(
+        asio::bind_executor(strand, [self = shared_from_this()](const asio::error_code& error) {
+          if (!error) self->accept();
+        }));
   }
 
   Strand strand;
@@ -148,7 +151,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
 Result<std::string, std::string> control_path(const std::string& world) {
   const std::string path = (std::filesystem::path(world) / kControlSocketName).string();
   if (path.size() <= kPathBytesMax) return path;
-  return Unexpected<std::string>{path + ": a socket's path has at most " + std::to_string(kPathBytesMax) +
+  return Unexpected<std::string>{path + ": a socket's path has at most " +
+                                 std::to_string(kPathBytesMax) +
                                  " bytes: use a shorter or a relative path to the world"};
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/core/result.hpp"
-#include "server/rollback/rollback_desk.hpp"
+#include "server/rollback/rollback_service.hpp"
 
 namespace runstone {
 
@@ -21,7 +21,7 @@ Result<std::string, std::string> control_path(const std::string& world);
 class ControlSocket {
  public:
   /// Carries out one line; the reply may be called from any thread, the last time with is_done.
-  using Handler = std::function<void(const std::string& line, DeskReply reply)>;
+  using Handler = std::function<void(const std::string& line, CommandReply reply)>;
 
   /// Replaces a socket that a server which died left behind: the caller holds the world's lock, so nobody else
   /// listens. Fails if the path is too long or the folder cannot be written.

@@ -26,10 +26,12 @@ const char* name_of(EditKind kind) {
 
 }  // namespace
 
-std::string log_line(const EditRecord& record, const std::string& author, const MaterialTable& materials) {
+std::string log_line(const EditRecord& record, const std::string& author,
+                     const MaterialTable& materials) {
   const VoxelBox box = bounding_box(record.edit);
   const EditKind kind = kind_of(record.edit);
-  std::string line = std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
+  std::string line =
+      std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
   line += name_of(record.cause);
   if (record.subject != 0) line += " of " + std::to_string(record.subject);
   line += std::string(" ") + name_of(kind) + " " + text_of(box.min);

@@ -27,7 +27,8 @@ Result<std::set<PublicKey>, std::string> parse_operators(std::string_view text) 
     const std::string_view word = text.substr(at, end - at);
     PublicKey key{};
     if (!read_key(word, key)) {
-      return Unexpected<std::string>{"\"" + std::string(word) + "\" is no public key: 64 hexadecimal digits"};
+      return Unexpected<std::string>{"\"" + std::string(word) +
+                                     "\" is no public key: 64 hexadecimal digits"};
     }
     keys.insert(key);
     at = end;

@@ -36,19 +36,21 @@ std::optional<std::string> wrong_operators(const std::string& text) {
 
 const std::vector<Field>& fields() {
   using C = ServerConfig;
-  const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min, std::uint64_t max,
-                         const std::string& what) {
+  const auto number = [](const char* name, std::uint64_t C::* member, std::uint64_t min,
+                         std::uint64_t max, const std::string& what) {
     std::string range = what + ", " + std::to_string(min);
     range += max == kNoMax ? " or more" : ".." + std::to_string(max);
     return Field{name, range, NumberField{member, min, max}};
   };
   static const std::vector<Field> all = {
       {"world", "folder of the world", TextField{&C::world, {}, nullptr}},
-      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen, {}, nullptr}},
+      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one",
+       TextField{&C::listen, {}, nullptr}},
       {"log_level", "debug, info, warn or error",
        TextField{&C::log_level, {"debug", "info", "warn", "error"}, nullptr}},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
-      number("worker_threads", &C::worker_threads, 1, 64, "threads that generate, load and encode chunks"),
+      number("worker_threads", &C::worker_threads, 1, 64,
+             "threads that generate, load and encode chunks"),
       number("sessions_max", &C::sessions_max, 1, 65'536, "sessions"),
       number("handshakes_per_address", &C::handshakes_per_address, 1, 65'536,
              "connections from one address that have not authenticated"),
@@ -58,7 +60,8 @@ const std::vector<Field>& fields() {
       {"encoding", "packed, raw or coded (smallest, slowest), where the client reads it",
        TextField{&C::encoding, {"packed", "raw", "coded"}, nullptr}},
       number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
-      number("messages_per_second", &C::messages_per_second, 0, kNoMax, "messages per session, 0: no limit"),
+      number("messages_per_second", &C::messages_per_second, 0, kNoMax,
+             "messages per session, 0: no limit"),
       number("read_kib_per_second", &C::read_kib_per_second, 0, 1ULL << 30,
              "KiB a second from each session, beyond which reading waits, 0: no limit"),
       number("control_queue_kib", &C::control_queue_kib, 64, 1'048'576, "KiB per session"),
@@ -68,7 +71,8 @@ const std::vector<Field>& fields() {
              "KiB a second to each session, beyond which terrain waits, 0: no limit"),
       number("server_kib_per_second", &C::server_kib_per_second, 0, 1ULL << 30,
              "KiB a second to all sessions together, likewise, 0: no limit"),
-      {"operators", "public keys in hex of those who may give every command, parted by blanks or commas",
+      {"operators",
+       "public keys in hex of those who may give every command, parted by blanks or commas",
        TextField{&C::operators, {}, wrong_operators}},
       number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
       number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
@@ -77,23 +81,27 @@ const std::vector<Field>& fields() {
       number("edits_per_second", &C::edits_per_second, 0, kNoMax,
              "edits per session, 0: no limit; one for each chunk that an edit touches"),
       number("edit_burst", &C::edit_burst, 1, 1'000'000, "edits per session at once"),
-      number("memory_mib", &C::memory_mib, 16, 1'048'576, "MiB of chunks before unused ones leave memory"),
-      number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000, "edits between two rounds of snapshots"),
+      number("memory_mib", &C::memory_mib, 16, 1'048'576,
+             "MiB of chunks before unused ones leave memory"),
+      number("snapshot_edits", &C::snapshot_edits, 1, 1'000'000'000,
+             "edits between two rounds of snapshots"),
       number("snapshot_s", &C::snapshot_s, 1, 86'400, "seconds between two rounds of snapshots"),
       number("keyframe_edits", &C::keyframe_edits, 0, 1'000'000'000,
              "edits between two keyframes, at least, 0: none"),
       number("log_queue_records", &C::log_queue_records, 1, 10'000'000,
              "records until edits are rejected busy"),
-      number("audit_ms", &C::audit_ms, 10, 3'600'000, "milliseconds between two audits of a session"),
+      number("audit_ms", &C::audit_ms, 10, 3'600'000,
+             "milliseconds between two audits of a session"),
       number("audit_chunks", &C::audit_chunks, 0, 1'024, "digests per audit, 0: none"),
-      number("counters_s", &C::counters_s, 0, 86'400, "seconds between two lines of counters, 0: never"),
+      number("counters_s", &C::counters_s, 0, 86'400,
+             "seconds between two lines of counters, 0: never"),
   };
   return all;
 }
 
 const Field* find(std::string_view name) {
-  const auto found =
-      std::find_if(fields().begin(), fields().end(), [&](const Field& f) { return f.name == name; });
+  const auto found = std::find_if(fields().begin(), fields().end(),
+                                  [&](const Field& f) { return f.name == name; });
   return found == fields().end() ? nullptr : &*found;
 }
 
@@ -106,7 +114,8 @@ std::optional<std::string> assign(ServerConfig& config, const Field& field, std:
   return std::nullopt;
 }
 
-std::optional<std::string> assign(ServerConfig& config, const Field& field, const std::string& value) {
+std::optional<std::string> assign(ServerConfig& config, const Field& field,
+                                  const std::string& value) {
   const auto* text = std::get_if<TextField>(&field.kind);
   if (text == nullptr) return "must be a whole number: " + field.help;
   if (text->wrong != nullptr) {
@@ -139,10 +148,13 @@ std::vector<ConfigField> config_fields() {
   return all;
 }
 
-std::string environment_name(const std::string& field) { return "RUNSTONE_" + with(field, '_', '_', true); }
+std::string environment_name(const std::string& field) {
+  return "RUNSTONE_" + with(field, '_', '_', true);
+}
 std::string flag_name(const std::string& field) { return "--" + with(field, '_', '-', false); }
 
-Result<void, std::string> set_config(ServerConfig& config, const std::string& name, const std::string& text) {
+Result<void, std::string> set_config(ServerConfig& config, const std::string& name,
+                                     const std::string& text) {
   const Field* field = find(name);
   if (field == nullptr) return Unexpected<std::string>{name + ": no such setting"};
   std::optional<std::string> wrong;
@@ -159,7 +171,8 @@ Result<void, std::string> set_config(ServerConfig& config, const std::string& na
   return {};
 }
 
-Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml, std::string_view file) {
+Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml,
+                                         std::string_view file) {
   const auto wrong = [&](std::uint32_t line, std::string_view key, std::string_view what) {
     return Unexpected<TextError>{{std::string(file), line, std::string(key), std::string(what)}};
   };
@@ -189,7 +202,8 @@ Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view 
 }
 
 Result<void, std::string> read_config_environment(
-    ServerConfig& config, const std::function<std::optional<std::string>(const std::string&)>& look_up) {
+    ServerConfig& config,
+    const std::function<std::optional<std::string>(const std::string&)>& look_up) {
   for (const Field& field : fields()) {
     const auto text = look_up(environment_name(field.name));
     if (!text) continue;

@@ -24,18 +24,20 @@ struct ServerConfig {
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
   // Sessions.
-  std::uint64_t sessions_max = 256;            // 1..65536
-  std::uint64_t handshakes_per_address = 32;   // connections not yet authenticated, 1..65536
-  std::uint64_t view_radius_max = 16;          // chunks, 0..64
-  std::uint64_t view_interval_ms = 50;         // between two views of a session that take effect, 0..10000
-  std::string encoding = "packed";             // packed, raw or coded, where the client reads it
-  std::uint64_t idle_s = 60;                   // seconds without a message, 5..86400
+  std::uint64_t sessions_max = 256;           // 1..65536
+  std::uint64_t handshakes_per_address = 32;  // connections not yet authenticated, 1..65536
+  std::uint64_t view_radius_max = 16;         // chunks, 0..64
+  std::uint64_t view_interval_ms = 50;  // between two views of a session that take effect, 0..10000
+  std::string encoding = "packed";      // packed, raw or coded, where the client reads it
+  std::uint64_t idle_s = 60;            // seconds without a message, 5..86400
   std::uint64_t messages_per_second = 10'000;  // per session, 0: no limit
-  std::uint64_t read_kib_per_second = 1'024;   // from each session: beyond it reading waits, 0: no limit
-  std::uint64_t control_queue_kib = 16'384;    // per session, KiB, 64..1048576
-  std::uint64_t edit_queue_kib = 4'096;        // per session, KiB, 64..1048576
-  std::uint64_t chunk_queue_kib = 4'096;       // per session, KiB, 64..1048576
-  std::uint64_t session_kib_per_second = 0;    // to each session: beyond it terrain waits, 0: no limit
+  std::uint64_t read_kib_per_second =
+      1'024;  // from each session: beyond it reading waits, 0: no limit
+  std::uint64_t control_queue_kib = 16'384;  // per session, KiB, 64..1048576
+  std::uint64_t edit_queue_kib = 4'096;      // per session, KiB, 64..1048576
+  std::uint64_t chunk_queue_kib = 4'096;     // per session, KiB, 64..1048576
+  std::uint64_t session_kib_per_second =
+      0;  // to each session: beyond it terrain waits, 0: no limit
   std::uint64_t server_kib_per_second =
       0;  // to all together, shared by those with terrain to send, 0: no limit
   std::string
@@ -70,12 +72,15 @@ std::string environment_name(const std::string& field);
 std::string flag_name(const std::string& field);
 
 /// Sets one field from text (environment, flag). The error says what is wrong with which value.
-Result<void, std::string> set_config(ServerConfig& config, const std::string& field, const std::string& text);
+Result<void, std::string> set_config(ServerConfig& config, const std::string& field,
+                                     const std::string& text);
 /// Sets the fields a TOML file names; unknown keys and wrong types are errors with their line.
-Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml, std::string_view file);
+Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml,
+                                         std::string_view file);
 /// Sets the fields the environment names; `look_up` is getenv.
 Result<void, std::string> read_config_environment(
-    ServerConfig& config, const std::function<std::optional<std::string>(const std::string&)>& look_up);
+    ServerConfig& config,
+    const std::function<std::optional<std::string>(const std::string&)>& look_up);
 /// All fields as TOML that read_config_toml() reads back; for --print-config.
 std::string to_toml(const ServerConfig& config);
 

@@ -57,16 +57,17 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            std::function<void()> on_stop) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
   // A start that cannot serve leaves no trace: neither a new world nor, below, a raised epoch.
-  if (const auto free = can_listen(config.listen); !free) return Unexpected<std::string>{free.error()};
+  if (const auto free = can_listen(config.listen); !free)
+    return Unexpected<std::string>{free.error()};
   auto world = open_or_create_world(config.world, creation);
   if (!world) return Unexpected<std::string>{world.error()};
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->world = *std::move(world);
   parts->workers = patient_workers(config.worker_threads);
-  parts->core =
-      std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config, *parts->world.store,
-                                   *parts->world.generator, std::move(on_failure), std::move(on_stop));
+  parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config,
+                                             *parts->world.store, *parts->world.generator,
+                                             std::move(on_failure), std::move(on_stop));
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
   if (const auto recovered = parts->core->recover(config.world); !recovered) {
@@ -74,10 +75,11 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   }
   parts->work.emplace(parts->io.get_executor());
   parts->core->start();
-  auto control = ControlSocket::listen(parts->io, config.world,
-                                       [core = parts->core.get()](const std::string& line, DeskReply reply) {
-                                         core->command(line, std::move(reply));
-                                       });
+  auto control = ControlSocket::listen(
+      parts->io, config.world,
+      [core = parts->core.get()](const std::string& line, CommandReply reply) {
+        core->command(line, std::move(reply));
+      });
   if (control) {
     parts->control = *std::move(control);
   } else {
@@ -88,11 +90,13 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   }
   parts->is_running = true;
   if (!parts->world.is_new && creation != WorldCreation{}) {
-    logger("app").warn("world={} exists: the flags that say how to make one are ignored", config.world);
+    logger("app").warn("world={} exists: the flags that say how to make one are ignored",
+                       config.world);
   }
   if (parts->world.is_readable_by_others) {
-    logger("app").warn("file={} can be read by other users, and with it the world's secret key: chmod 600 it",
-                       parts->world.store->file());
+    logger("app").warn(
+        "file={} can be read by other users, and with it the world's secret key: chmod 600 it",
+        parts->world.store->file());
   }
   logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
                      parts->world.is_new);
@@ -100,7 +104,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
 }
 
 std::uint16_t Server::port() const { return parts_->core->port(); }
-void Server::command(const std::string& line, DeskReply reply) {
+void Server::command(const std::string& line, CommandReply reply) {
   parts_->core->command(line, std::move(reply));
 }
 void Server::log_counters() { parts_->core->log_counters(); }

@@ -9,8 +9,8 @@
 #include "common/core/result.hpp"
 #include "server/admin/server_config.hpp"
 #include "server/app/stop_report.hpp"
+#include "server/rollback/rollback_service.hpp"
 #include "server/store/world_folder.hpp"
-#include "server/rollback/rollback_desk.hpp"
 
 namespace runstone {
 
@@ -20,8 +20,8 @@ class Server {
   /// overwritten. `on_failure` is called once, from another thread, if the log cannot be written any more:
   /// the caller then stops the server. `on_stop` likewise, for an operator who asks for it.
   static Result<std::unique_ptr<Server>, std::string> start(
-      const ServerConfig& config, const WorldCreation& creation, std::function<void()> on_failure = [] {},
-      std::function<void()> on_stop = [] {});
+      const ServerConfig& config, const WorldCreation& creation,
+      std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {});
   /// stop(), if nobody did.
   ~Server();
 
@@ -29,7 +29,7 @@ class Server {
   void log_counters();
   /// Carries out a command as an operator. The replies come from another thread, the last one is done; none may
   /// come once the server has stopped.
-  void command(const std::string& line, DeskReply reply);
+  void command(const std::string& line, CommandReply reply);
   /// Goodbyes, drains the log, writes all snapshots, ends all threads. Blocks. Once.
   StopReport stop();
 

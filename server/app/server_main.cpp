@@ -16,12 +16,12 @@
 #include <optional>
 #include <string>
 
-#include "common/runs/dense.hpp"
 #include "common/os/open_files.hpp"
+#include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
-#include "server/runtime/logging.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
+#include "server/runtime/logging.hpp"
 
 namespace runstone {
 namespace {
@@ -61,8 +61,9 @@ void allow_files_for(const ServerConfig& config) {
   const std::size_t needed = config.sessions_max + 256;
   const std::size_t allowed = allow_open_files(needed);
   if (allowed >= needed) return;
-  logger("app").warn("sessions_max={} needs {} open files, and the hard limit is {}: see ulimit -Hn",
-                     config.sessions_max, needed, allowed);
+  logger("app").warn(
+      "sessions_max={} needs {} open files, and the hard limit is {}: see ulimit -Hn",
+      config.sessions_max, needed, allowed);
 }
 
 /// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes
@@ -118,16 +119,18 @@ int run(const ServerOptions& options) {
   if (!server) return cannot_start(server.error());
   std::shared_ptr<Console> console;
   if (options.console || ::isatty(STDIN_FILENO) == 1) {
-    const auto run_line = [&server](const std::string& line, DeskReply reply) {
+    const auto run_line = [&server](const std::string& line, CommandReply reply) {
       (*server)->command(line, std::move(reply));
     };
-    auto opened = Console::open(main_loop, run_line,
-                                [](const std::string& failure) { logger("app").error("{}", failure); });
+    auto opened = Console::open(main_loop, run_line, [](const std::string& failure) {
+      logger("app").error("{}", failure);
+    });
     if (opened) console = *opened;
     if (!opened) logger("app").error("{}", opened.error());
   }
   if (!options.port_file.empty()) {
-    const auto written = write_text_file(options.port_file, std::to_string((*server)->port()) + "\n");
+    const auto written =
+        write_text_file(options.port_file, std::to_string((*server)->port()) + "\n");
     if (!written) return cannot_start(written.error().message());
   }
   signals.wait_for_the_end(**server);

@@ -14,21 +14,29 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   CLI::App app{"Runstone world server"};
   // The last one wins, so that arguments added to a fixed command line (a container's) change it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.set_version_flag("--version", "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
-  app.add_option("--config", out.config_file, "TOML file of settings; environment and flags win over it");
+  app.set_version_flag("--version",
+                       "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
+  app.add_option("--config", out.config_file,
+                 "TOML file of settings; environment and flags win over it");
   app.add_flag("--print-config", out.print_config, "print all settings as TOML and exit");
   app.add_option("--port-file", out.port_file, "write the port here once the server listens");
-  app.add_option("--digests", out.digests_file, "write the digests of all edited chunks here on stop");
-  app.add_flag("--console", out.console, "read commands from standard input, also if it is no terminal");
-  app.add_option("--generator", out.creation.generator, "new world: empty, flat, terrain or scenario");
-  app.add_option("--generator-parameters", out.creation.generator_parameters, "new world: TOML text");
+  app.add_option("--digests", out.digests_file,
+                 "write the digests of all edited chunks here on stop");
+  app.add_flag("--console", out.console,
+               "read commands from standard input, also if it is no terminal");
+  app.add_option("--generator", out.creation.generator,
+                 "new world: empty, flat, terrain or scenario");
+  app.add_option("--generator-parameters", out.creation.generator_parameters,
+                 "new world: TOML text");
   app.add_option("--seed", out.creation.seed, "new world: seed of the generator");
-  app.add_option("--edge", out.creation.edge, "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
+  app.add_option("--edge", out.creation.edge,
+                 "new world: edge of a chunk, 16, 32, 64 or 128 voxels");
   app.add_option("--materials", out.creation.materials_file, "new world: TOML file of materials");
   for (const ConfigField& field : config_fields()) {
     app.add_option_function<std::string>(
            flag_name(field.name),
-           [&out, name = field.name](const std::string& text) { out.settings[name] = text; }, field.help)
+           [&out, name = field.name](const std::string& text) { out.settings[name] = text; },
+           field.help)
         ->group("Settings");
   }
   CLI::App* import = app.add_subcommand("import", "make a new world from a Luanti world");
@@ -38,7 +46,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   import->add_flag("--keep-all", request.keep_all, "keep plants, torches and the like as cubes");
   CompactRequest compact_request;
   bool keep_size = false;
-  CLI::App* compact = app.add_subcommand("compact", "take the oldest part of a world's log into its base");
+  CLI::App* compact =
+      app.add_subcommand("compact", "take the oldest part of a world's log into its base");
   compact->add_option("--world", compact_request.world, "folder of the world; no server may run it")
       ->required();
   compact->add_option("--keep", compact_request.keep_days, "days of the past to keep")

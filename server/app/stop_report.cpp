@@ -10,21 +10,24 @@ namespace {
 
 /// What is wrong with a snapshot (null: there is none) of a chunk that was in memory; nothing if it tells the
 /// same.
-std::optional<std::string> difference(const AuditEntry* stored, const AuditEntry& live) {
+std::optional<std::string> difference(const DigestCheckEntry* stored,
+                                      const DigestCheckEntry& live) {
   if (stored == nullptr) return "is missing, but the chunk was edited";
   if (stored->version != live.version) {
     return "stands at version=" + text_of(stored->version) +
            ", the server stood at version=" + text_of(live.version);
   }
   if (stored->digest != live.digest) {
-    return "has digest=" + to_hex(stored->digest) + ", the server had digest=" + to_hex(live.digest);
+    return "has digest=" + to_hex(stored->digest) +
+           ", the server had digest=" + to_hex(live.digest);
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean) {
+StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
+                  bool is_clean) {
   StopReport report;
   report.is_clean = report.digests.is_clean = is_clean;
   report.live_chunks = live.size();
@@ -36,7 +39,7 @@ StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> l
   if (range) report.digests.seq = range->last.version.seq;
   if (!range) failed(range.error().message());
 
-  std::map<ChunkKey, AuditEntry> entries;
+  std::map<ChunkKey, DigestCheckEntry> entries;
   const auto take_stored = [&](const ChunkKey& key) {
     const auto stored = store.load_snapshot(key);
     if (!stored) failed(stored.error().message());
@@ -49,7 +52,7 @@ StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> l
   }
   for (const auto& [key, chunk] : live) {
     if (!is_clean) break;
-    const AuditEntry entry{key, chunk->version, digest_of(chunk->voxels)};
+    const DigestCheckEntry entry{key, chunk->version, digest_of(chunk->voxels)};
     const auto stored = entries.find(key);
     const auto differs = difference(stored == entries.end() ? nullptr : &stored->second, entry);
     if (differs) failed(store.file() + ": snapshot chunk=" + text_of(key) + ": " + *differs);

@@ -19,7 +19,7 @@ struct StopReport {
   /// what was in memory may contain edits that are lost.
   DigestList digests;
   std::size_t live_chunks = 0;  // edited chunks that were in memory
-  std::string error;            // first row that cannot be read or is not what was in memory; empty if none
+  std::string error;  // first row that cannot be read or is not what was in memory; empty if none
 };
 
 /// The line a program prints last: "stopped seq=… edited_chunks=… live=… world_digest=…", or "stopped unclean

@@ -66,7 +66,8 @@ void DrawChild::close_and_kill() {
 }
 
 DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) {
-  const std::string program = sibling_program(options.program, "RUNSTONE_CLIENT", "runstone-client");
+  const std::string program =
+      sibling_program(options.program, "RUNSTONE_CLIENT", "runstone-client");
   // A pair of sockets instead of two pipes: to write where nobody reads any more is an error then, not a
   // signal.
   std::array<int, 2> ends{-1, -1};
@@ -77,8 +78,9 @@ DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) 
   ::close(ends[1]);
   if (!pid) {
     ::close(ends[0]);
-    return failure(program + ": cannot be started: " + std::strerror(pid.error()) +
-                   "; pictures need runstone-client (--client PATH or RUNSTONE_CLIENT says where it is)");
+    return failure(
+        program + ": cannot be started: " + std::strerror(pid.error()) +
+        "; pictures need runstone-client (--client PATH or RUNSTONE_CLIENT says where it is)");
   }
   DrawChild child(program, *pid, ends[0], options.answer_limit);
   const auto answer = child.await_answer();
@@ -110,13 +112,15 @@ DrawChild::Outcome<void> DrawChild::forget(const ChunkKey& key) {
 DrawChild::Outcome<PictureDrawn> DrawChild::draw(const DrawCamera& camera, PictureSize size,
                                                  const std::string& file) {
   const DrawPicture picture{camera, size, file};
-  if (const auto sound = validate(picture); !sound) return failure(file + ": " + sound.error().what);
+  if (const auto sound = validate(picture); !sound)
+    return failure(file + ": " + sound.error().what);
   append_draw_picture(picture, orders_);
   if (const auto sent = send(); !sent) return failure(sent.error());
   auto answer = await_answer();
   if (!answer) return failure(answer.error());
   if (const auto* failed = std::get_if<DrawFailed>(&*answer)) return lost(failed->text);
-  if (std::holds_alternative<PictureUnwritten>(*answer)) return failure(file + ": cannot be written");
+  if (std::holds_alternative<PictureUnwritten>(*answer))
+    return failure(file + ": cannot be written");
   auto* drawn = std::get_if<PictureDrawn>(&*answer);
   if (drawn == nullptr || drawn->file != file) return lost("answered something that was not asked");
   return std::move(*drawn);
@@ -167,11 +171,13 @@ DrawChild::Outcome<DrawAnswer> DrawChild::await_answer() {
     const std::size_t end = lines_.find('\n');
     if (end != std::string::npos) {
       auto answer = parse_draw_answer(std::string_view(lines_).substr(0, end));
-      if (!answer) return lost("is no program that draws: it answered \"" + lines_.substr(0, end) + "\"");
+      if (!answer)
+        return lost("is no program that draws: it answered \"" + lines_.substr(0, end) + "\"");
       lines_.erase(0, end + 1);
       return *std::move(answer);
     }
-    if (lines_.size() >= kDrawAnswerBytesMax) return lost("is no program that draws: its answer has no end");
+    if (lines_.size() >= kDrawAnswerBytesMax)
+      return lost("is no program that draws: its answer has no end");
     if (const auto ready = wait_for(POLLIN); !ready) return failure(ready.error());
     const auto more = receive();
     if (!more) return failure(more.error());
@@ -183,13 +189,16 @@ DrawChild::Outcome<DrawAnswer> DrawChild::await_answer() {
 DrawChild::Outcome<void> DrawChild::wait_for(short events) {
   const auto end = std::chrono::steady_clock::now() + answer_limit_;
   for (;;) {
-    const auto left = std::chrono::duration_cast<Milliseconds>(end - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<Milliseconds>(end - std::chrono::steady_clock::now());
     if (left.count() <= 0) {
-      return lost("did nothing for " + std::to_string(answer_limit_.count() / 1000) + " s and was stopped");
+      return lost("did nothing for " + std::to_string(answer_limit_.count() / 1000) +
+                  " s and was stopped");
     }
     pollfd poll{socket_, events, 0};
     // In slices, so that no limit is too long for poll().
-    const int count = ::poll(&poll, 1, static_cast<int>(std::min<Milliseconds::rep>(left.count(), 1000)));
+    const int count =
+        ::poll(&poll, 1, static_cast<int>(std::min<Milliseconds::rep>(left.count(), 1000)));
     if (count > 0) return {};
     if (count < 0 && errno != EINTR)
       return lost(std::string("cannot be waited for: ") + std::strerror(errno));

@@ -10,7 +10,7 @@
 namespace runstone {
 namespace {
 
-constexpr double kFovY = 0.8;         // radians: narrower than a player looks, so that towers do not lean
+constexpr double kFovY = 0.8;  // radians: narrower than a player looks, so that towers do not lean
 constexpr double kMargin = 0.94;      // of the picture's sides that the box may fill
 constexpr double kFogStart = 0.6;     // of `far`: the renderer fades from there on
 constexpr double kNearPerFar = 5e-5;  // the depth buffer cannot tell much more apart
@@ -27,7 +27,8 @@ std::array<Vec, 8> corners_of(const VoxelBox& box, double smallest) {
     const double missing = std::max(0.0, smallest - (max - min)) / 2;
     return std::array<double, 2>{min - missing, max + missing};
   };
-  const auto x = side(box.min.x, box.max.x), y = side(box.min.y, box.max.y), z = side(box.min.z, box.max.z);
+  const auto x = side(box.min.x, box.max.x), y = side(box.min.y, box.max.y),
+             z = side(box.min.z, box.max.z);
   std::array<Vec, 8> out;
   for (std::size_t i = 0; i < 8; ++i) out[i] = {x[i & 1], y[i >> 1 & 1], z[i >> 2]};
   return out;

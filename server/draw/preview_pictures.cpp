@@ -17,8 +17,9 @@ namespace {
 
 constexpr PictureSize kSize{960, 540};
 constexpr std::chrono::seconds kAnswerMax{20};
-constexpr std::int32_t kLandAround = 2;  // chunks beside those that change, for people to know the place
-constexpr std::size_t kLandMax = 4096;   // chunks drawn in all
+constexpr std::int32_t kLandAround =
+    2;  // chunks beside those that change, for people to know the place
+constexpr std::size_t kLandMax = 4096;  // chunks drawn in all
 
 VoxelBox united(const VoxelBox& a, const VoxelBox& b) {
   return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
@@ -51,7 +52,8 @@ void PreviewPictures::see(const RestorePlan& plan) {
   }
 }
 
-std::string PreviewPictures::draw(Store& reader, const Generator& generator, const std::string& name) {
+std::string PreviewPictures::draw(Store& reader, const Generator& generator,
+                                  const std::string& name) {
   if (seen_.empty()) return "no picture: nothing would change";
   if (seen_.size() > kChunksMax) {
     return "no picture: more than " + std::to_string(kChunksMax) +

@@ -20,7 +20,8 @@ class PreviewPictures {
   /// Changed chunks in a picture at most; of more there is none.
   static constexpr std::size_t kChunksMax = 1024;
 
-  explicit PreviewPictures(std::string world_folder) : folder_(std::move(world_folder) + "/previews") {}
+  explicit PreviewPictures(std::string world_folder)
+      : folder_(std::move(world_folder) + "/previews") {}
 
   /// A chunk that would change.
   void see(const RestorePlan& plan);
@@ -33,7 +34,8 @@ class PreviewPictures {
     ChunkKey key;
     RunChunk now, restored;
   };
-  Result<void, std::string> draw_both(Store& reader, const Generator& generator, const std::string& name);
+  Result<void, std::string> draw_both(Store& reader, const Generator& generator,
+                                      const std::string& name);
 
   std::string folder_;
   std::vector<Seen> seen_;

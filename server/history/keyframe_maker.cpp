@@ -8,7 +8,8 @@ namespace runstone {
 
 namespace {
 
-constexpr std::size_t kSliceChunks = 32;  // saved in one transaction: edits do not wait long behind it
+constexpr std::size_t kSliceChunks =
+    32;  // saved in one transaction: edits do not wait long behind it
 constexpr Sequence kProgressEdits = 1024;
 
 }  // namespace
@@ -29,7 +30,8 @@ StoreResult<Sequence> KeyframeMaker::next_due(const Progress& progress) {
     read_ = record.version.seq;
     ++edits_;
     for (const ChunkCoord& chunk : touched_chunks(record.edit, edge)) touched_.insert(chunk);
-    if (edits_ >= policy_.edits_min && edits_ / policy_.edits_per_chunk >= touched_.size()) due = *read_;
+    if (edits_ >= policy_.edits_min && edits_ / policy_.edits_per_chunk >= touched_.size())
+      due = *read_;
     if (progress && *read_ % kProgressEdits == 0) is_cancelled = !progress(*read_, last);
     return due == 0 && !is_cancelled;
   });

@@ -13,7 +13,8 @@ constexpr std::size_t kEditOverheadBytes = 8;  // its sequence and its length, a
 StoreResult<bool> is_in_log(Store& store, const Version& version, const VoxelBox& box) {
   const auto range = store.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
-  if (version.seq == 0) return range->first == 1;  // the base, and none of its edits was compacted away
+  if (version.seq == 0)
+    return range->first == 1;  // the base, and none of its edits was compacted away
   if (version.seq < range->first || version.seq > range->last.version.seq) return false;
   bool is_here = false;
   const auto read = store.read_log(version.seq, version.seq, [&](const EditRecord& record) {
@@ -26,8 +27,9 @@ StoreResult<bool> is_in_log(Store& store, const Version& version, const VoxelBox
 
 }  // namespace
 
-StoreResult<std::optional<ChunkEdits>> missing_edits(Store& store, const ChunkKey& key, const Chunk& chunk,
-                                                     const Version& from, std::size_t bytes_max) {
+StoreResult<std::optional<ChunkEdits>> missing_edits(Store& store, const ChunkKey& key,
+                                                     const Chunk& chunk, const Version& from,
+                                                     std::size_t bytes_max) {
   std::optional<ChunkEdits> out;
   const Sequence last = chunk.version.seq;
   if (last - from.seq > kUpdateStretchMax) return out;

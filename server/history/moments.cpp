@@ -24,8 +24,8 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   std::shared_ptr<Kept> moment;
   {
     const std::lock_guard lock(mutex_);
-    const auto found =
-        std::find_if(kept_.begin(), kept_.end(), [at](const auto& kept) { return kept.first == at; });
+    const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                    [at](const auto& kept) { return kept.first == at; });
     if (found != kept_.end()) {
       kept_.splice(kept_.begin(), kept_, found);
     } else {
@@ -46,8 +46,9 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
   const auto stored = (*reader)->stored_moment(at);
   if (!stored) return failed(stored.error());
   if (at - stored->at.version.seq > kEditsMax) {
-    return failed({StoreError::Kind::bad_request, (*reader)->file(), "keyframe",
-                   "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"});
+    return failed(
+        {StoreError::Kind::bad_request, (*reader)->file(), "keyframe",
+         "none is near enough to seq=" + std::to_string(at) + " yet: the moment cannot be shown"});
   }
   auto world = WorldAt::open(**reader, generator_, at);
   if (!world) return failed(world.error());

@@ -41,8 +41,8 @@ StoreResult<Sequence> sequence_of(Store& reader, const NamedMoment& moment) {
   };
   if (const auto* sequence = std::get_if<Sequence>(&moment)) {
     if (*sequence + 1 < range->first) {
-      return refuse("begins at seq=" + std::to_string(range->first) + ": seq=" + std::to_string(*sequence) +
-                    " was compacted away");
+      return refuse("begins at seq=" + std::to_string(range->first) +
+                    ": seq=" + std::to_string(*sequence) + " was compacted away");
     }
     if (*sequence <= range->last.version.seq) return *sequence;
     return refuse("ends at seq=" + std::to_string(range->last.version.seq) +

@@ -132,8 +132,9 @@ StoreResult<Chunk> WorldAt::chunk(const ChunkKey& key) {
   const Edited* edited = found == chunks_.end() ? nullptr : &found->second;
   auto chunk = start_of(key, edited);
   if (!chunk || edited == nullptr || edited->edits.empty()) return chunk;
-  FollowedChunk followed(*std::move(chunk), origin_of(key.at, edge_));
-  for (const std::uint32_t edit : edited->edits) followed.add(edits_[edit], versions_[edit], scratch_);
+  ReplayedChunk followed(*std::move(chunk), origin_of(key.at, edge_));
+  for (const std::uint32_t edit : edited->edits)
+    followed.add(edits_[edit], versions_[edit], scratch_);
   followed.settle(scratch_);
   followed.chunk().voxels = in_cheapest_order(std::move(followed.chunk().voxels));
   return std::move(followed.chunk());

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/store/store.hpp"
 

@@ -38,7 +38,8 @@ StoreResult<Between> read_between(Store& reader, Sequence from, Sequence to,
   bool is_cancelled = false;
   const auto read = reader.read_log(from + 1, to, [&](const EditRecord& record) {
     const auto index = static_cast<std::uint32_t>(between.edits.size());
-    for (const ChunkCoord& at : touched_chunks(record.edit, edge)) between.chunks[at].push_back(index);
+    for (const ChunkCoord& at : touched_chunks(record.edit, edge))
+      between.chunks[at].push_back(index);
     between.edits.push_back({record.edit, record.op.author});
     if (progress && record.version.seq % kProgressEdits == 0)
       is_cancelled = !progress(record.version.seq, to);
@@ -102,8 +103,8 @@ class ChunkDiff {
 
 }  // namespace
 
-StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from, Sequence to,
-                                  const WorldAt::Progress& progress) {
+StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from,
+                                  Sequence to, const WorldAt::Progress& progress) {
   const auto last = reader.last_sequence();
   if (!last) return Unexpected<StoreError>{last.error()};
   if (from > to || to > *last) {
@@ -132,8 +133,9 @@ StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Seq
     ChunkDiff chunk(std::move(start->voxels), origin_of(at, reader.meta().chunk_edge));
     for (const std::uint32_t index : touching) {
       if (!chunk.add(between->edits[index], scratch, result)) {
-        return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader.file(), "chunk=" + text_of(key),
-                                       "was written by more than 65535 authors between these moments"}};
+        return Unexpected<StoreError>{
+            {StoreError::Kind::bad_request, reader.file(), "chunk=" + text_of(key),
+             "was written by more than 65535 authors between these moments"}};
       }
     }
     const std::uint64_t changed = chunk.count(voxels);

@@ -33,7 +33,7 @@ struct WorldDiff {
 };
 
 /// Requires from <= to. Errors and `progress` are those of WorldAt::open(). Memory: the edits between the moments. Blocks.
-StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from, Sequence to,
-                                  const WorldAt::Progress& progress = {});
+StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from,
+                                  Sequence to, const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

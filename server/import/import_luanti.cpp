@@ -19,7 +19,8 @@ constexpr std::uint64_t kProgressEvery = 64;  // blocks
 
 class Importer {
  public:
-  Importer(std::string file, LuantiMap map, const LuantiImportOptions& options, const LuantiImportSink& sink)
+  Importer(std::string file, LuantiMap map, const LuantiImportOptions& options,
+           const LuantiImportSink& sink)
       : file_(std::move(file)), map_(std::move(map)), options_(options), sink_(sink) {}
 
   Result<LuantiImportReport, ImportError> run() {
@@ -37,16 +38,18 @@ class Importer {
   }
 
  private:
-  Unexpected<ImportError> error(std::string what) const { return {ImportError{file_, std::move(what)}}; }
+  Unexpected<ImportError> error(std::string what) const {
+    return {ImportError{file_, std::move(what)}};
+  }
 
   /// First pass: which blocks are sound, which names they use, how far they reach.
   std::optional<std::string> scan() {
     return map_.each_row([&](std::int64_t pos, ByteView data) {
       const ChunkCoord at = luanti_block_coord(pos);
-      const auto block =
-          luanti_block_pos(at) == pos
-              ? decode_luanti_block(data)
-              : Result<LuantiBlock>(fail(ErrorCode::bad_value, "luanti block: not a block position"));
+      const auto block = luanti_block_pos(at) == pos
+                             ? decode_luanti_block(data)
+                             : Result<LuantiBlock>(fail(ErrorCode::bad_value,
+                                                        "luanti block: not a block position"));
       advance(1);
       if (!block) {
         report_.damaged.push_back({pos, at, block.error()});
@@ -93,7 +96,8 @@ class Importer {
       out.push_back(chunk_of(origin_of(luanti_block_coord(pos), kLuantiBlockEdge), options_.edge));
     }
     // The order of the map's own key, so that neighbouring rows are read together.
-    std::sort(out.begin(), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    std::sort(out.begin(), out.end(),
+              [&](const auto& a, const auto& b) { return key(a) < key(b); });
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
@@ -105,9 +109,9 @@ class Importer {
     if (!std::binary_search(positions_.begin(), positions_.end(), pos)) return std::nullopt;
     advance(1);
     const auto data = map_.find(pos);
-    auto block =
-        data ? decode_luanti_block(*data)
-             : Result<LuantiBlock>(fail(ErrorCode::io_failed, "luanti block: could not be read again"));
+    auto block = data ? decode_luanti_block(*data)
+                      : Result<LuantiBlock>(
+                            fail(ErrorCode::io_failed, "luanti block: could not be read again"));
     if (!block) {
       report_.damaged.push_back({pos, at, block.error()});
       --report_.blocks;
@@ -179,7 +183,8 @@ class Importer {
 Result<LuantiImportReport, ImportError> import_luanti(const std::string& folder,
                                                       const LuantiImportOptions& options,
                                                       const LuantiImportSink& sink) {
-  RUNSTONE_ASSERT(options.edge == 16 || options.edge == 32 || options.edge == 64 || options.edge == 128);
+  RUNSTONE_ASSERT(options.edge == 16 || options.edge == 32 || options.edge == 64 ||
+                  options.edge == 128);
   const std::string file = folder + "/map.sqlite";
   auto map = LuantiMap::open(file);
   if (!map) return Unexpected<ImportError>{{file, map.error()}};

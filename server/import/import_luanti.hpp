@@ -20,7 +20,8 @@ namespace runstone {
 
 struct LuantiImportOptions {
   std::int32_t edge = 32;  // of the chunks to make: 16, 32, 64 or 128
-  bool keep_all = false;   // plants, torches and the like become see-through cubes instead of nothing
+  bool keep_all =
+      false;  // plants, torches and the like become see-through cubes instead of nothing
 };
 
 struct LuantiImportSink {
@@ -46,9 +47,10 @@ struct LuantiImportReport {
   std::uint64_t chunks = 0;  // handed to the sink
   std::uint64_t runs = 0;    // in them, together
   MaterialTable materials;
-  std::vector<std::uint64_t> voxels;  // by material id; [0] counts the empty voxels of the chunks handed over
-  VoxelBox bounds;                    // smallest box around all blocks that were read well
-  VoxelPos spawn;  // on top of the middle column of the bounds (bounds.max.y if it is empty)
+  std::vector<std::uint64_t>
+      voxels;       // by material id; [0] counts the empty voxels of the chunks handed over
+  VoxelBox bounds;  // smallest box around all blocks that were read well
+  VoxelPos spawn;   // on top of the middle column of the bounds (bounds.max.y if it is empty)
 };
 
 struct ImportError {

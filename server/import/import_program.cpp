@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "server/import/import_luanti.hpp"
-#include "server/store/world_folder.hpp"
 #include "server/store/store.hpp"
+#include "server/store/world_folder.hpp"
 
 namespace runstone {
 namespace {
@@ -57,7 +57,9 @@ Result<void, std::string> fill(const ImportRequest& request, const LuantiImportR
   BaseWriter base(**store);
   LuantiImportSink sink;
   sink.materials = [](const MaterialTable&) {};
-  sink.chunk = [&](const ChunkKey& key, RunChunk&& voxels) { return base.add(key, std::move(voxels)); };
+  sink.chunk = [&](const ChunkKey& key, RunChunk&& voxels) {
+    return base.add(key, std::move(voxels));
+  };
   const auto report = import_luanti(request.luanti, {request.edge, request.keep_all}, sink);
   if (!base.error().empty()) return failure(base.error());
   if (!report) return failure(report.error().message());
@@ -69,13 +71,14 @@ Result<void, std::string> fill(const ImportRequest& request, const LuantiImportR
 }
 
 void print(const LuantiImportReport& report, const ImportRequest& request, std::ostream& out) {
-  out << request.world << ": " << report.blocks << " blocks became " << report.chunks << " chunks of edge "
-      << request.edge << " with " << report.runs << " runs and " << report.materials.size() << " materials, "
-      << report.damaged.size() << " damaged blocks left empty\n";
+  out << request.world << ": " << report.blocks << " blocks became " << report.chunks
+      << " chunks of edge " << request.edge << " with " << report.runs << " runs and "
+      << report.materials.size() << " materials, " << report.damaged.size()
+      << " damaged blocks left empty\n";
   for (std::size_t i = 0; i < report.damaged.size() && i < kDamagedListed; ++i) {
     const DamagedBlock& block = report.damaged[i];
-    out << "damaged block " << block.block.x << "," << block.block.y << "," << block.block.z << " (pos "
-        << block.pos << "): " << block.error.what << "\n";
+    out << "damaged block " << block.block.x << "," << block.block.y << "," << block.block.z
+        << " (pos " << block.pos << "): " << block.error.what << "\n";
   }
 }
 
@@ -85,7 +88,8 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   namespace fs = std::filesystem;
   if (sodium_init() < 0) return failure("libsodium cannot start");
   if (request.edge != 16 && request.edge != 32 && request.edge != 64 && request.edge != 128) {
-    return failure("--edge " + std::to_string(request.edge) + ": chunks have an edge of 16, 32, 64 or 128");
+    return failure("--edge " + std::to_string(request.edge) +
+                   ": chunks have an edge of 16, 32, 64 or 128");
   }
   std::error_code error;
   if (fs::exists(request.world, error) && !fs::is_empty(request.world, error)) {

@@ -9,7 +9,8 @@ ByteView blob_of(sqlite3_stmt* statement, int column) {
   // The blob first: asking for its size afterwards is the order that SQLite documents as safe.
   const void* data = sqlite3_column_blob(statement, column);
   const int size = sqlite3_column_bytes(statement, column);
-  return {static_cast<const std::uint8_t*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
+  return {static_cast<const std::uint8_t*>(data),
+          data == nullptr ? 0 : static_cast<std::size_t>(size)};
 }
 
 }  // namespace
@@ -42,7 +43,8 @@ Result<LuantiMap, std::string> LuantiMap::open(const std::string& file) {
   if (map.scan_ != nullptr) {
     map.find_ = map.prepare("SELECT data FROM blocks WHERE pos = ?1");
   } else {
-    map.scan_ = map.prepare("SELECT (z * 4096 + y) * 4096 + x AS pos, data FROM blocks ORDER BY z, y, x");
+    map.scan_ =
+        map.prepare("SELECT (z * 4096 + y) * 4096 + x AS pos, data FROM blocks ORDER BY z, y, x");
     map.find_ = map.prepare("SELECT data FROM blocks WHERE x = ?2 AND y = ?3 AND z = ?4");
   }
   if (map.scan_ == nullptr || map.find_ == nullptr) {

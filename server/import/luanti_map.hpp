@@ -23,7 +23,8 @@ class LuantiMap {
 
   /// Calls `row` for every block in ascending key. The bytes live for the call. Returns what went wrong, if
   /// anything.
-  std::optional<std::string> each_row(const std::function<void(std::int64_t pos, ByteView data)>& row);
+  std::optional<std::string> each_row(
+      const std::function<void(std::int64_t pos, ByteView data)>& row);
 
   /// One block's bytes, which live until the next call; none if there is no such row. An I/O error reads as
   /// none: the caller has seen the row in each_row() and reports its absence.

@@ -39,14 +39,19 @@ void Interest::want_again(SessionId session, std::span<const View> passed) {
   std::vector<ChunkKey> forgotten;
   for (const auto& [key, state] : at(session).chunks()) {
     const auto holds = [&](const View& view) { return view.contains(key.at); };
-    if (passed.empty() || !std::all_of(passed.begin(), passed.end(), holds)) forgotten.push_back(key);
+    if (passed.empty() || !std::all_of(passed.begin(), passed.end(), holds))
+      forgotten.push_back(key);
   }
   for (const ChunkKey& key : forgotten) set_state(session, key, ChunkInterest::wanted);
 }
 
-std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) { return at(session).nearest_wanted(); }
+std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) {
+  return at(session).nearest_wanted();
+}
 
-std::optional<ChunkKey> Interest::next_for_audit(SessionId session) { return at(session).next_for_audit(); }
+std::optional<ChunkKey> Interest::next_for_audit(SessionId session) {
+  return at(session).next_for_audit();
+}
 
 bool Interest::set_state(SessionId session, const ChunkKey& key, ChunkInterest state) {
   SessionInterest& mine = at(session);
@@ -71,7 +76,8 @@ void Interest::leave(SessionId session, const ChunkKey& key, ChunkInterest was) 
   if (was != ChunkInterest::subscribed && was != ChunkInterest::waiting) return;
   const auto found = users_.find(key);
   RUNSTONE_ASSERT(found != users_.end());
-  std::erase(was == ChunkInterest::subscribed ? found->second.subscribers : found->second.waiting, session);
+  std::erase(was == ChunkInterest::subscribed ? found->second.subscribers : found->second.waiting,
+             session);
   if (found->second.subscribers.empty() && found->second.waiting.empty()) {
     users_.erase(found);
     released_.push_back(key);

@@ -51,8 +51,9 @@ class Interest {
 
  private:
   struct Users {
-    std::vector<SessionId> subscribers;  // ascending, so that those of many chunks are joined in one pass
-    std::vector<SessionId> waiting;      // in the order in which they came
+    std::vector<SessionId>
+        subscribers;  // ascending, so that those of many chunks are joined in one pass
+    std::vector<SessionId> waiting;  // in the order in which they came
   };
   void leave(SessionId session, const ChunkKey& key, ChunkInterest was);
   void enter(SessionId session, const ChunkKey& key, ChunkInterest now);

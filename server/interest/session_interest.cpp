@@ -34,7 +34,8 @@ SessionInterest::Moved SessionInterest::set_view(const View& view) {
     chunks_.erase(found);
   }
   moved.steps = cells.size() + queue_.size();
-  std::erase_if(queue_, [&](const ChunkKey& key) { return !view.contains(key.at) || !is_wanted(key); });
+  std::erase_if(queue_,
+                [&](const ChunkKey& key) { return !view.contains(key.at) || !is_wanted(key); });
   cells.clear();
   append_difference(view, view_, limit_, cells);
   for (const ChunkCoord at : cells) queue_.push_back({0, at});
@@ -64,7 +65,8 @@ std::optional<ChunkKey> SessionInterest::nearest_wanted() {
 std::optional<ChunkInterest> SessionInterest::state(const ChunkKey& key) const {
   const auto found = chunks_.find(key);
   if (found != chunks_.end()) return found->second;
-  if (key.lod != 0 || !view_ || !view_->contains(key.at) || !limit_.contains(key.at)) return std::nullopt;
+  if (key.lod != 0 || !view_ || !view_->contains(key.at) || !limit_.contains(key.at))
+    return std::nullopt;
   return ChunkInterest::wanted;
 }
 
@@ -88,7 +90,8 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
 std::optional<ChunkKey> SessionInterest::next_for_audit() {
   if (count(ChunkInterest::subscribed) == 0) return std::nullopt;
   auto at = audited_ ? chunks_.upper_bound(*audited_) : chunks_.begin();
-  for (std::size_t step = 0; step <= chunks_.size(); ++step) {  // one round at most: somebody is subscribed
+  for (std::size_t step = 0; step <= chunks_.size();
+       ++step) {  // one round at most: somebody is subscribed
     if (at == chunks_.end()) at = chunks_.begin();
     if (at->second == ChunkInterest::subscribed) {
       audited_ = at->first;

@@ -21,7 +21,7 @@
 
 namespace runstone {
 
-enum class ChunkInterest { wanted, waiting, subscribed, unavailable, recalling, recalled };
+enum class ChunkInterest { wanted, waiting, subscribed, unavailable, loading_history, recalled };
 
 class SessionInterest {
  public:
@@ -58,7 +58,9 @@ class SessionInterest {
 
  private:
   std::size_t& counter(ChunkInterest state) { return counts_[static_cast<std::size_t>(state)]; }
-  bool is_wanted(const ChunkKey& key) const { return !chunks_.contains(key); }  // of a key in the queue
+  bool is_wanted(const ChunkKey& key) const {
+    return !chunks_.contains(key);
+  }  // of a key in the queue
   void pop_nearest();
   void set_order(const View& view);
 

@@ -10,7 +10,8 @@ struct Heights {  // half-open
 };
 
 Heights heights_of(const View& view) {
-  return {std::int64_t{view.centre.y} - view.radius_v, std::int64_t{view.centre.y} + view.radius_v + 1};
+  return {std::int64_t{view.centre.y} - view.radius_v,
+          std::int64_t{view.centre.y} + view.radius_v + 1};
 }
 
 bool has_column(const View& view, std::int64_t x, std::int64_t z) {
@@ -34,8 +35,8 @@ void append_difference(const View& view, const std::optional<View>& other, Coord
     range.low = std::max<std::int64_t>(range.low, -limit.limit);
     range.high = std::min<std::int64_t>(range.high, limit.limit);
     for (std::int64_t y = range.low; y < range.high; ++y) {
-      out.push_back(
-          {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)});
+      out.push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                     static_cast<std::int32_t>(z)});
     }
   };
   const Heights mine = heights_of(view);

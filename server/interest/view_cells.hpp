@@ -14,7 +14,8 @@ namespace runstone {
 struct CoordLimit {
   std::int32_t limit = kWorldLimit;
   bool contains(ChunkCoord c) const {
-    return c.x >= -limit && c.x < limit && c.y >= -limit && c.y < limit && c.z >= -limit && c.z < limit;
+    return c.x >= -limit && c.x < limit && c.y >= -limit && c.y < limit && c.z >= -limit &&
+           c.z < limit;
   }
 };
 

@@ -22,8 +22,8 @@ ViewOrder::Ring ViewOrder::ring(ChunkCoord at, std::int64_t distance2) const {
   const auto off = [](std::int32_t to, std::int32_t from) {
     return static_cast<double>(std::int64_t{to} - from);
   };
-  const double along =
-      off(at.x, view_.centre.x) * x_ + off(at.y, view_.centre.y) * y_ + off(at.z, view_.centre.z) * z_;
+  const double along = off(at.x, view_.centre.x) * x_ + off(at.y, view_.centre.y) * y_ +
+                       off(at.z, view_.centre.z) * z_;
   return along >= cosine_ * std::sqrt(static_cast<double>(distance2)) ? Ring::seen : Ring::rest;
 }
 

@@ -22,7 +22,8 @@ class TokenBucket {
     }
     if (now_us > last_us_) {
       // A part is a millionth of a token, so a microsecond at one token a second is one part: no rounding.
-      const auto idle_us = static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
+      const auto idle_us =
+          static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
       parts_ = std::min(full_, parts_ + idle_us * per_second_);
       last_us_ = now_us;
     }

@@ -40,7 +40,8 @@ class ByteBudget {
  private:
   static constexpr std::uint64_t kPerSecondMax = 1ULL << 50;
   std::int64_t span_ns(std::size_t bytes) const {
-    return static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 / static_cast<double>(per_second_));
+    return static_cast<std::int64_t>(static_cast<double>(bytes) * 1e9 /
+                                     static_cast<double>(per_second_));
   }
 
   const std::uint64_t per_second_;

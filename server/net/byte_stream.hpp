@@ -47,6 +47,7 @@ class ByteStream {
 
 /// TCP with TCP_NODELAY and a small TCP_NOTSENT_LOWAT, so that little terrain lies between an edit and the
 /// wire.
-std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes);
+std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
+                                            std::size_t notsent_bytes);
 
 }  // namespace runstone

@@ -15,7 +15,8 @@ namespace runstone {
 class ChunkGate {
  public:
   /// `own_per_second`: bytes, 0 for no limit. `shared` must outlive the gate.
-  ChunkGate(std::uint64_t own_per_second, ByteBudget& shared) : own_(own_per_second), shared_(shared) {}
+  ChunkGate(std::uint64_t own_per_second, ByteBudget& shared)
+      : own_(own_per_second), shared_(shared) {}
 
   /// The client tells what it has read: from now on terrain is paced by that.
   void pace() { is_paced_ = true; }
@@ -27,11 +28,12 @@ class ChunkGate {
   std::size_t open(TimeUs now_us, std::size_t room_bytes = SIZE_MAX) {
     if (room_bytes <= kFrameHeaderBytes) return 0;
     if (is_paced_ && pace_.room(now_us) == 0) return 0;
-    const std::size_t bytes =
-        std::min(is_paced_ ? pace_.fragment_bytes() : kFragmentBytesMax, room_bytes - kFrameHeaderBytes);
+    const std::size_t bytes = std::min(is_paced_ ? pace_.fragment_bytes() : kFragmentBytesMax,
+                                       room_bytes - kFrameHeaderBytes);
     if (!own_.is_limited() && !shared_.is_limited()) return bytes;
     if (credit_ >= bytes) return bytes;
-    if (!turn_us_) turn_us_ = std::max(own_.book(kTurnBytes, now_us), shared_.book(kTurnBytes, now_us));
+    if (!turn_us_)
+      turn_us_ = std::max(own_.book(kTurnBytes, now_us), shared_.book(kTurnBytes, now_us));
     if (now_us < *turn_us_) return 0;
     turn_us_.reset();
     credit_ += kTurnBytes;
@@ -54,7 +56,8 @@ class ChunkGate {
   /// How many bytes may wait: what the link carries in a quarter of a second.
   std::size_t backlog_bytes() const {
     constexpr std::uint64_t kBacklogPerSecond = 4;
-    return static_cast<std::size_t>(std::max<std::uint64_t>(kBacklogMin, pace_.rate() / kBacklogPerSecond));
+    return static_cast<std::size_t>(
+        std::max<std::uint64_t>(kBacklogMin, pace_.rate() / kBacklogPerSecond));
   }
   /// Nothing waits although something might go.
   void ran_dry() { pace_.ran_dry(); }

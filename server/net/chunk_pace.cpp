@@ -7,8 +7,9 @@ namespace runstone {
 namespace {
 
 constexpr std::uint64_t kSecondUs = 1'000'000;
-constexpr std::size_t kFragmentsMax = 2'048;         // further ones are counted with the last one
-constexpr std::uint64_t kWindowMax = 256ULL << 20;   // no link on earth needs more, and no product overflows
+constexpr std::size_t kFragmentsMax = 2'048;  // further ones are counted with the last one
+constexpr std::uint64_t kWindowMax =
+    256ULL << 20;  // no link on earth needs more, and no product overflows
 constexpr std::uint64_t kRateMax = 100'000'000'000;  // bytes a second
 constexpr TimeUs kRateSpanUsMin = 250'000;           // a rate is believed for one to two spans
 constexpr TimeUs kRateSpanRoundTrips = 5;
@@ -28,8 +29,8 @@ constexpr std::uint64_t kStartGain = 200, kLateStartGain = 125, kSteadyGain = 98
 constexpr unsigned kRoundsPerProbe = 6;
 
 std::uint64_t bytes_in(std::uint64_t rate, TimeUs us) {
-  return std::min(rate, kRateMax) * static_cast<std::uint64_t>(std::clamp<TimeUs>(us, 0, 60'000'000)) /
-         kSecondUs;
+  return std::min(rate, kRateMax) *
+         static_cast<std::uint64_t>(std::clamp<TimeUs>(us, 0, 60'000'000)) / kSecondUs;
 }
 
 }  // namespace
@@ -38,8 +39,8 @@ std::uint64_t ChunkPace::rate() const { return std::max(rate_, rate_before_); }
 
 std::size_t ChunkPace::fragment_bytes() const {
   if (rate() == 0) return kFragmentBytesMin;
-  return static_cast<std::size_t>(
-      std::clamp<std::uint64_t>(bytes_in(rate(), kFragmentUs), kFragmentBytesMin, kFragmentBytesMax));
+  return static_cast<std::size_t>(std::clamp<std::uint64_t>(bytes_in(rate(), kFragmentUs),
+                                                            kFragmentBytesMin, kFragmentBytesMax));
 }
 
 // What the client may have read but not told yet.
@@ -67,7 +68,8 @@ std::uint64_t ChunkPace::gain_percent() const {
   if (probes_won_ > 0) return kWonGain;
   // By one fragment in a round trip, where that is more.
   const std::uint64_t link = std::max<std::uint64_t>(1, bytes_in(rate(), round_trip_us_));
-  return std::clamp<std::uint64_t>(100 + 100 * kFragmentBytesMax / link, kProbeGainMin, kProbeGainMax);
+  return std::clamp<std::uint64_t>(100 + 100 * kFragmentBytesMax / link, kProbeGainMin,
+                                   kProbeGainMax);
 }
 
 bool ChunkPace::is_late() const { return late_in_a_row_ >= kLateInARow; }
@@ -95,7 +97,8 @@ void ChunkPace::sent(std::size_t bytes, TimeUs now_us) {
   sent_ += bytes;
   if (rate() != 0) {
     const std::uint64_t pace = std::max<std::uint64_t>(1, rate() * gain_percent() / 100);
-    next_us_ = std::max(next_us_, now_us - kLateUsMax) + static_cast<TimeUs>(bytes * kSecondUs / pace);
+    next_us_ =
+        std::max(next_us_, now_us - kLateUsMax) + static_cast<TimeUs>(bytes * kSecondUs / pace);
   }
   if (fragments_.size() >= kFragmentsMax) {
     fragments_.back().end = sent_;
@@ -121,7 +124,8 @@ Result<void> ChunkPace::acked(std::uint64_t total, TimeUs now_us) {
   }
   if (!is_whole) return {};
   take_rate(newest, now_us);
-  if (is_draining_ && in_flight() <= bytes_in(rate(), round_trip_us_) + untold() / 2) is_draining_ = false;
+  if (is_draining_ && in_flight() <= bytes_in(rate(), round_trip_us_) + untold() / 2)
+    is_draining_ = false;
   first_sent_us_ = newest.sent_us;
   take_round_trip(newest, now_us);
   if (newest.acked >= round_end_) {
@@ -164,7 +168,8 @@ void ChunkPace::take_round_trip(const Fragment& newest, TimeUs now_us) {
     remeasure_from_ = 0;
     remeasured_us_ = 0;
   }
-  const TimeUs queue_us = std::clamp<TimeUs>(round_trip_us_ / 8, kQueueUsMin, kQueueUsMax) + 2 * swing_us_;
+  const TimeUs queue_us =
+      std::clamp<TimeUs>(round_trip_us_ / 8, kQueueUsMin, kQueueUsMax) + 2 * swing_us_;
   late_in_a_row_ = round_trip_us > round_trip_us_ + queue_us ? late_in_a_row_ + 1 : 0;
 }
 

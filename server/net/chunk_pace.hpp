@@ -75,8 +75,8 @@ class ChunkPace {
   TimeUs next_us_ = 0;              // when the rate allows more
   std::deque<Fragment> fragments_;  // not all read yet, oldest first; kFragmentsMax at most
   std::uint64_t sent_ = 0, acked_ = 0;
-  TimeUs heard_us_ = 0;       // of the last acknowledgement, or of the first fragment after all was read
-  TimeUs acked_us_ = 0;       // when acked_ last rose, or was made to begin
+  TimeUs heard_us_ = 0;  // of the last acknowledgement, or of the first fragment after all was read
+  TimeUs acked_us_ = 0;  // when acked_ last rose, or was made to begin
   TimeUs first_sent_us_ = 0;  // when the fragment last acknowledged was sent
   std::uint64_t dry_until_ = 0;
 
@@ -85,8 +85,8 @@ class ChunkPace {
   TimeUs rate_since_us_ = 0;
 
   // Round trip.
-  TimeUs round_trip_us_ = 0, measured_us_ = 0;           // the shortest, and when it was last seen
-  TimeUs smooth_us_ = 0, swing_us_ = 0;                  // as TCP's smoothed round trip and its variation
+  TimeUs round_trip_us_ = 0, measured_us_ = 0;  // the shortest, and when it was last seen
+  TimeUs smooth_us_ = 0, swing_us_ = 0;         // as TCP's smoothed round trip and its variation
   std::uint64_t remeasure_from_ = 0, remeasure_to_ = 0;  // of bytes sent; 0: not drained yet
   TimeUs remeasured_us_ = 0;
   unsigned late_in_a_row_ = 0;

@@ -43,9 +43,9 @@ Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::
   };
   asio::error_code error;
   asio::ip::tcp::resolver resolver(acceptor.get_executor());
-  const auto ends =
-      resolver.resolve(parsed->host, std::to_string(parsed->port),
-                       asio::ip::resolver_base::passive | asio::ip::resolver_base::numeric_service, error);
+  const auto ends = resolver.resolve(
+      parsed->host, std::to_string(parsed->port),
+      asio::ip::resolver_base::passive | asio::ip::resolver_base::numeric_service, error);
   if (error) return cannot(error);
   const asio::ip::tcp::endpoint end = ends.begin()->endpoint();
   acceptor.open(end.protocol(), error);
@@ -61,7 +61,8 @@ Result<void, std::string> bind_to(asio::ip::tcp::acceptor& acceptor, const std::
 
 }  // namespace
 
-Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events)
+Listener::Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
+                   NetEvents& events)
     : io_(io),
       limits_(limits),
       budget_(limits.server_bytes_per_second),
@@ -129,8 +130,8 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   counters_.connections.fetch_add(1);
   const SessionId id = next_id_++;
   auto stream = make_tcp_stream(std::move(socket), limits_.notsent_bytes);
-  auto session = std::make_shared<NetSession>(id, io_, std::move(stream), limits_, chunk_edge_, budget_,
-                                              events_, counters_);
+  auto session = std::make_shared<NetSession>(id, io_, std::move(stream), limits_, chunk_edge_,
+                                              budget_, events_, counters_);
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(id, session);
@@ -140,7 +141,8 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   session->start();
 }
 
-std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(const asio::ip::address& from) {
+std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(
+    const asio::ip::address& from) {
   std::vector<std::shared_ptr<NetSession>> ended;
   const auto end = [&](SessionId oldest) {
     ended.push_back(sessions_.at(oldest));

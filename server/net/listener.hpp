@@ -25,7 +25,8 @@ Result<void, std::string> can_listen(const std::string& address);
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
   /// `events` must outlive the io_context's threads.
-  Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge, NetEvents& events);
+  Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
+           NetEvents& events);
 
   /// Binds and listens. `address` is "HOST:PORT" or "[V6]:PORT"; port 0 takes a free one. The error is one
   /// line that names the address.
@@ -66,9 +67,11 @@ class Listener : public std::enable_shared_from_this<Listener> {
   SessionId next_id_ = 1;
   mutable std::mutex mutex_;  // a leaf: guards the rest
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
-  std::map<SessionId, asio::ip::address> handshakes_;  // oldest first: neither authenticated nor told to go
-  std::map<asio::ip::address, std::set<SessionId>> handshakes_from_;  // the same by address, never empty sets
-  std::set<SessionId> leaving_;                                       // told to go, still in `sessions_`
+  std::map<SessionId, asio::ip::address>
+      handshakes_;  // oldest first: neither authenticated nor told to go
+  std::map<asio::ip::address, std::set<SessionId>>
+      handshakes_from_;          // the same by address, never empty sets
+  std::set<SessionId> leaving_;  // told to go, still in `sessions_`
 };
 
 }  // namespace runstone

@@ -10,7 +10,8 @@
 
 namespace runstone {
 
-void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason, const Error& error) {
+void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason,
+                     const Error& error) {
   static std::mutex mutex;  // a leaf
   static TokenBucket lines(10, 10);
   static std::uint64_t left_out = 0;

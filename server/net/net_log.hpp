@@ -10,6 +10,7 @@ namespace runstone {
 
 /// One warning per broken session, ten a second at most in the whole process; the next line says how many
 /// were left out.
-void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason, const Error& error);
+void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason,
+                     const Error& error);
 
 }  // namespace runstone

@@ -20,8 +20,9 @@ constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 // Messages of all sessions wait in one line for the world strand, so nobody may put many there at once: a read is short, and
 // few are under way (unhandled_bytes_max). By their bytes, which tell what they cost: a claim to hold 256 chunks is no edit.
 constexpr std::size_t kReadBytes = 4 * 1024;
-constexpr std::size_t kMessageBytes = 64;         // what the smallest one counts besides
-constexpr std::size_t kTurnRoomBytes = 2 * 1024;  // for terrain whose turn it is where there is no room
+constexpr std::size_t kMessageBytes = 64;  // what the smallest one counts besides
+constexpr std::size_t kTurnRoomBytes =
+    2 * 1024;  // for terrain whose turn it is where there is no room
 constexpr TimeUs kRoomPauseUsMax = 50'000;
 constexpr TimeUs kReadBurstUs =
     500'000;  // of the reading budget may be used at once: what a client holds, a large paste
@@ -136,7 +137,8 @@ void NetSession::handled(std::size_t message_bytes) {
 }
 
 void NetSession::abort() {
-  close(GoodbyeReason::server_full, "no room for one more handshake");  // nothing more is queued or sent
+  close(GoodbyeReason::server_full,
+        "no room for one more handshake");  // nothing more is queued or sent
   const auto end = [self = shared_from_this()] { self->stream_->close(); };
   asio::post(strand_, end);
 }
@@ -195,13 +197,13 @@ Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
   }
-  if (const auto* received = std::get_if<Received>(&*message)) return on_received(*received);
+  if (const auto* received = std::get_if<ReceiveAck>(&*message)) return on_received(*received);
   unhandled_.fetch_add(body.size() + kMessageBytes);
   events_.on_message(id_, *std::move(message), body.size());
   return {};
 }
 
-Result<void> NetSession::on_received(const Received& received) {
+Result<void> NetSession::on_received(const ReceiveAck& received) {
   {
     const std::lock_guard lock(mutex_);
     if (!gate_.is_paced()) {
@@ -320,7 +322,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     }
   }
   self->stream_->shutdown_send();
-  self->close(GoodbyeReason::closing, "write failed");  // the linger timer ends a reader that waits for ever
+  self->close(GoodbyeReason::closing,
+              "write failed");  // the linger timer ends a reader that waits for ever
   self->loop_ended();
 }
 

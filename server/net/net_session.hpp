@@ -14,22 +14,25 @@
 
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/limits/token_bucket.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/chunk_gate.hpp"
 #include "server/net/net_events.hpp"
 #include "server/net/send_queue.hpp"
-#include "server/limits/token_bucket.hpp"
 
 namespace runstone {
 
 struct NetLimits {
   SendLimits send;
-  std::uint64_t bytes_per_second = 0;         // per session: terrain waits where more would go; 0: no limit
+  std::uint64_t bytes_per_second =
+      0;  // per session: terrain waits where more would go; 0: no limit
   std::uint64_t server_bytes_per_second = 0;  // all sessions together, likewise
-  std::uint64_t read_bytes_per_second = 0;    // from each session: beyond it reading pauses; 0: no limit
-  std::size_t notsent_bytes = 16 * 1024;      // TCP_NOTSENT_LOWAT
-  std::size_t connections_max = 512;          // sockets, in any state
-  std::size_t handshakes_per_address = 32;    // of those sockets: not yet authenticated, from one address
+  std::uint64_t read_bytes_per_second =
+      0;  // from each session: beyond it reading pauses; 0: no limit
+  std::size_t notsent_bytes = 16 * 1024;  // TCP_NOTSENT_LOWAT
+  std::size_t connections_max = 512;      // sockets, in any state
+  std::size_t handshakes_per_address =
+      32;  // of those sockets: not yet authenticated, from one address
   std::size_t unhandled_bytes_max =
       8 * 1024;  // per session, and 64 for each message; then its reading pauses
   std::uint64_t messages_per_second = 10'000;  // per session; 0: no limit
@@ -43,14 +46,16 @@ struct NetCounters {
   std::atomic<std::int64_t> commit_send_ns{
       0};  // in calls that sent edits class bytes (and what went with them)
   std::atomic<std::uint64_t> commit_sends{0};  // writes of such bytes
-  std::atomic<std::uint64_t> commits_due{0};  // sessions told of such bytes that have not got to sending them
+  std::atomic<std::uint64_t> commits_due{
+      0};  // sessions told of such bytes that have not got to sending them
 };
 
 class NetSession : public std::enable_shared_from_this<NetSession> {
  public:
   /// `budget` (of the server), `events` and `counters` must outlive the session. `chunk_edge`: of the world.
-  NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream, const NetLimits& limits,
-             std::uint16_t chunk_edge, ByteBudget& budget, NetEvents& events, NetCounters& counters);
+  NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteStream> stream,
+             const NetLimits& limits, std::uint16_t chunk_edge, ByteBudget& budget,
+             NetEvents& events, NetCounters& counters);
 
   SessionId id() const { return id_; }
   const std::string& peer() const { return peer_; }
@@ -83,7 +88,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
   Result<void> on_message(FrameClass frame_class, ByteView body);
-  Result<void> on_received(const Received& received);
+  Result<void> on_received(const ReceiveAck& received);
   void refuse(const Error& error);
   asio::awaitable<void> wait_for_turn(std::size_t bytes_read);
   bool must_pause() const { return unhandled_.load() >= limits_.unhandled_bytes_max; }

@@ -96,7 +96,8 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
   while (batch.bytes < limits_.write_bytes) {
     const bool is_chunks_turn =
         chunk_body_max > 0 && lane(FrameClass::chunks).passed >= kPassedFragments * chunk_body_max;
-    const bool is_controls_turn = lane(FrameClass::control).passed >= kPassedFragments * kFragmentBytesMax;
+    const bool is_controls_turn =
+        lane(FrameClass::control).passed >= kPassedFragments * kFragmentBytesMax;
     if (is_chunks_turn && cut(FrameClass::chunks, chunk_body_max, batch)) break;
     if (is_controls_turn && cut(FrameClass::control, kFragmentBytesMax, batch)) continue;
     if (cut(FrameClass::edits, kFragmentBytesMax, batch)) continue;

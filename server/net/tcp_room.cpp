@@ -13,15 +13,17 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint32_t kProbePackets = 4;  // BBR's window while it measures, and its smallest at any time
-constexpr std::uint32_t kProbeWindowGain = 256;  // then alone its window is the link's product: 1, times 2^8
+constexpr std::uint32_t kProbePackets =
+    4;  // BBR's window while it measures, and its smallest at any time
+constexpr std::uint32_t kProbeWindowGain =
+    256;  // then alone its window is the link's product: 1, times 2^8
 
 bool measures_round_trip(int socket) {
   tcp_cc_info info{};
   socklen_t size = sizeof info;
   // Other congestion controls tell other things, of other sizes, or nothing.
-  return ::getsockopt(socket, IPPROTO_TCP, TCP_CC_INFO, &info, &size) == 0 && size == sizeof info.bbr &&
-         info.bbr.bbr_cwnd_gain == kProbeWindowGain;
+  return ::getsockopt(socket, IPPROTO_TCP, TCP_CC_INFO, &info, &size) == 0 &&
+         size == sizeof info.bbr && info.bbr.bbr_cwnd_gain == kProbeWindowGain;
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "common/os/thread_cpu_ns.hpp"
 #include "server/net/byte_stream.hpp"
 #include "server/net/tcp_room.hpp"
-#include "common/os/thread_cpu_ns.hpp"
 
 namespace runstone {
 namespace {
@@ -24,12 +24,14 @@ class TcpStream : public ByteStream {
     const auto end = socket_.remote_endpoint(ignored);
     if (!ignored) {
       const bool v6 = end.address().is_v6();
-      peer_ = (v6 ? "[" : "") + end.address().to_string() + (v6 ? "]:" : ":") + std::to_string(end.port());
+      peer_ = (v6 ? "[" : "") + end.address().to_string() + (v6 ? "]:" : ":") +
+              std::to_string(end.port());
     }
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
     // Both options only make edits faster: a kernel without them still serves.
     const int lowat = static_cast<int>(notsent_bytes);
-    (void)::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &lowat, sizeof lowat);
+    (void)::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &lowat,
+                       sizeof lowat);
     socket_.non_blocking(true, ignored);
   }
 
@@ -44,8 +46,8 @@ class TcpStream : public ByteStream {
     std::size_t first = 0;  // of rest_: the first buffer that is not written wholly
     while (first < rest_.size()) {
       const std::int64_t began_ns = thread_cpu_ns();
-      const std::size_t written =
-          socket_.write_some(std::span<const asio::const_buffer>(rest_).subspan(first), result.error);
+      const std::size_t written = socket_.write_some(
+          std::span<const asio::const_buffer>(rest_).subspan(first), result.error);
       result.call_ns += thread_cpu_ns() - began_ns;
       result.bytes += written;
       for (std::size_t left = written; first < rest_.size();) {
@@ -85,7 +87,8 @@ class TcpStream : public ByteStream {
 
 }  // namespace
 
-std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket, std::size_t notsent_bytes) {
+std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
+                                            std::size_t notsent_bytes) {
   return std::make_unique<TcpStream>(std::move(socket), notsent_bytes);
 }
 

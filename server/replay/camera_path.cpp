@@ -36,7 +36,8 @@ std::optional<T> number_of(std::string_view word) {
 
 std::optional<double> number_in(std::string_view word, double low, double high) {
   const auto value = number_of<double>(word);
-  if (!value || !(*value >= low && *value <= high)) return std::nullopt;  // so written, a NaN is outside
+  if (!value || !(*value >= low && *value <= high))
+    return std::nullopt;  // so written, a NaN is outside
   return value;
 }
 
@@ -59,16 +60,17 @@ struct Field {
   double scale;
 };
 constexpr double kWorld = kWorldLimit;
-constexpr std::array<Field, 5> kFields = {{{"X", -kWorld, kWorld, &DrawCamera::x, 1},
-                                           {"Y", -kWorld, kWorld, &DrawCamera::y, 1},
-                                           {"Z", -kWorld, kWorld, &DrawCamera::z, 1},
-                                           {"YAW", -360, 360, &DrawCamera::yaw, kRadiansPerDegree},
-                                           {"PITCH", -90, 90, &DrawCamera::pitch, kRadiansPerDegree}}};
+constexpr std::array<Field, 5> kFields = {
+    {{"X", -kWorld, kWorld, &DrawCamera::x, 1},
+     {"Y", -kWorld, kWorld, &DrawCamera::y, 1},
+     {"Z", -kWorld, kWorld, &DrawCamera::z, 1},
+     {"YAW", -360, 360, &DrawCamera::yaw, kRadiansPerDegree},
+     {"PITCH", -90, 90, &DrawCamera::pitch, kRadiansPerDegree}}};
 
 }  // namespace
 
-Result<CameraPath, TextError> CameraPath::parse(std::string_view text, std::string_view file, Sequence first,
-                                                Sequence last) {
+Result<CameraPath, TextError> CameraPath::parse(std::string_view text, std::string_view file,
+                                                Sequence first, Sequence last) {
   CameraPath path;
   std::uint32_t line_number = 0;
   const auto wrong = [&](std::string what) {
@@ -88,7 +90,8 @@ Result<CameraPath, TextError> CameraPath::parse(std::string_view text, std::stri
     station.when = *moment;
     for (const Field& field : kFields) {
       const std::string_view word = take_word(line);
-      if (word.empty()) return wrong(std::string(field.name) + " is missing: expected WHEN X Y Z YAW PITCH");
+      if (word.empty())
+        return wrong(std::string(field.name) + " is missing: expected WHEN X Y Z YAW PITCH");
       const auto value = number_in(word, field.low, field.high);
       if (!value) {
         return wrong(std::string(field.name) + " is no number from " +

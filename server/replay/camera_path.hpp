@@ -21,8 +21,8 @@ class CameraPath {
 
   /// `file` is only for messages. `first` and `last`: the sequences of which shares are shares. Stations must
   /// ascend strictly; there must be one at least.
-  static Result<CameraPath, TextError> parse(std::string_view text, std::string_view file, Sequence first,
-                                             Sequence last);
+  static Result<CameraPath, TextError> parse(std::string_view text, std::string_view file,
+                                             Sequence first, Sequence last);
 
   /// Eye and angles at this moment; field of view and distances are the defaults. O(log stations).
   DrawCamera at(Sequence seq) const;

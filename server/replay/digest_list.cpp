@@ -70,7 +70,7 @@ std::optional<std::string> text_member(const Json& object, const char* key) {
   return member->get<std::string>();
 }
 
-std::optional<AuditEntry> parse_entry(const Json& row) {
+std::optional<DigestCheckEntry> parse_entry(const Json& row) {
   if (!row.is_object()) return std::nullopt;
   constexpr auto kLow = std::numeric_limits<std::int32_t>::min();
   constexpr auto kHigh = std::numeric_limits<std::int32_t>::max();
@@ -83,27 +83,29 @@ std::optional<AuditEntry> parse_entry(const Json& row) {
   const auto hex = text_member(row, "digest");
   const auto digest = hex ? parse_digest(*hex) : std::nullopt;
   if (!lod || !x || !y || !z || !epoch || !seq || !digest) return std::nullopt;
-  return AuditEntry{{static_cast<std::uint8_t>(*lod), {*x, *y, *z}}, {*epoch, *seq}, *digest};
+  return DigestCheckEntry{{static_cast<std::uint8_t>(*lod), {*x, *y, *z}}, {*epoch, *seq}, *digest};
 }
 
 }  // namespace
 
 std::string to_json(const DigestList& list) {
-  std::vector<const AuditEntry*> rows;
+  std::vector<const DigestCheckEntry*> rows;
   rows.reserve(list.chunks.size());
-  for (const AuditEntry& entry : list.chunks) rows.push_back(&entry);
+  for (const DigestCheckEntry& entry : list.chunks) rows.push_back(&entry);
   std::sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->key < b->key; });
   // By hand, because a library would put each number on a line of its own, or everything on one.
-  std::string json = "{\"world_id\":\"" + to_hex(list.world_id) + "\",\"seq\":" + std::to_string(list.seq) +
+  std::string json = "{\"world_id\":\"" + to_hex(list.world_id) +
+                     "\",\"seq\":" + std::to_string(list.seq) +
                      (list.is_clean ? "" : ",\"clean\":false") + ",\"chunks\":[";
   const char* separator = "\n";
-  for (const AuditEntry* row : rows) {
+  for (const DigestCheckEntry* row : rows) {
     const ChunkCoord at = row->key.at;
     json += separator;
     json += "{\"lod\":" + std::to_string(row->key.lod) + ",\"x\":" + std::to_string(at.x) +
             ",\"y\":" + std::to_string(at.y) + ",\"z\":" + std::to_string(at.z) +
             ",\"epoch\":" + std::to_string(row->version.epoch) +
-            ",\"seq\":" + std::to_string(row->version.seq) + ",\"digest\":\"" + to_hex(row->digest) + "\"}";
+            ",\"seq\":" + std::to_string(row->version.seq) + ",\"digest\":\"" +
+            to_hex(row->digest) + "\"}";
     separator = ",\n";
   }
   json += "\n]}\n";

@@ -15,9 +15,9 @@ namespace runstone {
 
 struct DigestList {
   WorldId world_id{};
-  Sequence seq = 0;                // where the holder stood when it wrote the list
-  std::vector<AuditEntry> chunks;  // any order
-  bool is_clean = true;            // false: chunks stand at their own versions, and not together at `seq`
+  Sequence seq = 0;                      // where the holder stood when it wrote the list
+  std::vector<DigestCheckEntry> chunks;  // any order
+  bool is_clean = true;  // false: chunks stand at their own versions, and not together at `seq`
 };
 
 /// JSON text, chunks ascending by key, one line each: equal lists give equal bytes.

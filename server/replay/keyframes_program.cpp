@@ -3,15 +3,17 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "server/replay/digest_list.hpp"
 #include "common/os/progress_line.hpp"
-#include "server/store/world_folder.hpp"
 #include "server/history/keyframe_maker.hpp"
+#include "server/replay/digest_list.hpp"
+#include "server/store/world_folder.hpp"
 
 namespace runstone {
 
 Result<void, std::string> make_keyframes(const ReplayOptions& options, std::ostream& out) {
-  const auto failure = [](const StoreError& error) { return Unexpected<std::string>{error.message()}; };
+  const auto failure = [](const StoreError& error) {
+    return Unexpected<std::string>{error.message()};
+  };
   auto store = open_world(options.world, StoreAccess::read_write);
   if (!store) return failure(store.error());
   const auto generator = generator_of(**store);
@@ -33,11 +35,12 @@ Result<void, std::string> make_keyframes(const ReplayOptions& options, std::ostr
         });
     if (!made) return failure(made.error());
   }
-  out << "keyframes   " << maker.made() << " made of " << chunks_written << " chunks, " << before->size()
-      << " there before\n";
+  out << "keyframes   " << maker.made() << " made of " << chunks_written << " chunks, "
+      << before->size() << " there before\n";
   if (options.json.empty()) return {};
-  const nlohmann::ordered_json json = {
-      {"made", maker.made()}, {"chunks", chunks_written}, {"keyframes", before->size() + maker.made()}};
+  const nlohmann::ordered_json json = {{"made", maker.made()},
+                                       {"chunks", chunks_written},
+                                       {"keyframes", before->size() + maker.made()}};
   const auto written = write_text_file(options.json, json.dump(1) + "\n");
   if (!written) return Unexpected<std::string>{written.error().message()};
   return {};

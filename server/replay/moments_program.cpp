@@ -8,11 +8,11 @@
 
 #include "common/core/hex.hpp"
 #include "common/core/key_text.hpp"
-#include "server/replay/digest_list.hpp"
 #include "common/os/progress_line.hpp"
+#include "server/history/world_diff.hpp"
+#include "server/replay/digest_list.hpp"
 #include "server/replay/world_copy.hpp"
 #include "server/store/world_folder.hpp"
-#include "server/history/world_diff.hpp"
 
 namespace runstone {
 namespace {
@@ -37,7 +37,8 @@ Result<Opened, std::string> open(const ReplayOptions& options) {
   return Opened{*std::move(store), *std::move(generator)};
 }
 
-Result<void, std::string> write_json(const ReplayOptions& options, const nlohmann::ordered_json& json) {
+Result<void, std::string> write_json(const ReplayOptions& options,
+                                     const nlohmann::ordered_json& json) {
   if (options.json.empty()) return {};
   const auto written = write_text_file(options.json, json.dump(1) + "\n");
   if (!written) return Unexpected<std::string>{written.error().message()};
@@ -102,8 +103,8 @@ Result<void, std::string> diff_moments(const ReplayOptions& options, std::ostrea
   for (const PlayerRow& player : *players) names[player.author] = player.name;
 
   row(out, "world") << to_hex(store.meta().world_id) << "  " << store.file() << '\n';
-  row(out, "moments") << "after sequence " << diff->from << " and after sequence " << diff->to << ", "
-                      << diff->edits << " edits between\n";
+  row(out, "moments") << "after sequence " << diff->from << " and after sequence " << diff->to
+                      << ", " << diff->edits << " edits between\n";
   row(out, "voxels") << diff->voxels << " differ, in " << diff->chunks.size() << " chunks\n";
   nlohmann::ordered_json json = {{"world_id", to_hex(store.meta().world_id)},
                                  {"from", diff->from},
@@ -114,8 +115,8 @@ Result<void, std::string> diff_moments(const ReplayOptions& options, std::ostrea
                                  {"chunks", nlohmann::ordered_json::array()}};
   for (const WorldDiff::AuthorPart& part : diff->authors) {
     const std::string name = name_of(names, part.author);
-    row(out, "author") << part.author << " " << name << ": " << part.voxels << " voxels, " << part.edits
-                       << " edits\n";
+    row(out, "author") << part.author << " " << name << ": " << part.voxels << " voxels, "
+                       << part.edits << " edits\n";
     json["authors"].push_back(
         {{"author", part.author}, {"name", name}, {"edits", part.edits}, {"voxels", part.voxels}});
   }

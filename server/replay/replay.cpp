@@ -28,7 +28,7 @@ Replayer::Replayer(Store& store, const Generator& generator)
     : store_(store), generator_(generator), edge_(store.meta().chunk_edge) {}
 
 void Replayer::expect(const std::string& source, const DigestList& list) {
-  for (const AuditEntry& entry : list.chunks) {
+  for (const DigestCheckEntry& entry : list.chunks) {
     listed_[entry.key].emplace(entry.version, Expected{source, entry.version, entry.digest});
   }
 }
@@ -50,10 +50,11 @@ void Replayer::differs(ReplayDifference difference) {
 
 void Replayer::check(const ChunkKey& key, const Expected& expected, const Chunk& rebuilt) {
   if (expected.version == rebuilt.version && expected.digest == rebuilt.digest) return;
-  differs({expected.source, key, expected.version, rebuilt.version, expected.digest, rebuilt.digest});
+  differs(
+      {expected.source, key, expected.version, rebuilt.version, expected.digest, rebuilt.digest});
 }
 
-StoreResult<void> Replayer::compare(const ChunkKey& key, FollowedChunk& rebuilt) {
+StoreResult<void> Replayer::compare(const ChunkKey& key, ReplayedChunk& rebuilt) {
   const Version version = rebuilt.chunk().version;
   if (const auto snapshot = snapshots_.find(key);
       snapshot != snapshots_.end() && snapshot->second == version) {
@@ -88,10 +89,10 @@ StoreResult<void> Replayer::replay_edit(const EditRecord& record) {
     if (found == chunks_.end()) {
       auto base = base_chunk(store_, generator_, key);
       if (!base) return Unexpected<StoreError>{base.error()};
-      found = chunks_.emplace(key, FollowedChunk(*std::move(base), origin_of(at, edge_))).first;
+      found = chunks_.emplace(key, ReplayedChunk(*std::move(base), origin_of(at, edge_))).first;
       if (auto compared = compare(key, found->second); !compared) return compared;
     }
-    FollowedChunk& rebuilt = found->second;
+    ReplayedChunk& rebuilt = found->second;
     rebuilt.add(record.edit, record.version, scratch_);
     if (auto compared = compare(key, rebuilt); !compared) return compared;
   }
@@ -115,7 +116,8 @@ StoreResult<void> Replayer::compare_rest() {
     const auto stored = store_.load_snapshot(key);
     if (!stored) return Unexpected<StoreError>{stored.error()};
     const Digest digest = stored->has_value() ? (*stored)->digest : Digest{};
-    if (auto compared = compare_left_over(key, {"snapshot", version, digest}); !compared) return compared;
+    if (auto compared = compare_left_over(key, {"snapshot", version, digest}); !compared)
+      return compared;
     ++report_.snapshots_compared;
   }
   for (const auto& [key, rows] : listed_) {
@@ -148,11 +150,13 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   if (!range) return Unexpected<StoreError>{range.error()};
   report_.seq = std::min(at, range->last.version.seq);
   if (report_.seq + 1 < range->first) {
-    return Unexpected<StoreError>{{StoreError::Kind::bad_request, store_.file(), "edit_log",
-                                   "begins at seq=" + std::to_string(range->first) +
-                                       ": what lies before is in the base and cannot be taken apart"}};
+    return Unexpected<StoreError>{
+        {StoreError::Kind::bad_request, store_.file(), "edit_log",
+         "begins at seq=" + std::to_string(range->first) +
+             ": what lies before is in the base and cannot be taken apart"}};
   }
-  if (const auto expected = expect_snapshots(); !expected) return Unexpected<StoreError>{expected.error()};
+  if (const auto expected = expect_snapshots(); !expected)
+    return Unexpected<StoreError>{expected.error()};
 
   if (range->first > 1) {
     // What was edited only before the log begins belongs to the world all the same.
@@ -162,9 +166,10 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
       if (stored.version == Version{}) continue;
       auto chunk = base_chunk(store_, generator_, stored.key);
       if (!chunk) return Unexpected<StoreError>{chunk.error()};
-      const auto found =
-          chunks_.emplace(stored.key, FollowedChunk(*std::move(chunk), origin_of(stored.key.at, edge_)))
-              .first;
+      const auto found = chunks_
+                             .emplace(stored.key, ReplayedChunk(*std::move(chunk),
+                                                                origin_of(stored.key.at, edge_)))
+                             .first;
       if (auto compared = compare(stored.key, found->second); !compared)
         return Unexpected<StoreError>{compared.error()};
     }
@@ -173,7 +178,8 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   StoreResult<void> replayed;
   const auto read = store_.read_log(1, report_.seq, [&](const EditRecord& record) {
     replayed = replay_edit(record);
-    if (progress && record.version.seq % kProgressEdits == 0) progress(record.version.seq, report_.seq);
+    if (progress && record.version.seq % kProgressEdits == 0)
+      progress(record.version.seq, report_.seq);
     return replayed.has_value();
   });
   if (!read) return Unexpected<StoreError>{read.error()};
@@ -187,7 +193,8 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
     report_.digests.push_back({key, chunk.version, chunk.digest});
     report_.world_digest = report_.world_digest + world_digest_term(key, chunk.digest);
   }
-  if (const auto compared = compare_rest(); !compared) return Unexpected<StoreError>{compared.error()};
+  if (const auto compared = compare_rest(); !compared)
+    return Unexpected<StoreError>{compared.error()};
   report_.voxels_changed = scratch_.voxels_changed;
   report_.stack_depths = scratch_.depths;
   return std::move(report_);

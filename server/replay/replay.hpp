@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/replay/digest_list.hpp"
 #include "server/store/store.hpp"
@@ -20,7 +20,8 @@ namespace runstone {
 struct ReplayDifference {
   std::string source;  // "snapshot", "keyframe", "followed digest" or the name of a list
   ChunkKey key;
-  Version expected_version, rebuilt_version;  // equal, unless the log never brought the chunk to the first
+  Version expected_version,
+      rebuilt_version;  // equal, unless the log never brought the chunk to the first
   Digest expected, rebuilt;
   std::string message() const;  // one line
 };
@@ -39,7 +40,7 @@ struct ReplayReport {
   std::uint64_t differences = 0;
   std::optional<ReplayDifference> first;  // the first one met
   Digest world_digest;                    // over `digests`
-  std::vector<AuditEntry> digests;        // of all edited chunks, ascending
+  std::vector<DigestCheckEntry> digests;  // of all edited chunks, ascending
 };
 
 class Replayer {
@@ -71,7 +72,7 @@ class Replayer {
   StoreResult<void> replay_edit(const EditRecord& record);
   StoreResult<void> expect_snapshots();
   /// Compares with all that is expected of this chunk at its present version and forgets that.
-  StoreResult<void> compare(const ChunkKey& key, FollowedChunk& rebuilt);
+  StoreResult<void> compare(const ChunkKey& key, ReplayedChunk& rebuilt);
   /// What was not met on the way: chunks that no edit touched, versions beyond the end, versions that never
   /// were.
   StoreResult<void> compare_rest();
@@ -83,7 +84,7 @@ class Replayer {
   Store& store_;
   const Generator& generator_;
   const std::int32_t edge_;
-  std::map<ChunkKey, FollowedChunk> chunks_;
+  std::map<ChunkKey, ReplayedChunk> chunks_;
   std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
   std::map<ChunkKey, Version> snapshots_;
   FollowScratch scratch_;

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/core/hex.hpp"
+#include "common/os/progress_line.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/replay/digest_list.hpp"
-#include "common/os/progress_line.hpp"
 #include "server/replay/replay.hpp"
 #include "server/store/world_folder.hpp"
 
@@ -39,8 +39,9 @@ std::ostream& row(std::ostream& out, const char* name) {
 void print_times(std::ostream& out, const char* name, std::uint64_t edits,
                  const std::vector<double>& seconds) {
   const auto [low, high] = std::minmax_element(seconds.begin(), seconds.end());
-  row(out, name) << std::fixed << std::setprecision(4) << median(seconds) << " s (" << *low << " to " << *high
-                 << "), " << std::setprecision(0) << rate(edits, median(seconds)) << " edits/s\n";
+  row(out, name) << std::fixed << std::setprecision(4) << median(seconds) << " s (" << *low
+                 << " to " << *high << "), " << std::setprecision(0) << rate(edits, median(seconds))
+                 << " edits/s\n";
 }
 
 nlohmann::ordered_json times_json(std::uint64_t edits, const std::vector<double>& seconds) {

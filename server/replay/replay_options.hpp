@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
-#include "server/replay/timelapse_options.hpp"
 #include "server/history/named_moment.hpp"
+#include "server/replay/timelapse_options.hpp"
 
 namespace runstone {
 
@@ -17,9 +17,9 @@ struct ReplayOptions {
   std::string world;  // folder
   bool verify = false;
   std::optional<NamedMoment> moment;  // --at as written
-  Sequence at =
-      std::numeric_limits<Sequence>::max();  // what it means in the world; replay_program() looks it up
-  std::string write_to;                      // folder of a new world
+  Sequence at = std::numeric_limits<
+      Sequence>::max();  // what it means in the world; replay_program() looks it up
+  std::string write_to;  // folder of a new world
   std::optional<std::pair<NamedMoment, NamedMoment>> diff;
   std::string json;                    // file; empty: none
   std::vector<std::string> against;    // files

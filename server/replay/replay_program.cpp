@@ -7,12 +7,12 @@
 #include <string>
 
 #include "common/core/hex.hpp"
+#include "common/os/progress_line.hpp"
 #include "common/os/steady_clock.hpp"
 #include "server/replay/digest_list.hpp"
 #include "server/replay/keyframes_program.hpp"
 #include "server/replay/moments_program.hpp"
 #include "server/replay/play_into.hpp"
-#include "common/os/progress_line.hpp"
 #include "server/replay/replay.hpp"
 #include "server/replay/replay_bench.hpp"
 #include "server/replay/replay_options.hpp"
@@ -46,13 +46,15 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
   row(out, "snapshots") << report.snapshots_compared << " compared\n";
   row(out, "keyframes") << report.keyframes_compared << " chunks compared\n";
   row(out, "lists") << report.listed_compared << " chunks compared\n";
-  row(out, "left out") << report.not_compared << " newer than the end, or of another level of detail\n";
+  row(out, "left out") << report.not_compared
+                       << " newer than the end, or of another level of detail\n";
   if (verified) row(out, "rows") << "all read and sound\n";
   row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
                    << rate_of(report, seconds) << " edits/s\n";
   row(out, "digest") << to_hex(report.world_digest) << '\n';
-  row(out, "result") << (report.differences == 0 ? "equal"
-                                                 : std::to_string(report.differences) + " differences")
+  row(out, "result") << (report.differences == 0
+                             ? "equal"
+                             : std::to_string(report.differences) + " differences")
                      << '\n';
   if (report.first) row(out, "first") << report.first->message() << '\n';
 }
@@ -84,10 +86,12 @@ int cannot_read(std::ostream& err, const std::string& message) {
 }
 
 /// The report of a mode that compares nothing. The exit code.
-int write_report(const ReplayOptions& options, std::ostream& err, const nlohmann::ordered_json& json) {
+int write_report(const ReplayOptions& options, std::ostream& err,
+                 const nlohmann::ordered_json& json) {
   if (options.json.empty()) return static_cast<int>(ReplayExit::equal);
   const auto written = write_text_file(options.json, json.dump(1) + "\n");
-  return written ? static_cast<int>(ReplayExit::equal) : cannot_read(err, written.error().message());
+  return written ? static_cast<int>(ReplayExit::equal)
+                 : cannot_read(err, written.error().message());
 }
 
 int export_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
@@ -98,9 +102,11 @@ int export_log(const ReplayOptions& options, std::ostream& out, std::ostream& er
   row(out, "world") << to_hex((*store)->meta().world_id) << "  " << (*store)->file() << '\n';
   row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
   row(out, "written") << options.export_to << ", " << done->bytes << " bytes\n";
-  return write_report(
-      options, err,
-      {{"edits", done->edits}, {"first", done->first}, {"last", done->last}, {"bytes", done->bytes}});
+  return write_report(options, err,
+                      {{"edits", done->edits},
+                       {"first", done->first},
+                       {"last", done->last},
+                       {"bytes", done->bytes}});
 }
 
 int import_log(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
@@ -129,8 +135,9 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {
     return cannot_read(err, store.file() + ": this program cannot make the base of generator " +
-                                meta.generator.name + " version " + std::to_string(meta.generator.version) +
-                                ": " + generator.error().what);
+                                meta.generator.name + " version " +
+                                std::to_string(meta.generator.version) + ": " +
+                                generator.error().what);
   }
   Replayer replayer(store, **generator);
   for (const std::string& file : options.against) {
@@ -140,7 +147,8 @@ int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
     replayer.expect(file, *list);
   }
   if (options.verify) {
-    if (const auto checked = store.check(); !checked) return cannot_read(err, checked.error().message());
+    if (const auto checked = store.check(); !checked)
+      return cannot_read(err, checked.error().message());
     const auto kept = store.keyframe_chunks();
     if (!kept) return cannot_read(err, kept.error().message());
     replayer.expect_keyframes(*kept);

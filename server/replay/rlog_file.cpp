@@ -53,8 +53,8 @@ class File {
   std::optional<std::size_t> read(std::uint64_t position, std::span<std::uint8_t> out) const {
     std::size_t got = 0;
     while (got < out.size()) {
-      const ssize_t done =
-          ::pread(descriptor_, out.data() + got, out.size() - got, static_cast<off_t>(position + got));
+      const ssize_t done = ::pread(descriptor_, out.data() + got, out.size() - got,
+                                   static_cast<off_t>(position + got));
       if (done < 0 && errno == EINTR) continue;
       if (done < 0) return std::nullopt;
       if (done == 0) break;
@@ -89,7 +89,8 @@ Result<std::vector<RlogPlayer>, std::string> players_of(Store& store) {
   std::vector<RlogPlayer> players;
   for (const PlayerRow& row : *rows) {
     if (row.name.size() > kRlogNameBytesMax) {
-      return failure(store.file() + ": player author=" + std::to_string(row.author) + ": name is too long");
+      return failure(store.file() + ": player author=" + std::to_string(row.author) +
+                     ": name is too long");
     }
     players.push_back({row.author, row.key, row.name});
   }
@@ -121,7 +122,8 @@ Result<RlogExport, std::string> write_rlog(Store& store, const File& out, const 
   });
   if (!read) return failure(read.error().message());
   if (!added) return bad(added.error());
-  if (done.edits != done.last + 1 - done.first) return failure(store.file() + ": was compacted meanwhile");
+  if (done.edits != done.last + 1 - done.first)
+    return failure(store.file() + ": was compacted meanwhile");
   if (const auto finished = writer.finish(); !finished) return bad(finished.error());
   done.bytes = writer.bytes();
   return done;
@@ -143,8 +145,8 @@ class Importer {
       if (found == known.end()) {
         players_.push_back({player.author, player.key, player.name});
       } else if (found->second != player.key) {
-        return failure(file_ + ": author " + std::to_string(player.author) + " is another player than in " +
-                       store_.file());
+        return failure(file_ + ": author " + std::to_string(player.author) +
+                       " is another player than in " + store_.file());
       }
     }
     const auto range = store_.log_range();
@@ -153,9 +155,9 @@ class Importer {
     const LogEnd head{reader.world().head, reader.world().head_us};
     const Sequence end = range_.last.version.seq;
     if (head.version.seq > end || (head.version.seq == end && head != range_.last)) {
-      return failure(file_ + ": goes on behind edit " + std::to_string(head.version.seq) + " of epoch " +
-                     std::to_string(head.version.epoch) + ", but the log of " + store_.file() +
-                     " ends with edit " + std::to_string(end) + " of epoch " +
+      return failure(file_ + ": goes on behind edit " + std::to_string(head.version.seq) +
+                     " of epoch " + std::to_string(head.version.epoch) + ", but the log of " +
+                     store_.file() + " ends with edit " + std::to_string(end) + " of epoch " +
                      std::to_string(range_.last.version.epoch));
     }
     return {};
@@ -180,7 +182,8 @@ class Importer {
     if (!compare(known)) return false;
     report_.known += known.size();
     if (!rest.empty() || !players_.empty()) {
-      if (const auto done = store_.append_history(players_, rest); !done) error_ = done.error().message();
+      if (const auto done = store_.append_history(players_, rest); !done)
+        error_ = done.error().message();
       if (error_.empty()) report_.added += rest.size();
       players_.clear();
     }
@@ -194,14 +197,14 @@ class Importer {
   bool compare(std::span<const EditRecord> known) {
     if (known.empty()) return true;
     std::size_t at = 0;
-    const auto read =
-        store_.read_log(known.front().version.seq, known.back().version.seq,
-                        [&](const EditRecord& record) { return record == known[at] && ++at < known.size(); });
+    const auto read = store_.read_log(
+        known.front().version.seq, known.back().version.seq,
+        [&](const EditRecord& record) { return record == known[at] && ++at < known.size(); });
     if (!read) {
       error_ = read.error().message();
     } else if (at < known.size()) {
-      error_ = file_ + ": edit " + std::to_string(known[at].version.seq) + " is another one than in " +
-               store_.file() + ": they are two histories";
+      error_ = file_ + ": edit " + std::to_string(known[at].version.seq) +
+               " is another one than in " + store_.file() + ": they are two histories";
     }
     return error_.empty();
   }
@@ -214,12 +217,14 @@ class Importer {
   RlogImport report_;
 };
 
-Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder, const std::string& file,
+Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
+                                                      const std::string& file,
                                                       const RlogWorld& wanted) {
   if (has_world(folder)) {
     auto store = open_world(folder, StoreAccess::read_write);
     if (!store) return failure(store.error().message());
-    if ((*store)->meta().world_id != wanted.world_id) return failure(file + ": is of another world");
+    if ((*store)->meta().world_id != wanted.world_id)
+      return failure(file + ": is of another world");
     return *std::move(store);
   }
   if (wanted.has_base || wanted.head.seq != 0) {
@@ -238,7 +243,8 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
   meta.materials = *std::move(materials);
   meta.spawn = {wanted.spawn[0], wanted.spawn[1], wanted.spawn[2]};
   const auto generator = make_generator(meta.generator, meta.materials);
-  if (!generator) return failure(file + ": generator " + meta.generator.name + ": " + generator.error().what);
+  if (!generator)
+    return failure(file + ": generator " + meta.generator.name + ": " + generator.error().what);
   auto store = create_world(folder, meta);
   if (!store) return failure(store.error().message());
   return *std::move(store);
@@ -268,15 +274,17 @@ Result<RlogImport, std::string> import_rlog(const std::string& folder, const std
   if (sodium_init() < 0) return failure("libsodium cannot start");
   const File in(file, O_RDONLY);
   if (!in.is_open()) return failure(file + ": cannot be read: " + system_error_text());
-  auto reader = RlogReader::open(
-      [&in](std::uint64_t position, std::span<std::uint8_t> out) { return in.read(position, out); });
+  auto reader = RlogReader::open([&in](std::uint64_t position, std::span<std::uint8_t> out) {
+    return in.read(position, out);
+  });
   if (!reader) return failure(file + ": " + reader.error().message());
   const bool is_new = !has_world(folder);
   auto store = world_for(folder, file, reader->world());
   if (!store) return failure(store.error());
   Importer importer(**store, file);
   if (const auto begun = importer.begin(*reader); !begun) return failure(begun.error());
-  const auto read = reader->read({}, [&](const EditRecord& record) { return importer.add(record); });
+  const auto read =
+      reader->read({}, [&](const EditRecord& record) { return importer.add(record); });
   if (!importer.flush()) return failure(importer.error());
   RlogImport report = importer.report();
   report.made_world = is_new;

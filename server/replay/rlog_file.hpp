@@ -22,12 +22,14 @@ Result<RlogExport, std::string> export_rlog(Store& store, const std::string& fil
                                             RlogOptions options = {});
 
 struct RlogImport {
-  bool made_world = false;      // the folder held none
-  std::uint64_t added = 0;      // edits
-  std::uint64_t known = 0;      // in the log already, and equal
-  std::uint64_t compacted = 0;  // before the beginning of the world's log: in its base, not compared
-  Sequence last = 0;            // of the world's log now
-  std::string stopped;  // one line; empty if the file was sound to its end. What stands before is imported
+  bool made_world = false;  // the folder held none
+  std::uint64_t added = 0;  // edits
+  std::uint64_t known = 0;  // in the log already, and equal
+  std::uint64_t compacted =
+      0;              // before the beginning of the world's log: in its base, not compared
+  Sequence last = 0;  // of the world's log now
+  std::string
+      stopped;  // one line; empty if the file was sound to its end. What stands before is imported
 };
 
 /// Appends the edits of `file` to the world in `folder`, which must be the same world and end no earlier than the

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "common/os/steady_clock.hpp"
-#include "server/replay/camera_path.hpp"
 #include "server/draw/draw_child.hpp"
 #include "server/draw/oblique_camera.hpp"
+#include "server/replay/camera_path.hpp"
 #include "server/replay/timelapse_world.hpp"
 
 namespace runstone {
@@ -26,7 +26,8 @@ constexpr std::size_t kPathBytesMax = 4 << 20;
 Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
 /// The moments to draw: ascending, the first and the last among them.
-Result<std::vector<Sequence>, std::string> moments_of(Store& reader, const TimelapseOptions& options,
+Result<std::vector<Sequence>, std::string> moments_of(Store& reader,
+                                                      const TimelapseOptions& options,
                                                       Sequence at) {
   const auto range = reader.log_range();
   if (!range) return failure(range.error().message());
@@ -37,11 +38,12 @@ Result<std::vector<Sequence>, std::string> moments_of(Store& reader, const Timel
                    " to seq=" + std::to_string(last));
   }
   const Sequence edits = last - first;
-  const Sequence every =
-      options.every != 0 ? options.every : std::max<Sequence>(1, (edits + kFramesWanted - 1) / kFramesWanted);
+  const Sequence every = options.every != 0
+                             ? options.every
+                             : std::max<Sequence>(1, (edits + kFramesWanted - 1) / kFramesWanted);
   if (edits / every >= kTimelapseFramesMax) {
-    return failure(std::to_string(edits) + " edits are more than " + std::to_string(kTimelapseFramesMax) +
-                   " frames; choose a larger --every");
+    return failure(std::to_string(edits) + " edits are more than " +
+                   std::to_string(kTimelapseFramesMax) + " frames; choose a larger --every");
   }
   std::vector<Sequence> moments;
   for (Sequence done = 0; done < edits; done += std::min(every, edits - done))
@@ -107,15 +109,16 @@ Result<TimelapseReport, std::string> make_timelapse(
   if (!moments) return failure(moments.error());
   const auto path = path_of(options, *moments);
   if (!path) return failure(path.error());
-  if (const auto prepared = prepare_folder(options.folder); !prepared) return failure(prepared.error());
+  if (const auto prepared = prepare_folder(options.folder); !prepared)
+    return failure(prepared.error());
   auto child = DrawChild::start({options.client});
   if (!child) return failure(child.error());
 
   const std::int32_t edge = reader.meta().chunk_edge;
   const std::vector<ChunkCoord> eyes =
       path->has_value() ? eyes_of(**path, *moments, edge) : std::vector<ChunkCoord>();
-  auto world =
-      TimelapseWorld::open(reader, generator, moments->front(), moments->back(), options.radius, eyes);
+  auto world = TimelapseWorld::open(reader, generator, moments->front(), moments->back(),
+                                    options.radius, eyes);
   if (!world) return failure(world.error().message());
   if (world->edited().empty() && !path->has_value()) {
     return failure(reader.file() +
@@ -138,13 +141,16 @@ Result<TimelapseReport, std::string> make_timelapse(
   };
   if (const auto begun = world->begin(send); !begun) return failure(begun.error().message());
   for (const Sequence moment : *moments) {
-    if (const auto moved = world->advance(moment, send); !moved) return failure(moved.error().message());
+    if (const auto moved = world->advance(moment, send); !moved)
+      return failure(moved.error().message());
     if (!sent) return failure(sent.error());
     DrawCamera camera = path->has_value() ? (*path)->at(moment) : still;
     fit_distances(camera, stage);
     const auto ordered = std::chrono::steady_clock::now();
-    const std::string file = (std::filesystem::path(options.folder) / frame_name(report.frames + 1)).string();
-    if (const auto drawn = child->draw(camera, options.size, file); !drawn) return failure(drawn.error());
+    const std::string file =
+        (std::filesystem::path(options.folder) / frame_name(report.frames + 1)).string();
+    if (const auto drawn = child->draw(camera, options.size, file); !drawn)
+      return failure(drawn.error());
     report.draw_seconds += seconds_since(ordered);
     ++report.frames;
     if (progress) progress(report.frames, moments->size());

@@ -22,13 +22,15 @@ std::string take_size(const std::string& text, PictureSize& out) {
 
 void add_timelapse_options(CLI::App& app, TimelapseOptions& out) {
   const auto number_from = [](Sequence low) { return CLI::Range(low, kSequenceMax); };
-  CLI::Option* folder = app.add_option(
-      "--timelapse", out.folder, "draw the world as it grew, edit by edit, into PNG files in this folder");
+  CLI::Option* folder =
+      app.add_option("--timelapse", out.folder,
+                     "draw the world as it grew, edit by edit, into PNG files in this folder");
   app.add_option("--from", out.from,
                  "timelapse: begin after this sequence number; default: before the first edit")
       ->check(number_from(0))
       ->needs(folder);
-  app.add_option("--every", out.every, "timelapse: edits a frame; default: as many as make some 300 frames")
+  app.add_option("--every", out.every,
+                 "timelapse: edits a frame; default: as many as make some 300 frames")
       ->check(number_from(1))
       ->needs(folder);
   app.add_option_function<std::string>(
@@ -44,15 +46,16 @@ void add_timelapse_options(CLI::App& app, TimelapseOptions& out) {
                  "timelapse: file with the camera's path; default: a view of all edits")
       ->check(CLI::ExistingFile)
       ->needs(folder);
-  app.add_option("--radius", out.radius, "timelapse: chunks of untouched world around the edits; default 3")
+  app.add_option("--radius", out.radius,
+                 "timelapse: chunks of untouched world around the edits; default 3")
       ->check(CLI::Range(0U, 32U))
       ->needs(folder);
   app.add_option("--fps", out.fps, "timelapse: frames a second of the video; default 30")
       ->check(CLI::Range(1U, 120U))
       ->needs(folder);
-  app.add_option(
-         "--client", out.client,
-         "timelapse: the program that draws; default: RUNSTONE_CLIENT, or runstone-client beside this one")
+  app.add_option("--client", out.client,
+                 "timelapse: the program that draws; default: RUNSTONE_CLIENT, or runstone-client "
+                 "beside this one")
       ->needs(folder);
 }
 

@@ -14,9 +14,10 @@ class App;
 namespace runstone {
 
 struct TimelapseOptions {
-  std::string folder;            // for the frames; empty: no timelapse
-  std::optional<Sequence> from;  // the first frame shows the world after this edit; nothing: before the first
-  Sequence every = 0;            // edits a frame; 0: as many as make some 300 frames
+  std::string folder;  // for the frames; empty: no timelapse
+  std::optional<Sequence>
+      from;            // the first frame shows the world after this edit; nothing: before the first
+  Sequence every = 0;  // edits a frame; 0: as many as make some 300 frames
   PictureSize size;
   std::string camera;        // file (camera_path.hpp); empty: an oblique view of all that is edited
   std::uint32_t radius = 3;  // chunks of untouched world around what is edited, 0 .. 32

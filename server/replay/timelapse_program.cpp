@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "common/core/hex.hpp"
-#include "server/replay/digest_list.hpp"
 #include "common/os/progress_line.hpp"
+#include "server/replay/digest_list.hpp"
 #include "server/replay/timelapse.hpp"
 #include "server/replay/video.hpp"
 #include "server/store/world_folder.hpp"
@@ -50,8 +50,10 @@ Result<void, std::string> timelapse_program(const ReplayOptions& options, std::o
   if (!report) return failure(report.error());
   out << std::fixed << std::setprecision(1);
   row(out, "world") << to_hex((*store)->meta().world_id) << "  " << (*store)->file() << '\n';
-  row(out, "frames") << report->frames << ", sequences " << report->first << " to " << report->last << '\n';
-  row(out, "chunks") << report->chunks << " on the stage, sent " << report->chunks_sent << " times\n";
+  row(out, "frames") << report->frames << ", sequences " << report->first << " to " << report->last
+                     << '\n';
+  row(out, "chunks") << report->chunks << " on the stage, sent " << report->chunks_sent
+                     << " times\n";
   row(out, "drawn by") << report->renderer << ", " << report->draw_seconds << " s\n";
   row(out, "time") << report->seconds << " s\n";
   const auto video = make_video(wanted.folder, wanted.fps);
@@ -62,7 +64,8 @@ Result<void, std::string> timelapse_program(const ReplayOptions& options, std::o
                       << video_command(wanted.fps) << '\n';
   }
   if (options.json.empty()) return {};
-  const auto written = write_text_file(options.json, report_json(**store, *report, video.has_value()));
+  const auto written =
+      write_text_file(options.json, report_json(**store, *report, video.has_value()));
   if (!written) return failure(written.error().message());
   return {};
 }

@@ -9,8 +9,9 @@
 namespace runstone {
 namespace {
 
-constexpr int kSurfaceDepth = 8;  // chunks below the surface of a column that are looked at, at most
-constexpr int kSamples = 5;       // places a side of a column where its surface is looked at
+constexpr int kSurfaceDepth =
+    8;                       // chunks below the surface of a column that are looked at, at most
+constexpr int kSamples = 5;  // places a side of a column where its surface is looked at
 
 VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
   if (a.empty()) return b;
@@ -18,12 +19,14 @@ VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
 }
 
-bool is_empty(const RunChunk& chunk) { return chunk.is_uniform() && material_at(chunk, {0, 0, 0}) == kEmpty; }
+bool is_empty(const RunChunk& chunk) {
+  return chunk.is_uniform() && material_at(chunk, {0, 0, 0}) == kEmpty;
+}
 
 }  // namespace
 
-StoreResult<TimelapseWorld> TimelapseWorld::open(Store& reader, const Generator& generator, Sequence from,
-                                                 Sequence to, std::uint32_t radius,
+StoreResult<TimelapseWorld> TimelapseWorld::open(Store& reader, const Generator& generator,
+                                                 Sequence from, Sequence to, std::uint32_t radius,
                                                  std::span<const ChunkCoord> eyes) {
   RUNSTONE_ASSERT(from <= to);
   auto start = WorldAt::open(reader, generator, from);
@@ -31,7 +34,8 @@ StoreResult<TimelapseWorld> TimelapseWorld::open(Store& reader, const Generator&
   TimelapseWorld world(reader, generator, *std::move(start));
   world.at_ = from;
   if (const auto found = world.find_edits(to); !found) return Unexpected<StoreError>{found.error()};
-  if (const auto set = world.set_stage(radius, eyes); !set) return Unexpected<StoreError>{set.error()};
+  if (const auto set = world.set_stage(radius, eyes); !set)
+    return Unexpected<StoreError>{set.error()};
   return world;
 }
 
@@ -51,7 +55,8 @@ StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
   return {};
 }
 
-StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius, std::span<const ChunkCoord> eyes) {
+StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
+                                            std::span<const ChunkCoord> eyes) {
   const auto r = static_cast<std::int32_t>(radius);
   std::set<Column> columns;
   const auto add_columns = [&](ChunkCoord around) {
@@ -86,7 +91,8 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius, std::span<cons
 
 /// What edits of a chunk lay bare belongs to the chunks beside it, too.
 void TimelapseWorld::put_around(ChunkCoord at) {
-  for (int i = 0; i < 27; ++i) put_on_stage({at.x + i % 3 - 1, at.y + i / 3 % 3 - 1, at.z + i / 9 - 1});
+  for (int i = 0; i < 27; ++i)
+    put_on_stage({at.x + i % 3 - 1, at.y + i / 3 % 3 - 1, at.z + i / 9 - 1});
 }
 
 void TimelapseWorld::put_on_stage(ChunkCoord at) {
@@ -106,10 +112,11 @@ void TimelapseWorld::add_surface(const Column& column) {
     highest = std::max(highest, generator_->surface_y(x * edge_ + dx, z * edge_ + dz));
   }
   const std::int32_t top = floor_div(highest - 1, edge_);
-  for (std::int32_t y = top; y > top - kSurfaceDepth && (y + 1) * edge_ > generator_->y_min(); --y) {
+  for (std::int32_t y = top; y > top - kSurfaceDepth && (y + 1) * edge_ > generator_->y_min();
+       --y) {
     put_on_stage({x, y, z});
-    const RunChunk chunk =
-        generator_->generate(origin_of({x, y, z}, edge_), Extent::cube(static_cast<unsigned>(edge_)));
+    const RunChunk chunk = generator_->generate(origin_of({x, y, z}, edge_),
+                                                Extent::cube(static_cast<unsigned>(edge_)));
     if (!chunk.is_uniform()) continue;
     const Material all = material_at(chunk, {0, 0, 0});
     if (reader_->meta().materials[all].visibility == Visibility::opaque) return;
@@ -117,10 +124,10 @@ void TimelapseWorld::add_surface(const Column& column) {
 }
 
 Unexpected<StoreError> TimelapseWorld::too_large() const {
-  return {
-      {StoreError::Kind::bad_request, reader_->file(), "",
-       "the edits and the ground around them are more than " + std::to_string(kChunksMax) +
-           " chunks: too many for a picture; choose a smaller --radius, or fewer edits by --from and --at"}};
+  return {{StoreError::Kind::bad_request, reader_->file(), "",
+           "the edits and the ground around them are more than " + std::to_string(kChunksMax) +
+               " chunks: too many for a picture; choose a smaller --radius, or fewer edits by "
+               "--from and --at"}};
 }
 
 VoxelBox TimelapseWorld::stage() const {
@@ -135,7 +142,7 @@ StoreResult<void> TimelapseWorld::begin(const Each& each) {
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (!is_empty(chunk->voxels) && !each(key, chunk->voxels)) return {};
     if (edited_chunks_.contains(key))
-      moving_.emplace(key, FollowedChunk(*std::move(chunk), origin_of(key.at, edge_)));
+      moving_.emplace(key, ReplayedChunk(*std::move(chunk), origin_of(key.at, edge_)));
   }
   return {};
 }
@@ -159,7 +166,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   }
   at_ = seq;
   for (const ChunkKey& key : touched) {
-    FollowedChunk& moving = moving_.at(key);
+    ReplayedChunk& moving = moving_.at(key);
     moving.settle(scratch_);
     if (moving.take_changed() && !each(key, moving.chunk().voxels)) return {};
   }

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/history/world_at.hpp"
 #include "server/store/store.hpp"
@@ -51,7 +51,10 @@ class TimelapseWorld {
   using Column = std::pair<std::int32_t, std::int32_t>;  // x, z of its chunks
 
   TimelapseWorld(Store& reader, const Generator& generator, WorldAt start)
-      : reader_(&reader), generator_(&generator), edge_(reader.meta().chunk_edge), start_(std::move(start)) {}
+      : reader_(&reader),
+        generator_(&generator),
+        edge_(reader.meta().chunk_edge),
+        start_(std::move(start)) {}
   StoreResult<void> find_edits(Sequence to);
   StoreResult<void> set_stage(std::uint32_t radius, std::span<const ChunkCoord> eyes);
   void put_around(ChunkCoord at);
@@ -66,7 +69,7 @@ class TimelapseWorld {
   VoxelBox edited_;
   std::set<ChunkKey> stage_;
   std::set<ChunkKey> edited_chunks_;          // on the way; before it, if there are none
-  std::map<ChunkKey, FollowedChunk> moving_;  // edited_chunks_, from begin() on
+  std::map<ChunkKey, ReplayedChunk> moving_;  // edited_chunks_, from begin() on
   Sequence at_ = 0;
   FollowScratch scratch_;
 };

@@ -25,11 +25,14 @@ std::vector<std::string> words_of_command(std::uint32_t fps) {
 }  // namespace
 
 Result<void, std::string> make_video(const std::string& folder, std::uint32_t fps) {
-  const auto failure = [](std::string why) { return Unexpected<std::string>{"ffmpeg " + std::move(why)}; };
+  const auto failure = [](std::string why) {
+    return Unexpected<std::string>{"ffmpeg " + std::move(why)};
+  };
   const auto pid = start_program({words_of_command(fps), -1, -1, folder});
   if (!pid) {
-    return failure(pid.error() == ENOENT ? "is not installed"
-                                         : std::string("cannot be started: ") + std::strerror(pid.error()));
+    return failure(pid.error() == ENOENT
+                       ? "is not installed"
+                       : std::string("cannot be started: ") + std::strerror(pid.error()));
   }
   int status = 0;
   while (::waitpid(*pid, &status, 0) < 0) {

@@ -38,9 +38,11 @@ Result<WorldCopy, std::string> fill(Store& source, WorldAt& world, const std::st
     copy.world_digest = copy.world_digest + world_digest_term(key, chunk->digest);
     slice.emplace_back(key, std::make_shared<const Chunk>(*std::move(chunk)));
     ++copy.chunks;
-    if (progress && !progress(copy.chunks, keys.size())) return failure(folder + ": was not finished");
+    if (progress && !progress(copy.chunks, keys.size()))
+      return failure(folder + ": was not finished");
     if (slice.size() < kSliceChunks && copy.chunks < keys.size()) continue;
-    if (const auto saved = (*store)->save_base(slice); !saved) return failure(saved.error().message());
+    if (const auto saved = (*store)->save_base(slice); !saved)
+      return failure(saved.error().message());
     slice.clear();
   }
   return copy;
@@ -49,7 +51,8 @@ Result<WorldCopy, std::string> fill(Store& source, WorldAt& world, const std::st
 }  // namespace
 
 Result<WorldCopy, std::string> copy_world(Store& source, const Generator& generator, Sequence at,
-                                          const std::string& folder, const WorldAt::Progress& progress) {
+                                          const std::string& folder,
+                                          const WorldAt::Progress& progress) {
   namespace fs = std::filesystem;
   if (sodium_init() < 0) return failure("libsodium cannot start");
   std::error_code error;

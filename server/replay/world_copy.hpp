@@ -18,6 +18,7 @@ struct WorldCopy {
 /// identity of its own (world id and server key), an empty log; its base are the chunks of the source's base and all that were edited, as they stood at
 /// `at`. One slice of chunks at a time; until all is written the folder has another name. The error is one line.
 Result<WorldCopy, std::string> copy_world(Store& source, const Generator& generator, Sequence at,
-                                          const std::string& folder, const WorldAt::Progress& progress = {});
+                                          const std::string& folder,
+                                          const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

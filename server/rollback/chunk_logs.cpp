@@ -20,7 +20,8 @@ std::size_t bytes_of(const EditRecord& record) {
 
 }  // namespace
 
-StoreResult<void> ChunkLogs::read(const ChunkKey& key, Sequence first, Sequence last, const Each& each) {
+StoreResult<void> ChunkLogs::read(const ChunkKey& key, Sequence first, Sequence last,
+                                  const Each& each) {
   LogQuery query;
   query.box = box_of(key.at, reader_.meta().chunk_edge);
   query.first = first;
@@ -66,7 +67,8 @@ StoreResult<void> ChunkLogs::keep(const ChunkKey& key, Kept& kept, Sequence firs
   return {};
 }
 
-StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence last, const Each& each) {
+StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence last,
+                                   const Each& each) {
   if (first > last) return {};
   if (kept_bytes_max_ == 0) return read(key, first, last, each);
   Kept& kept = kept_[key];
@@ -75,8 +77,9 @@ StoreResult<void> ChunkLogs::visit(const ChunkKey& key, Sequence first, Sequence
     if (!done) return done;
   }
   if (kept.is_too_large) return read(key, first, last, each);
-  const auto begin = std::partition_point(kept.records.begin(), kept.records.end(),
-                                          [&](const EditRecord& r) { return r.version.seq < first; });
+  const auto begin =
+      std::partition_point(kept.records.begin(), kept.records.end(),
+                           [&](const EditRecord& r) { return r.version.seq < first; });
   for (auto record = begin; record != kept.records.end() && record->version.seq <= last; ++record)
     each(*record);
   return {};

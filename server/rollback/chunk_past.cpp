@@ -9,13 +9,15 @@
 namespace runstone {
 namespace {
 
-StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at) {
+StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const ChunkKey& key,
+                               Sequence at) {
   auto newest = reader.load_kept(key, at);
   if (!newest) return Unexpected<StoreError>{newest.error()};
   auto snapshot = reader.load_snapshot(key);
   if (!snapshot) return Unexpected<StoreError>{snapshot.error()};
   const bool is_old_enough = snapshot->has_value() && (*snapshot)->version.seq <= at;
-  if (is_old_enough && (!newest->has_value() || (*newest)->version < (*snapshot)->version)) newest = snapshot;
+  if (is_old_enough && (!newest->has_value() || (*newest)->version < (*snapshot)->version))
+    newest = snapshot;
   if (newest->has_value()) {
     Chunk chunk = **std::move(newest);
     chunk.voxels = in_cheapest_order(std::move(chunk.voxels));
@@ -32,20 +34,21 @@ StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const 
 
 }  // namespace
 
-StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key, Sequence at,
-                              FollowScratch& scratch) {
+StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key,
+                              Sequence at, FollowScratch& scratch) {
   ChunkLogs logs(reader);
   return chunk_past(reader, generator, logs, key, at, scratch);
 }
 
-StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, ChunkLogs& logs, const ChunkKey& key,
-                              Sequence at, FollowScratch& scratch) {
+StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, ChunkLogs& logs,
+                              const ChunkKey& key, Sequence at, FollowScratch& scratch) {
   auto start = stored_form(reader, generator, key, at);
   if (!start || start->version.seq >= at) return start;
   const Sequence first = start->version.seq + 1;
-  FollowedChunk followed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
-  const auto read = logs.visit(
-      key, first, at, [&](const EditRecord& record) { followed.add(record.edit, record.version, scratch); });
+  ReplayedChunk followed(*std::move(start), origin_of(key.at, reader.meta().chunk_edge));
+  const auto read = logs.visit(key, first, at, [&](const EditRecord& record) {
+    followed.add(record.edit, record.version, scratch);
+  });
   if (!read) return Unexpected<StoreError>{read.error()};
   followed.settle(scratch);
   return std::move(followed.chunk());

@@ -7,11 +7,11 @@
 
 namespace runstone {
 
-OwnActions::OwnActions(std::span<const OwnRecord> records) {
-  std::map<Sequence, OwnAction> by_edit;
-  for (const OwnRecord& record : records) {
+PlayerActions::PlayerActions(std::span<const PlayerRecord> records) {
+  std::map<Sequence, PlayerAction> by_edit;
+  for (const PlayerRecord& record : records) {
     if (record.cause == Cause::player) {
-      OwnAction& action = by_edit[record.seq];
+      PlayerAction& action = by_edit[record.seq];
       action.seq = record.seq;
       last_action_ = record.seq;
       continue;
@@ -19,7 +19,7 @@ OwnActions::OwnActions(std::span<const OwnRecord> records) {
     if (record.cause != Cause::undo && record.cause != Cause::redo) continue;
     const auto found = by_edit.find(record.subject);
     if (found == by_edit.end()) continue;
-    OwnAction& action = found->second;
+    PlayerAction& action = found->second;
     action.toggles.push_back(record.seq);
     if (record.cause == Cause::undo) {
       action.last_undo.push_back(record.seq);
@@ -30,7 +30,7 @@ OwnActions::OwnActions(std::span<const OwnRecord> records) {
   for (auto& [seq, action] : by_edit) actions_.push_back(std::move(action));
 }
 
-std::vector<Sequence> OwnActions::undoable() const {
+std::vector<Sequence> PlayerActions::undoable() const {
   std::vector<Sequence> out;
   for (auto action = actions_.rbegin(); action != actions_.rend(); ++action) {
     if (!action->is_undone()) out.push_back(action->seq);
@@ -38,28 +38,30 @@ std::vector<Sequence> OwnActions::undoable() const {
   return out;
 }
 
-std::vector<Sequence> OwnActions::redoable() const {
-  std::vector<const OwnAction*> undone;
-  for (const OwnAction& action : actions_) {
+std::vector<Sequence> PlayerActions::redoable() const {
+  std::vector<const PlayerAction*> undone;
+  for (const PlayerAction& action : actions_) {
     if (action.is_undone() && action.last_undo.back() > last_action_) undone.push_back(&action);
   }
-  std::sort(undone.begin(), undone.end(),
-            [](const OwnAction* a, const OwnAction* b) { return a->last_undo.back() > b->last_undo.back(); });
+  std::sort(undone.begin(), undone.end(), [](const PlayerAction* a, const PlayerAction* b) {
+    return a->last_undo.back() > b->last_undo.back();
+  });
   std::vector<Sequence> out;
   out.reserve(undone.size());
-  for (const OwnAction* action : undone) out.push_back(action->seq);
+  for (const PlayerAction* action : undone) out.push_back(action->seq);
   return out;
 }
 
-const OwnAction& OwnActions::find(Sequence action) const {
-  const auto found = std::lower_bound(actions_.begin(), actions_.end(), action,
-                                      [](const OwnAction& a, Sequence seq) { return a.seq < seq; });
+const PlayerAction& PlayerActions::find(Sequence action) const {
+  const auto found =
+      std::lower_bound(actions_.begin(), actions_.end(), action,
+                       [](const PlayerAction& a, Sequence seq) { return a.seq < seq; });
   RUNSTONE_ASSERT(found != actions_.end() && found->seq == action);
   return *found;
 }
 
-void OwnActions::others(Sequence but, std::vector<Sequence>& out) const {
-  for (const OwnAction& action : actions_) {
+void PlayerActions::others(Sequence but, std::vector<Sequence>& out) const {
+  for (const PlayerAction& action : actions_) {
     if (action.seq == but) continue;
     if (action.is_undone()) out.push_back(action.seq);
     out.insert(out.end(), action.toggles.begin(), action.toggles.end());
@@ -67,22 +69,24 @@ void OwnActions::others(Sequence but, std::vector<Sequence>& out) const {
   std::sort(out.begin(), out.end());
 }
 
-std::vector<Sequence> OwnActions::undo_core(Sequence action) const {
-  const OwnAction& mine = find(action);
+std::vector<Sequence> PlayerActions::undo_core(Sequence action) const {
+  const PlayerAction& mine = find(action);
   std::vector<Sequence> out = {mine.seq};
   out.insert(out.end(), mine.toggles.begin(), mine.toggles.end());
   return out;
 }
 
-std::vector<Sequence> OwnActions::redo_core(Sequence action) const { return find(action).last_undo; }
+std::vector<Sequence> PlayerActions::redo_core(Sequence action) const {
+  return find(action).last_undo;
+}
 
-std::vector<Sequence> OwnActions::to_undo(Sequence action) const {
+std::vector<Sequence> PlayerActions::to_undo(Sequence action) const {
   std::vector<Sequence> out = undo_core(action);
   others(action, out);
   return out;
 }
 
-std::vector<Sequence> OwnActions::to_redo(Sequence action) const {
+std::vector<Sequence> PlayerActions::to_redo(Sequence action) const {
   std::vector<Sequence> out = redo_core(action);
   others(action, out);
   return out;

@@ -18,24 +18,25 @@
 namespace runstone {
 
 /// One record of the player, in short.
-struct OwnRecord {
+struct PlayerRecord {
   Sequence seq = 0;
   Cause cause = Cause::player;
   Sequence subject = 0;
 };
 
-struct OwnAction {
-  Sequence seq = 0;                 // of the edit
-  std::vector<Sequence> toggles;    // ascending
-  std::vector<Sequence> last_undo;  // the toggles of the undo that stands; empty unless it is undone
+struct PlayerAction {
+  Sequence seq = 0;               // of the edit
+  std::vector<Sequence> toggles;  // ascending
+  std::vector<Sequence>
+      last_undo;  // the toggles of the undo that stands; empty unless it is undone
   bool is_undone() const { return !last_undo.empty(); }
 };
 
-class OwnActions {
+class PlayerActions {
  public:
   /// The player's records, ascending; other causes are ignored. They may begin anywhere in the log: toggles of
   /// what is not among them (an older action, or a rollback that the player undid as operator) are ignored too.
-  explicit OwnActions(std::span<const OwnRecord> records);
+  explicit PlayerActions(std::span<const PlayerRecord> records);
 
   /// Actions that may be undone, newest first; that may be redone, undone last first.
   std::vector<Sequence> undoable() const;
@@ -51,9 +52,9 @@ class OwnActions {
   std::vector<Sequence> redo_core(Sequence action) const;
 
  private:
-  const OwnAction& find(Sequence action) const;
+  const PlayerAction& find(Sequence action) const;
   void others(Sequence but, std::vector<Sequence>& out) const;
-  std::vector<OwnAction> actions_;  // by sequence
+  std::vector<PlayerAction> actions_;  // by sequence
   Sequence last_action_ = 0;
 };
 

@@ -10,8 +10,8 @@
 
 namespace runstone {
 
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator, const RestoreWork& work,
-                                          const GoesOn& goes_on) {
+std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
+                                          const RestoreWork& work, const GoesOn& goes_on) {
   RestorePlanner planner(reader, generator, goes_on);
   std::vector<RestoredChunk> out;
   for (const RestoreWork::Item& item : work.items) {
@@ -53,7 +53,8 @@ bool RestoreJob::is_careful(const ChunkKey& key) const {
 
 std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
   if (!world.accepts_edits()) return std::nullopt;
-  if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks) return std::nullopt;
+  if (state_ != State::applying || is_working_ || planned_.size() >= limits_.work_chunks)
+    return std::nullopt;
   RestoreWork work;
   work.selection = order_.selection;
   work.end = world.durable();
@@ -104,15 +105,16 @@ void RestoreJob::cancel() {
   if (state_ == State::applying) state_ = State::cancelled;
 }
 
-void RestoreJob::step(WorldServer& world, const Now& now) {
+void RestoreJob::step(WorldServer& world, const Clocks& now) {
   if (state_ != State::applying) return;
-  if (!world.accepts_edits()) {  // a worker may still be at it: its answer comes, and finds the job ended
+  if (!world
+           .accepts_edits()) {  // a worker may still be at it: its answer comes, and finds the job ended
     state_ = State::failed;
     progress_.error = "the server stops, or its log cannot be written any more";
     return;
   }
   if (planned_.empty()) return;
-  world.commit(now);  // from here to order_own() no version moves
+  world.commit(now);  // from here to order_server_edits() no version moves
   std::vector<EditOffer> offers;
   std::vector<RestoredChunk> slice;
   std::uint64_t voxels = 0;
@@ -130,16 +132,18 @@ void RestoreJob::step(WorldServer& world, const Now& now) {
     voxels += chunk.voxels;
     for (const EditDescriptor& edit : chunk.edits) {
       const Sequence subject = order_.subject != 0 ? order_.subject : chunk.subject;
-      offers.push_back({{order_.author, order_.instance, seq++}, order_.cause, now.steady_us, edit, subject});
+      offers.push_back(
+          {{order_.author, order_.instance, seq++}, order_.cause, now.steady_us, edit, subject});
     }
     slice.push_back(std::move(chunk));
   }
   if (slice.empty()) return;
   const Sequence before = world.head();
-  const WorldServer::OwnEdits answer = world.order_own(offers, order_.payer, now);
+  const WorldServer::OwnEdits answer = world.order_server_edits(offers, order_.payer, now);
   if (answer.state == WorldServer::OwnEdits::State::taken) {
     state_ = State::failed;
-    progress_.error = "a client has come under the server's instance and taken its client sequences";
+    progress_.error =
+        "a client has come under the server's instance and taken its client sequences";
     return;
   }
   progress_.waits_for = answer.reason;
@@ -153,7 +157,8 @@ void RestoreJob::step(WorldServer& world, const Now& now) {
   end_if_done();
 }
 
-void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t count, const WorldServer& world) {
+void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t count,
+                              const WorldServer& world) {
   auto chunk = slice.begin();
   for (; chunk != slice.end() && count > 0; ++chunk) {
     const std::size_t mine = std::min(count, chunk->edits.size());
@@ -166,7 +171,8 @@ void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t coun
     chunk->edits.erase(chunk->edits.begin(), end);
     if (begun_.insert(chunk->key).second) ++progress_.chunks_changed;
     if (!chunk->edits.empty()) {
-      chunk->version = world.chunk_version(chunk->key);  // nobody came between: the rest of the plan holds
+      chunk->version =
+          world.chunk_version(chunk->key);  // nobody came between: the rest of the plan holds
       break;
     }
     ++progress_.chunks_done;

@@ -28,7 +28,7 @@ struct RestoreOrder {
   AuthorId author = 0;  // of the edits it writes; 0: the server itself
   ClientInstance instance = 0;
   ClientSequence first_seq = 1;  // of its edits, which count on from there
-  AuthorId payer = 0;            // as for WorldServer::order_own()
+  AuthorId payer = 0;            // as for WorldServer::order_server_edits()
   Cause cause = Cause::rollback;
   Sequence subject = 0;  // of each edit; 0: the newest selected edit of its chunk
   std::shared_ptr<const Selection> selection;
@@ -55,8 +55,8 @@ struct RestoredChunk {
   std::string error;                  // not empty: the chunk cannot be planned, and why
 };
 /// Does the work. Any thread that owns the reader. Chunks that are not wanted any more come back with an error.
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator, const RestoreWork& work,
-                                          const GoesOn& goes_on = {});
+std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
+                                          const RestoreWork& work, const GoesOn& goes_on = {});
 
 struct RestoreLimits {
   std::size_t slice_chunks = 16;         // written per step
@@ -80,7 +80,7 @@ class RestoreJob {
   /// The work could not be done at all: the job fails.
   void work_failed(std::string what);
   /// Writes a slice. Call it on each tick; it commits what is queued first.
-  void step(WorldServer& world, const Now& now);
+  void step(WorldServer& world, const Clocks& now);
   /// What is written stays. Nothing after the end.
   void cancel();
 

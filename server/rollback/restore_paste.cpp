@@ -24,7 +24,9 @@ class Paster {
         mask_(mask),
         out_(out) {}
 
-  void paste(std::span<const Difference> differences) { paste(differences, {{0, 0, 0}, {e_.f, e_.m, e_.s}}); }
+  void paste(std::span<const Difference> differences) {
+    paste(differences, {{0, 0, 0}, {e_.f, e_.m, e_.s}});
+  }
 
  private:
   VoxelIndex index(std::uint32_t f, std::uint32_t m, std::uint32_t s) const {
@@ -36,14 +38,15 @@ class Paster {
     const VoxelIndex last = index(part.last.f - 1, part.last.m - 1, part.last.s - 1) + 1;
     const auto begin = std::partition_point(differences.begin(), differences.end(),
                                             [&](const Difference& d) { return d.last <= first; });
-    const auto end =
-        std::partition_point(begin, differences.end(), [&](const Difference& d) { return d.first < last; });
+    const auto end = std::partition_point(begin, differences.end(),
+                                          [&](const Difference& d) { return d.first < last; });
     const std::span<const Difference> mine(begin, end);
     const Part tight = bounds(mine, part);
     if (tight.first.f >= tight.last.f) return;
     ClipboardBuilder builder(extent(tight), order_);
-    for_each_cell_stretch(
-        mine, tight, [&](std::uint32_t count, std::optional<Material> cell) { builder.append(count, cell); });
+    for_each_cell_stretch(mine, tight, [&](std::uint32_t count, std::optional<Material> cell) {
+      builder.append(count, cell);
+    });
     const auto clipboard = builder.finish();
     if (clipboard) return push(*clipboard, tight);
     RUNSTONE_ASSERT(clipboard.error().code == ErrorCode::limit_exceeded);
@@ -60,8 +63,8 @@ class Paster {
         const VoxelIndex last = first + (part.last.f - part.first.f);
         while (d != differences.end() && d->last <= first) ++d;
         for (auto at = d; at != differences.end() && at->first < last; ++at) {
-          row(m, s, std::max(at->first, first) - index(0, m, s), std::min(at->last, last) - index(0, m, s),
-              at->restored);
+          row(m, s, std::max(at->first, first) - index(0, m, s),
+              std::min(at->last, last) - index(0, m, s), at->restored);
         }
       }
     }
@@ -70,28 +73,31 @@ class Paster {
   /// The smallest part inside `part` that holds the differences; an empty one if there are none.
   Part bounds(std::span<const Difference> differences, const Part& part) const {
     Part tight = {part.last, part.first};
-    for_each_row(differences, part,
-                 [&](std::uint32_t m, std::uint32_t s, std::uint32_t from, std::uint32_t to, Material) {
-                   tight.first = {std::min(tight.first.f, from), std::min(tight.first.m, m),
-                                  std::min(tight.first.s, s)};
-                   tight.last = {std::max(tight.last.f, to), std::max(tight.last.m, m + 1),
-                                 std::max(tight.last.s, s + 1)};
-                 });
+    for_each_row(
+        differences, part,
+        [&](std::uint32_t m, std::uint32_t s, std::uint32_t from, std::uint32_t to, Material) {
+          tight.first = {std::min(tight.first.f, from), std::min(tight.first.m, m),
+                         std::min(tight.first.s, s)};
+          tight.last = {std::max(tight.last.f, to), std::max(tight.last.m, m + 1),
+                        std::max(tight.last.s, s + 1)};
+        });
     return tight;
   }
 
   template <class F>
-  void for_each_cell_stretch(std::span<const Difference> differences, const Part& part, F&& cells) const {
+  void for_each_cell_stretch(std::span<const Difference> differences, const Part& part,
+                             F&& cells) const {
     const std::uint32_t width = part.last.f - part.first.f;
     const std::uint32_t height = part.last.m - part.first.m;
     std::uint32_t at = 0;
-    for_each_row(differences, part,
-                 [&](std::uint32_t m, std::uint32_t s, std::uint32_t from, std::uint32_t to, Material cell) {
-                   const std::uint32_t line = ((s - part.first.s) * height + (m - part.first.m)) * width;
-                   cells(line + (from - part.first.f) - at, std::nullopt);
-                   cells(to - from, cell);
-                   at = line + (to - part.first.f);
-                 });
+    for_each_row(
+        differences, part,
+        [&](std::uint32_t m, std::uint32_t s, std::uint32_t from, std::uint32_t to, Material cell) {
+          const std::uint32_t line = ((s - part.first.s) * height + (m - part.first.m)) * width;
+          cells(line + (from - part.first.f) - at, std::nullopt);
+          cells(to - from, cell);
+          at = line + (to - part.first.f);
+        });
     cells(width * height * (part.last.s - part.first.s) - at, std::nullopt);
   }
 
@@ -120,8 +126,8 @@ class Paster {
     return out;
   }
   Extent extent(const Part& part) const {
-    const auto sides =
-        by_axis({part.last.f - part.first.f, part.last.m - part.first.m, part.last.s - part.first.s});
+    const auto sides = by_axis(
+        {part.last.f - part.first.f, part.last.m - part.first.m, part.last.s - part.first.s});
     return {static_cast<std::uint8_t>(sides[0]), static_cast<std::uint8_t>(sides[1]),
             static_cast<std::uint8_t>(sides[2])};
   }
@@ -145,7 +151,8 @@ class Paster {
 
 }  // namespace
 
-std::vector<EditDescriptor> restore_pastes(const RunChunk& now, std::span<const Difference> differences,
+std::vector<EditDescriptor> restore_pastes(const RunChunk& now,
+                                           std::span<const Difference> differences,
                                            VoxelPos origin) {
   std::vector<EditDescriptor> out;
   Paster(now, origin, {}, out).paste(differences);
@@ -153,7 +160,8 @@ std::vector<EditDescriptor> restore_pastes(const RunChunk& now, std::span<const 
 }
 
 std::vector<EditDescriptor> careful_restore_pastes(const RunChunk& now,
-                                                   std::span<const Difference> differences, VoxelPos origin) {
+                                                   std::span<const Difference> differences,
+                                                   VoxelPos origin) {
   // Each voxel belongs to one group, and its mask names what that voxel holds before any of these edits, so
   // the groups do not see each other's work.
   std::map<Material, std::vector<Difference>> by_material;

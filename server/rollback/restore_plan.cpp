@@ -11,7 +11,8 @@ namespace runstone {
 namespace {
 
 /// The differences inside `spans`, which ascend and are disjoint.
-std::vector<Difference> inside(const std::vector<Difference>& all, const std::vector<IndexSpan>& spans) {
+std::vector<Difference> inside(const std::vector<Difference>& all,
+                               const std::vector<IndexSpan>& spans) {
   std::vector<Difference> out;
   auto span = spans.begin();
   for (const Difference& d : all) {
@@ -25,7 +26,8 @@ std::vector<Difference> inside(const std::vector<Difference>& all, const std::ve
 
 }  // namespace
 
-StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<const Sequence> selected,
+StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
+                                              std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
   if (goes_on_ && !goes_on_()) return cancelled(reader_);
   auto before = chunk_past(reader_, generator_, logs_, key, selected.front() - 1, scratch_);
@@ -55,8 +57,8 @@ StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key, std::span<con
   append_differences(plan.now, plan.restored, plan.differences);
   if (box && intersect(*box, here) != here && !plan.differences.empty()) {
     std::vector<IndexSpan> spans;
-    append_spans({FillBox{intersect(*box, here)}, {}, kEmpty}, origin, plan.now.extent, plan.now.order,
-                 spans);
+    append_spans({FillBox{intersect(*box, here)}, {}, kEmpty}, origin, plan.now.extent,
+                 plan.now.order, spans);
     plan.differences = inside(plan.differences, spans);
     plan.restored = plan.now;
     std::vector<Change> changes;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/apply/replayed_chunk.hpp"
 #include "common/edits/restore/restore.hpp"
 #include "common/generate/generator.hpp"
 #include "server/rollback/chunk_logs.hpp"

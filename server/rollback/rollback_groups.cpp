@@ -11,8 +11,8 @@ StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id) {
   RollbackGroup group;
   bool begins = false;
   const auto first = reader.read_log(id, id, [&](const EditRecord& record) {
-    const bool is_own =
-        record.cause == Cause::rollback || record.cause == Cause::undo || record.cause == Cause::redo;
+    const bool is_own = record.cause == Cause::rollback || record.cause == Cause::undo ||
+                        record.cause == Cause::redo;
     begins = is_own && record.op.seq == kGroupBegins;
     group.id = id;
     group.op = record.op;
@@ -23,7 +23,8 @@ StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id) {
   if (!first) return Unexpected<StoreError>{first.error()};
   if (!begins) {
     return Unexpected<StoreError>{{StoreError::Kind::bad_request, reader.file(),
-                                   "edit_log seq=" + std::to_string(id), "no rollback begins there"}};
+                                   "edit_log seq=" + std::to_string(id),
+                                   "no rollback begins there"}};
   }
   LogQuery query;
   query.author = group.op.author;
@@ -74,7 +75,8 @@ StoreResult<std::vector<RollbackGroup>> rollback_groups(Store& reader, std::size
   out.reserve(by_instance.size());
   for (auto& [instance, group] : by_instance) out.push_back(std::move(group));
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  if (out.size() > count_max) out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(count_max));
+  if (out.size() > count_max)
+    out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(count_max));
   return out;
 }
 

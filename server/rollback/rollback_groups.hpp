@@ -17,7 +17,8 @@ struct RollbackGroup {
   Cause cause = Cause::rollback;
   TimeUs time_us = 0;           // of its first edit, UTC
   std::vector<Sequence> edits;  // ascending
-  Sequence taken_back_by = 0;   // the newest group with cause undo that answers one of its edits; 0: none
+  Sequence taken_back_by =
+      0;  // the newest group with cause undo that answers one of its edits; 0: none
 };
 
 /// The group whose id this is. bad_request if that edit begins none. O(edits with its cause since).

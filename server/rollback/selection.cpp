@@ -72,7 +72,8 @@ std::optional<VoxelBox> Selection::area() const {
   return all && box ? intersect(*all, *box) : all;
 }
 
-StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter, const GoesOn& goes_on) {
+StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter,
+                                    const GoesOn& goes_on) {
   LogQuery query;
   query.from_us = filter.from_us;
   query.until_us = filter.until_us;

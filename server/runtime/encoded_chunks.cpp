@@ -4,7 +4,8 @@
 
 namespace runstone {
 
-EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chunk, ChunkEncoding encoding) {
+EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chunk,
+                                       ChunkEncoding encoding) {
   const Name name{key, chunk.get(), encoding};
   std::promise<EncodedMessage> promise;
   std::shared_future<EncodedMessage> known;
@@ -30,7 +31,8 @@ EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chun
   promise.set_value(message);
   const std::lock_guard lock(mutex_);
   const auto mine = entries_.find(name);
-  if (mine == entries_.end() || mine->second.bytes != 0) return message;  // dropped, perhaps made anew
+  if (mine == entries_.end() || mine->second.bytes != 0)
+    return message;  // dropped, perhaps made anew
   mine->second.bytes = message.bytes->size();
   bytes_ += mine->second.bytes;
   while (bytes_ > bytes_max_) drop(entries_.find(turns_.back()));

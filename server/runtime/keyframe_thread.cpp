@@ -23,11 +23,13 @@ struct Answer {
 
 }  // namespace
 
-KeyframeThread::KeyframeThread(std::string folder, const Generator& generator, const KeyframePolicy& policy,
-                               LogWriter& writer)
-    : folder_(std::move(folder)), generator_(generator), policy_(policy), writer_(writer), thread_([this] {
-        run();
-      }) {}
+KeyframeThread::KeyframeThread(std::string folder, const Generator& generator,
+                               const KeyframePolicy& policy, LogWriter& writer)
+    : folder_(std::move(folder)),
+      generator_(generator),
+      policy_(policy),
+      writer_(writer),
+      thread_([this] { run(); }) {}
 
 KeyframeThread::~KeyframeThread() { stop(); }
 
@@ -64,11 +66,12 @@ bool KeyframeThread::wait_for_work(Sequence seen) {
 StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
                                        const std::optional<Keyframe>& keyframe) {
   auto answer = std::make_shared<Answer>();
-  const bool taken = writer_.save_keyframe(std::move(chunks), keyframe, [answer](StoreResult<void> result) {
-    const std::lock_guard guard(answer->mutex);
-    answer->result = std::move(result);
-    answer->come.notify_one();
-  });
+  const bool taken =
+      writer_.save_keyframe(std::move(chunks), keyframe, [answer](StoreResult<void> result) {
+        const std::lock_guard guard(answer->mutex);
+        answer->result = std::move(result);
+        answer->come.notify_one();
+      });
   if (!taken)
     return Unexpected<StoreError>{
         {StoreError::Kind::cancelled, folder_, "keyframe", "the log writer has ended"}};
@@ -98,7 +101,8 @@ void KeyframeThread::run() {
           return !is_stopping();
         });
     if (!made) return failed(made.error());
-    if (maker.made() > before) logger("store").info("keyframes made={} seq={}", maker.made() - before, *last);
+    if (maker.made() > before)
+      logger("store").info("keyframes made={} seq={}", maker.made() - before, *last);
     if (!wait_for_work(*last)) return;
   }
 }

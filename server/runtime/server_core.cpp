@@ -8,12 +8,12 @@
 #include <chrono>
 #include <utility>
 
-#include "common/runs/dense.hpp"
 #include "common/os/steady_clock.hpp"
-#include "server/admin/operators.hpp"
-#include "server/runtime/logging.hpp"
-#include "server/history/missing_edits.hpp"
 #include "common/os/thread_cpu_ns.hpp"
+#include "common/runs/dense.hpp"
+#include "server/admin/operators.hpp"
+#include "server/history/missing_edits.hpp"
+#include "server/runtime/logging.hpp"
 
 namespace runstone {
 namespace {
@@ -33,7 +33,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-Now now() {
+Clocks now() {
   const auto utc = std::chrono::system_clock::now().time_since_epoch();
   return {steady_now_us(), std::chrono::duration_cast<std::chrono::microseconds>(utc).count()};
 }
@@ -106,7 +106,9 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
 
 Result<WorldStart, std::string> ServerCore::read_start() {
   WorldStart start;
-  const auto failure = [](const StoreError& error) { return Unexpected<std::string>{error.message()}; };
+  const auto failure = [](const StoreError& error) {
+    return Unexpected<std::string>{error.message()};
+  };
   const auto range = store_.log_range();
   if (!range) return failure(range.error());
   start.log.last = range->last.version.seq;
@@ -126,7 +128,7 @@ Result<WorldStart, std::string> ServerCore::read_start() {
   start.players = *std::move(players);
   auto marks = store_.high_waters();
   if (!marks) return failure(marks.error());
-  start.decided = *std::move(marks);
+  start.resolved = *std::move(marks);
   return start;
 }
 
@@ -141,26 +143,28 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
       world_config(config_), *start, *this,
       [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   std::uint64_t restacked = 0;
-  const auto read = store_.read_log(start->checkpoint + 1, start->log.last, [&](const EditRecord& record) {
-    world_->restack(record);
-    ++restacked;
-    return true;
-  });
+  const auto read =
+      store_.read_log(start->checkpoint + 1, start->log.last, [&](const EditRecord& record) {
+        world_->replay_onto_stack(record);
+        ++restacked;
+        return true;
+      });
   if (!read) return Unexpected<std::string>{read.error().message()};
   const auto operators = parse_operators(config_.operators);
   if (!operators) return Unexpected<std::string>{"operators: " + operators.error()};
   operators_ = *operators;
-  rollback_ = std::make_unique<RollbackDesk>(
+  rollback_ = std::make_unique<RollbackService>(
       *world_, *this, [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
-  commands_ =
-      std::make_unique<CommandDesk>(*world_, *rollback_, *this, store_.meta().materials, folder, on_stop_);
+  commands_ = std::make_unique<CommandHandler>(*world_, *rollback_, *this, store_.meta().materials,
+                                               folder, on_stop_);
   durable_.store(start->log.last);
   chunks_ = std::make_unique<ChunkSource>(folder, generator_);
   moments_ = std::make_unique<Moments>(folder, generator_);
   start_writer(folder);
-  logger("world").info("world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder,
-                       *epoch, start->log.last, start->checkpoint, restacked, start->players.size(),
-                       start->snapshots.size());
+  logger("world").info(
+      "world={} epoch={} seq={} checkpoint={} restacked={} players={} snapshots={}", folder, *epoch,
+      start->log.last, start->checkpoint, restacked, start->players.size(),
+      start->snapshots.size());
   return {};
 }
 
@@ -226,7 +230,8 @@ void ServerCore::schedule_commit() {
     return;
   }
   gather_.expires_after(std::chrono::microseconds(due_us - now_us));
-  gather_.async_wait(asio::bind_executor(strand_, [this](const asio::error_code&) { commit_now(); }));
+  gather_.async_wait(
+      asio::bind_executor(strand_, [this](const asio::error_code&) { commit_now(); }));
 }
 
 void ServerCore::commit_now() {
@@ -239,7 +244,7 @@ void ServerCore::schedule_tick() {
   tick_.expires_after(kTickInterval);
   tick_.async_wait(asio::bind_executor(strand_, [this](const asio::error_code& error) {
     if (error) return;
-    const Now at = now();
+    const Clocks at = now();
     world_->tick(at);
     rollback_->tick(at);
     check_settled();
@@ -258,7 +263,8 @@ void ServerCore::log_counters() {
     const NetCounters& n = listener_->counters();
     const LogWriter::Counters l = writer_->counters();
     logger("app").info(
-        "counters sessions={} opened={} closed={} malformed={} edits_ordered={} edits_rejected={} commits={} "
+        "counters sessions={} opened={} closed={} malformed={} edits_ordered={} edits_rejected={} "
+        "commits={} "
         "seq={} "
         "durable={} checkpoint={} log_queue={} group_commits={} snapshots_written={} keyframes={} "
         "chunks_resident={} "
@@ -266,16 +272,18 @@ void ServerCore::log_counters() {
         "updates_sent={} claims_drifted={} "
         "chunks_requested={} unavailable_sent={} chunks_stale={} "
         "queue_full={} audits_sent={} "
-        "audit_mismatches={} commits_sent={} commit_enqueue_us={} commit_sends={} commit_send_ms={} "
+        "audit_mismatches={} commits_sent={} commit_enqueue_us={} commit_sends={} "
+        "commit_send_ms={} "
         "bytes_in={} bytes_out={} stack_depths=\"{}\" "
         "dense_expansions={}",
-        world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(), w.edits_ordered,
-        w.edits_rejected, w.commits, world_->head(), world_->durable(), world_->checkpoint(),
-        l.queued_records, l.commits, l.snapshots, l.keyframes, world_->resident_chunks(),
-        world_->resident_bytes(), w.chunks_failed, w.snapshots_sent, encoded_.encoded(), w.same_sent,
-        w.updates_sent, w.claims_drifted, w.chunks_requested, w.unavailable_sent, w.chunks_stale,
-        w.queue_full, w.audits_sent, w.audit_mismatches, w.commits_sent, enqueue_ns_ / 1'000,
-        n.commit_sends.load(), n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
+        world_->session_count(), w.sessions_opened, w.sessions_closed, n.malformed.load(),
+        w.edits_ordered, w.edits_rejected, w.commits, world_->head(), world_->durable(),
+        world_->checkpoint(), l.queued_records, l.commits, l.snapshots, l.keyframes,
+        world_->resident_chunks(), world_->resident_bytes(), w.chunks_failed, w.snapshots_sent,
+        encoded_.encoded(), w.same_sent, w.updates_sent, w.claims_drifted, w.chunks_requested,
+        w.unavailable_sent, w.chunks_stale, w.queue_full, w.audits_sent, w.audit_mismatches,
+        w.commits_sent, enqueue_ns_ / 1'000, n.commit_sends.load(),
+        n.commit_send_ns.load() / 1'000'000, n.bytes_in.load(), n.bytes_out.load(),
         world_->stack_depths().text(), dense_expansions());
   });
 }
@@ -291,8 +299,9 @@ std::future<bool> ServerCore::begin_stop() {
     stopped_ = std::move(*stopped);
     rollback_->stop();
     world_->begin_stop(now());
-    rollback_->tick(now());                                            // whoever waits is told
-    listener_->close_all(GoodbyeReason::closing, "the server stops");  // those that have not said hello yet
+    rollback_->tick(now());  // whoever waits is told
+    listener_->close_all(GoodbyeReason::closing,
+                         "the server stops");  // those that have not said hello yet
     check_settled();
   });
   return answer;
@@ -317,14 +326,15 @@ void ServerCore::stop_writer() {
 // ---- commands
 // --------------------------------------------------------------------------------------------------
 
-void ServerCore::command(const std::string& line, DeskReply reply) {
+void ServerCore::command(const std::string& line, CommandReply reply) {
   asio::post(strand_, [this, line, reply = std::move(reply)] {
     commands_->run({0, true}, line, now(), reply);
     rollback_->tick(now());
   });
 }
 
-void ServerCore::command(SessionId session, AuthorId author, const PublicKey& key, const std::string& text) {
+void ServerCore::command(SessionId session, AuthorId author, const PublicKey& key,
+                         const std::string& text) {
   const CommandCaller caller{author, operators_.contains(key)};
   if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // Ports do not call back in: the answer may come at once.
@@ -381,7 +391,7 @@ void ServerCore::on_disconnected(SessionId session) {
   });
 }
 
-// ---- WorldPorts
+// ---- WorldEnvironment
 // --------------------------------------------------------------------------------------------------
 
 NetSession* ServerCore::find(SessionId session) {
@@ -398,7 +408,7 @@ bool ServerCore::send(SessionId session, const EncodedMessage& message) {
 std::vector<SessionId> ServerCore::send_to_all(std::span<const SessionId> sessions,
                                                const EncodedMessage& message) {
   const std::int64_t began_ns = thread_cpu_ns();
-  std::vector<SessionId> full = WorldPorts::send_to_all(sessions, message);
+  std::vector<SessionId> full = WorldEnvironment::send_to_all(sessions, message);
   enqueue_ns_ += thread_cpu_ns() - began_ns;
   return full;
 }
@@ -424,7 +434,8 @@ bool ServerCore::send_snapshot(SessionId session, const ChunkKey& key, const Chu
   return true;
 }
 
-bool ServerCore::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk, Version held) {
+bool ServerCore::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                             Version held) {
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) return true;
   const auto place = found->second->reserve_chunk(key);
@@ -433,7 +444,8 @@ bool ServerCore::send_update(SessionId session, const ChunkKey& key, const Chunk
     const ChunkEncoding encoding = net->encoding();
     std::optional<ChunkEdits> edits;
     const auto read = chunks_->with_reader([&](Store& reader) {
-      auto missing = missing_edits(reader, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding));
+      auto missing =
+          missing_edits(reader, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding));
       if (missing) {
         edits = *std::move(missing);
       } else {
@@ -441,7 +453,8 @@ bool ServerCore::send_update(SessionId session, const ChunkKey& key, const Chunk
       }
     });
     if (!read) logger("store").error("{}", read.error().message());
-    net->fill_chunk(place, edits ? encode_message(*edits) : encoded_.snapshot(key, chunk, encoding));
+    net->fill_chunk(place,
+                    edits ? encode_message(*edits) : encoded_.snapshot(key, chunk, encoding));
   });
   return true;
 }
@@ -475,17 +488,18 @@ void ServerCore::load_chunk(const ChunkKey& key) {
   });
 }
 
-void ServerCore::open_moment(SessionId session, const Travel& travel) {
+void ServerCore::open_moment(SessionId session, const HistoryRequest& travel) {
   asio::post(past_readers_, [this, session, travel] {
-    const auto end =
-        travel.to == TravelTo::time ? moments_->open_at_time(travel.utc_us) : moments_->open(travel.seq);
+    const auto end = travel.to == HistoryTarget::time ? moments_->open_at_time(travel.utc_us)
+                                                      : moments_->open(travel.seq);
     Result<OpenedMoment, std::string> opened = OpenedMoment{};
     if (end) {
       opened = OpenedMoment{end->version.seq, end->time_us};
     } else {
       if (end.error().kind != StoreError::Kind::bad_request)
         logger("store").error("{}", end.error().message());
-      opened = Unexpected<std::string>{end.error().what};  // not where on this machine the world lies
+      opened =
+          Unexpected<std::string>{end.error().what};  // not where on this machine the world lies
     }
     asio::post(strand_, [this, session, request = travel.request, opened = std::move(opened)] {
       world_->moment_opened(session, request, opened, now());
@@ -493,7 +507,8 @@ void ServerCore::open_moment(SessionId session, const Travel& travel) {
   });
 }
 
-void ServerCore::load_past_chunk(SessionId session, std::uint32_t request, Sequence at, const ChunkKey& key) {
+void ServerCore::load_past_chunk(SessionId session, std::uint32_t request, Sequence at,
+                                 const ChunkKey& key) {
   asio::post(past_readers_, [this, session, request, at, key] {
     auto loaded = moments_->chunk(at, key);
     Result<ChunkPtr, std::string> chunk = ChunkPtr();
@@ -508,7 +523,8 @@ void ServerCore::load_past_chunk(SessionId session, std::uint32_t request, Seque
   });
 }
 
-void ServerCore::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) {
+void ServerCore::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
+                                Sequence checkpoint) {
   // The keeper has one job under way at a time, so the queue of jobs has room unless the writer has failed.
   const bool taken = writer_->save_snapshots(std::move(chunks), checkpoint);
   RUNSTONE_ASSERT(taken || failed_.load());
@@ -521,7 +537,8 @@ void ServerCore::log(WorldLogLevel level, const std::string& line) {
       world.debug("{}", line);
       break;
     case WorldLogLevel::info:
-      if (const auto left_out = infos_.take(now().steady_us)) world.info("{} left_out={}", line, *left_out);
+      if (const auto left_out = infos_.take(now().steady_us))
+        world.info("{} left_out={}", line, *left_out);
       break;
     case WorldLogLevel::warn:
       if (const auto left_out = warnings_.take(now().steady_us))

@@ -21,7 +21,8 @@ std::int64_t checksum_of(std::string_view table, const ChunkRow& row) {
       .value();
 }
 
-Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row, std::uint16_t chunk_edge) {
+Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
+                                    std::uint16_t chunk_edge) {
   const auto wrong = [](std::string what) { return Unexpected<std::string>{std::move(what)}; };
   if (row.checksum != checksum_of(table, row)) return wrong("checksum is wrong");
   auto voxels = decode_chunk(row.data);
@@ -32,8 +33,10 @@ Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
 }
 
 std::string unfit(const Chunk& chunk, std::uint16_t chunk_edge) {
-  if (chunk.voxels.extent != Extent::cube(chunk_edge)) return "is not a cube of the world's chunk edge";
-  if (digest_of(chunk.voxels) != chunk.digest) return "carries a digest that is not that of its voxels";
+  if (chunk.voxels.extent != Extent::cube(chunk_edge))
+    return "is not a cube of the world's chunk edge";
+  if (digest_of(chunk.voxels) != chunk.digest)
+    return "carries a digest that is not that of its voxels";
   return "";
 }
 
@@ -45,10 +48,10 @@ void bind_key(sql::Statement& statement, const ChunkKey& key) {
 }
 
 ChunkKey key_at(const sql::Statement& row, int column) {
-  return {
-      static_cast<std::uint8_t>(row.integer(column)),
-      {static_cast<std::int32_t>(row.integer(column + 1)), static_cast<std::int32_t>(row.integer(column + 2)),
-       static_cast<std::int32_t>(row.integer(column + 3))}};
+  return {static_cast<std::uint8_t>(row.integer(column)),
+          {static_cast<std::int32_t>(row.integer(column + 1)),
+           static_cast<std::int32_t>(row.integer(column + 2)),
+           static_cast<std::int32_t>(row.integer(column + 3))}};
 }
 
 Version version_at(const sql::Statement& row, int column) {
@@ -56,8 +59,8 @@ Version version_at(const sql::Statement& row, int column) {
 }
 
 Digest digest_at(const sql::Statement& row, int column) {
-  return {
-      {static_cast<std::uint64_t>(row.integer(column)), static_cast<std::uint64_t>(row.integer(column + 1))}};
+  return {{static_cast<std::uint64_t>(row.integer(column)),
+           static_cast<std::uint64_t>(row.integer(column + 1))}};
 }
 
 }  // namespace runstone

@@ -24,7 +24,8 @@ struct ChunkRow {
 std::int64_t checksum_of(std::string_view table, const ChunkRow& row);
 
 /// The chunk, if checksum, encoding, size and digest are right; else what is wrong.
-Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row, std::uint16_t chunk_edge);
+Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
+                                    std::uint16_t chunk_edge);
 
 /// What keeps a chunk from being stored under its digest in a world of this edge; empty if nothing does.
 std::string unfit(const Chunk& chunk, std::uint16_t chunk_edge);

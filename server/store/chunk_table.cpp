@@ -20,8 +20,8 @@ std::uint64_t fold_term(const std::array<std::int64_t, 6>& columns) {
 }
 
 std::uint64_t fold_term(const ChunkKey& key, const Version& version) {
-  return fold_term(
-      {key.lod, key.at.x, key.at.y, key.at.z, version.epoch, static_cast<std::int64_t>(version.seq)});
+  return fold_term({key.lod, key.at.x, key.at.y, key.at.z, version.epoch,
+                    static_cast<std::int64_t>(version.seq)});
 }
 
 }  // namespace
@@ -40,11 +40,12 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
       "INSERT INTO " + table +
       "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
       "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(lod, x, y, z) DO UPDATE SET "
-      "epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, digest1 = excluded.digest1, "
+      "epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, digest1 = "
+      "excluded.digest1, "
       "checksum = excluded.checksum, data = excluded.data");
   if (!save) return Unexpected<StoreError>{save.error()};
-  return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(rows), *std::move(version),
-                    *std::move(save));
+  return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(rows),
+                    *std::move(version), *std::move(save));
 }
 
 Unexpected<StoreError> ChunkTable::failure(StoreError::Kind kind, const ChunkKey& key,
@@ -59,7 +60,8 @@ StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uin
   if (!found) return Unexpected<StoreError>{found.error()};
   if (!*found) return std::optional<Chunk>();
   auto chunk = chunk_of(
-      table_, {key, version_at(load_, 0), digest_at(load_, 2), load_.integer(4), load_.blob(5)}, chunk_edge);
+      table_, {key, version_at(load_, 0), digest_at(load_, 2), load_.integer(4), load_.blob(5)},
+      chunk_edge);
   if (!chunk) return failure(StoreError::Kind::corrupt, key, chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }
@@ -75,7 +77,8 @@ StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) 
     ++fold.count;
     fold.sum += fold_term({rows_.integer(0), rows_.integer(1), rows_.integer(2), rows_.integer(3),
                            rows_.integer(4), rows_.integer(5)});
-    rows.push_back({key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
+    rows.push_back(
+        {key_at(rows_, 0), version_at(rows_, 4), digest_at(rows_, 6), kind_ == Kind::base});
   }
   if (fold != expected) {
     return Unexpected<StoreError>{
@@ -86,8 +89,8 @@ StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) 
   return rows;
 }
 
-StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge,
-                                   RowFold& fold) {
+StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
+                                   std::uint16_t chunk_edge, RowFold& fold) {
   if (const std::string what = unfit(chunk, chunk_edge); !what.empty())
     return failure(StoreError::Kind::bad_request, key, what);
   std::optional<Version> stored;
@@ -99,7 +102,8 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk, std:
     if (*found) stored = version_at(version_, 0);
   }
   if (stored && kind_ == Kind::base && chunk.version == *stored) {
-    return failure(StoreError::Kind::bad_request, key, "is there already");  // an import named it twice
+    return failure(StoreError::Kind::bad_request, key,
+                   "is there already");  // an import named it twice
   }
   if (stored && chunk.version < *stored) {
     return failure(StoreError::Kind::bad_request, key, "is older than the stored version");

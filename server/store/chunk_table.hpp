@@ -23,15 +23,16 @@ class ChunkTable {
   /// Inserts or replaces one row in the caller's transaction and moves the fold with it. Refuses
   /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, a version older than
   /// the stored one, and in `base` also the stored one again.
-  StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge, RowFold& fold);
+  StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge,
+                         RowFold& fold);
   /// "base" or "snapshot".
   const std::string& name() const { return table_; }
   /// Meta key of this table's fold.
   const std::string& fold_key() const { return fold_key_; }
 
  private:
-  ChunkTable(std::string file, Kind kind, std::string table, sql::Statement load, sql::Statement rows,
-             sql::Statement version, sql::Statement save)
+  ChunkTable(std::string file, Kind kind, std::string table, sql::Statement load,
+             sql::Statement rows, sql::Statement version, sql::Statement save)
       : kind_(kind),
         file_(std::move(file)),
         table_(std::move(table)),
@@ -40,7 +41,8 @@ class ChunkTable {
         rows_(std::move(rows)),
         version_(std::move(version)),
         save_(std::move(save)) {}
-  Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key, std::string what) const;
+  Unexpected<StoreError> failure(StoreError::Kind kind, const ChunkKey& key,
+                                 std::string what) const;
 
   Kind kind_;
   std::string file_, table_, fold_key_;

@@ -43,17 +43,19 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
     return statement ? *std::move(statement) : sql::Statement(nullptr);
   };
   Statements statements{
-      prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe ORDER BY seq"),
+      prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe ORDER "
+              "BY seq"),
       prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM keyframe_chunk INDEXED BY "
               "keyframe_chunk_digest WHERE seq <= ?1 ORDER BY seq, lod, x, y, z"),
+      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = "
+              "?1 AND x = ?2 "
+              "AND y = ?3 AND z = ?4 AND seq = ?5"),
+      prepare("SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = "
+              "?1 AND x = ?2 "
+              "AND y = ?3 AND z = ?4 AND seq <= ?5 ORDER BY seq DESC LIMIT 1"),
       prepare(
-          "SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = ?1 AND x = ?2 "
-          "AND y = ?3 AND z = ?4 AND seq = ?5"),
-      prepare(
-          "SELECT epoch, seq, digest0, digest1, checksum, data FROM keyframe_chunk WHERE lod = ?1 AND x = ?2 "
-          "AND y = ?3 AND z = ?4 AND seq <= ?5 ORDER BY seq DESC LIMIT 1"),
-      prepare("INSERT INTO keyframe_chunk(lod, x, y, z, seq, epoch, digest0, digest1, checksum, data) "
-              "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"),
+          "INSERT INTO keyframe_chunk(lod, x, y, z, seq, epoch, digest0, digest1, checksum, data) "
+          "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"),
       prepare("INSERT INTO keyframe(seq, epoch, time_us, chunks, digest0, digest1, checksum) "
               "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
       prepare("DELETE FROM keyframe_chunk WHERE seq <= ?1"),
@@ -78,7 +80,8 @@ StoreResult<std::vector<Keyframe>> KeyframeTable::all() {
          s_.all.integer(2)},
         static_cast<std::uint64_t>(s_.all.integer(3)),
         digest_at(s_.all, 4)};
-    if (s_.all.integer(6) != checksum_of(keyframe)) return corrupt(place_of(keyframe), "checksum is wrong");
+    if (s_.all.integer(6) != checksum_of(keyframe))
+      return corrupt(place_of(keyframe), "checksum is wrong");
     keyframes.push_back(keyframe);
   }
 }
@@ -105,20 +108,22 @@ StoreResult<std::optional<Chunk>> KeyframeTable::newest(const ChunkKey& key, Seq
   return read(s_.newest, key, last, chunk_edge);
 }
 
-StoreResult<std::optional<Chunk>> KeyframeTable::read(sql::Statement& row, const ChunkKey& key, Sequence seq,
-                                                      std::uint16_t chunk_edge) {
+StoreResult<std::optional<Chunk>> KeyframeTable::read(sql::Statement& row, const ChunkKey& key,
+                                                      Sequence seq, std::uint16_t chunk_edge) {
   const sql::ResetAtEnd reset_at_end(row);
   bind_key(row, key);
   const auto found = row.bind(5, static_cast<std::int64_t>(seq)).step();
   if (!found) return Unexpected<StoreError>{found.error()};
   if (!*found) return std::optional<Chunk>();
   const Version version = version_at(row, 0);
-  auto chunk = chunk_of(kChunks, {key, version, digest_at(row, 2), row.integer(4), row.blob(5)}, chunk_edge);
+  auto chunk =
+      chunk_of(kChunks, {key, version, digest_at(row, 2), row.integer(4), row.blob(5)}, chunk_edge);
   if (!chunk) return corrupt(place_of(key, version.seq), chunk.error());
   return std::optional<Chunk>(*std::move(chunk));
 }
 
-StoreResult<void> KeyframeTable::save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge) {
+StoreResult<void> KeyframeTable::save(const ChunkKey& key, const Chunk& chunk,
+                                      std::uint16_t chunk_edge) {
   const Sequence seq = chunk.version.seq;
   if (const std::string what = unfit(chunk, chunk_edge); !what.empty()) {
     return Unexpected<StoreError>{{StoreError::Kind::bad_request, file_, place_of(key, seq), what}};
@@ -153,7 +158,8 @@ StoreResult<void> KeyframeTable::save(const Keyframe& keyframe) {
 
 StoreResult<void> KeyframeTable::remove(Sequence last) {
   for (sql::Statement* statement : {&s_.remove_chunks, &s_.remove}) {
-    if (auto removed = statement->bind(1, static_cast<std::int64_t>(last)).run(); !removed) return removed;
+    if (auto removed = statement->bind(1, static_cast<std::int64_t>(last)).run(); !removed)
+      return removed;
   }
   return {};
 }
@@ -182,16 +188,18 @@ StoreResult<void> KeyframeTable::prove(const std::vector<Keyframe>& keyframes,
   return {};
 }
 
-std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start, const std::vector<StoredChunk>& rows) {
+std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start,
+                                   const std::vector<StoredChunk>& rows) {
   start.insert(start.end(), rows.begin(), rows.end());
   // Of equal keys the newest comes first, and std::unique keeps the first.
   std::sort(start.begin(), start.end(), [](const StoredChunk& a, const StoredChunk& b) {
     if (a.key != b.key) return a.key < b.key;
     return a.version != b.version ? b.version < a.version : a.is_base < b.is_base;
   });
-  start.erase(std::unique(start.begin(), start.end(),
-                          [](const StoredChunk& a, const StoredChunk& b) { return a.key == b.key; }),
-              start.end());
+  start.erase(
+      std::unique(start.begin(), start.end(),
+                  [](const StoredChunk& a, const StoredChunk& b) { return a.key == b.key; }),
+      start.end());
   return start;
 }
 

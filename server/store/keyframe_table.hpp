@@ -24,9 +24,11 @@ class KeyframeTable {
   /// All rows up to a sequence, without their voxels, by sequence and key.
   StoreResult<std::vector<StoredChunk>> rows(Sequence last);
   /// Of a chunk, the row at this very sequence, verified; nothing if there is none.
-  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence seq, std::uint16_t chunk_edge);
+  StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence seq,
+                                         std::uint16_t chunk_edge);
   /// Of a chunk, the newest row up to a sequence, verified; nothing if there is none. O(log rows).
-  StoreResult<std::optional<Chunk>> newest(const ChunkKey& key, Sequence last, std::uint16_t chunk_edge);
+  StoreResult<std::optional<Chunk>> newest(const ChunkKey& key, Sequence last,
+                                           std::uint16_t chunk_edge);
 
   /// All three in the caller's transaction. A row that is there already stays; it is damage if it differs.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge);
@@ -36,7 +38,8 @@ class KeyframeTable {
 
   /// Sums up `rows` (ascending by sequence) over `start`, the chunks of the base, and compares each keyframe with what
   /// it proves. Names the first that is wrong.
-  StoreResult<void> prove(const std::vector<Keyframe>& keyframes, const std::vector<StoredChunk>& start,
+  StoreResult<void> prove(const std::vector<Keyframe>& keyframes,
+                          const std::vector<StoredChunk>& start,
                           const std::vector<StoredChunk>& rows) const;
 
  private:
@@ -54,6 +57,7 @@ class KeyframeTable {
 };
 
 /// `start` with the newest row of each chunk in its place; both as KeyframeTable::prove() takes them. Ascending by key.
-std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start, const std::vector<StoredChunk>& rows);
+std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start,
+                                   const std::vector<StoredChunk>& rows);
 
 }  // namespace runstone

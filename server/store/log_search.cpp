@@ -14,8 +14,8 @@ StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
   const auto row = time_->bind(1, static_cast<std::int64_t>(seq)).step();
   if (!row) return Unexpected<StoreError>{row.error()};
   if (!*row) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, database_.file(), "edit_log seq=" + std::to_string(seq), "is missing"}};
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, database_.file(),
+                                   "edit_log seq=" + std::to_string(seq), "is missing"}};
   }
   return time_->integer(0);
 }
@@ -35,17 +35,22 @@ StoreResult<Sequence> LogSearch::first_at(TimeUs time, Sequence first, Sequence 
   return first;
 }
 
-StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query, std::optional<AuthorId> author) const {
+StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
+                                                std::optional<AuthorId> author) const {
   // Named, because the planner has no statistics and the wrong index reads the whole log.
   std::string text = "SELECT seq FROM edit_log";
   const bool by_cause = !author && query.cause && *query.cause != Cause::player;
-  text += author ? " INDEXED BY edit_log_author" : by_cause ? " INDEXED BY edit_log_cause" : " NOT INDEXED";
+  text += author     ? " INDEXED BY edit_log_author"
+          : by_cause ? " INDEXED BY edit_log_cause"
+                     : " NOT INDEXED";
   text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
   if (author) text += " AND author = ?3";
   if (query.cause) text += " AND cause = ?4";
   if (by_cause) text += " AND cause <> 0";  // what the partial index asks for
   if (query.box) {
-    text += " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > ?10";
+    text +=
+        " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > "
+        "?10";
   }
   auto rows = database_.prepare(text + " ORDER BY seq");
   if (!rows) return rows;

@@ -24,7 +24,8 @@ class LogSearch {
  private:
   StoreResult<TimeUs> time_of(Sequence seq);
   StoreResult<sql::Statement> matching(const LogQuery& query, std::optional<AuthorId> author) const;
-  StoreResult<std::vector<Sequence>> in_segments(const LogQuery& query, Sequence first, Sequence last);
+  StoreResult<std::vector<Sequence>> in_segments(const LogQuery& query, Sequence first,
+                                                 Sequence last);
 
   sql::Database& database_;
   SegmentTable& segments_;

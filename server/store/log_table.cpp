@@ -11,8 +11,10 @@ namespace runstone {
 namespace {
 
 constexpr const char* kSelect =
-    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, min_z, "
-    "max_x, max_y, max_z, descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND ?2 ORDER "
+    "SELECT seq, epoch, author, instance, client_seq, time_us, cause, subject, min_x, min_y, "
+    "min_z, "
+    "max_x, max_y, max_z, descriptor, checksum FROM edit_log WHERE log = 0 AND seq BETWEEN ?1 AND "
+    "?2 ORDER "
     "BY seq";
 
 bool in_range(std::int64_t value, std::uint64_t max) {
@@ -29,9 +31,11 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
   const std::int64_t subject = row.integer(7);
   auto edit = decode_descriptor(row.blob(14));
   // What the record's bytes cannot say is refused here: they are made for the checksum.
-  if (!in_range(client_seq, kSequenceMax) || !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
+  if (!in_range(client_seq, kSequenceMax) ||
+      !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
       !in_range(epoch, std::numeric_limits<Epoch>::max()) ||
-      !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) || !edit) {
+      !in_range(author, std::numeric_limits<AuthorId>::max()) || !in_range(cause, kCauseMax) ||
+      !edit) {
     return std::nullopt;
   }
   const VoxelBox box = bounding_box(*edit);
@@ -57,19 +61,21 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
   // A damaged log id would make its row invisible below; the two ends of the key order show it at once.
   const auto strangers = database.integer(
-      "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE log > 0)");
+      "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE "
+      "log > 0)");
   if (!strangers) return Unexpected<StoreError>{strangers.error()};
   if (*strangers != 0) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::corrupt, database.file(), "edit_log", "holds rows of a log other than 0"}};
+    return Unexpected<StoreError>{{StoreError::Kind::corrupt, database.file(), "edit_log",
+                                   "holds rows of a log other than 0"}};
   }
   auto first = database.prepare("SELECT seq FROM edit_log WHERE log = 0 ORDER BY seq LIMIT 1");
   if (!first) return Unexpected<StoreError>{first.error()};
-  auto last =
-      database.prepare("SELECT seq, epoch, time_us FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
+  auto last = database.prepare(
+      "SELECT seq, epoch, time_us FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
   if (!last) return Unexpected<StoreError>{last.error()};
   auto insert = database.prepare(
-      "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, subject, "
+      "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, "
+      "subject, "
       "min_x, min_y, min_z, max_x, max_y, max_z, descriptor, checksum) "
       "VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)");
   if (!insert) return Unexpected<StoreError>{insert.error()};
@@ -77,8 +83,8 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
 }
 
 Unexpected<StoreError> LogTable::corrupt(Sequence seq, std::string what) const {
-  return {
-      {StoreError::Kind::corrupt, database_->file(), "edit_log seq=" + std::to_string(seq), std::move(what)}};
+  return {{StoreError::Kind::corrupt, database_->file(), "edit_log seq=" + std::to_string(seq),
+           std::move(what)}};
 }
 
 StoreResult<LogRange> LogTable::range(const LogEnd& head) {
@@ -147,14 +153,17 @@ StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence
   if (!rows) return Unexpected<StoreError>{rows.error()};
   Sequence next = std::max(first, range.first);
   Epoch epoch = 0;
-  if (next <= until) rows->bind(1, static_cast<std::int64_t>(next)).bind(2, static_cast<std::int64_t>(until));
+  if (next <= until)
+    rows->bind(1, static_cast<std::int64_t>(next)).bind(2, static_cast<std::int64_t>(until));
   for (; next <= until; ++next) {
     const auto more = rows->step();
     if (!more) return Unexpected<StoreError>{more.error()};
-    if (!*more || static_cast<Sequence>(rows->integer(0)) != next) return corrupt(next, "is missing");
+    if (!*more || static_cast<Sequence>(rows->integer(0)) != next)
+      return corrupt(next, "is missing");
     const auto record = record_of(*rows);
     if (!record) return corrupt(next, "checksum is wrong");
-    if (record->version.epoch < epoch) return corrupt(next, "has an older epoch than the edit before it");
+    if (record->version.epoch < epoch)
+      return corrupt(next, "has an older epoch than the edit before it");
     epoch = record->version.epoch;
     if (!each(*record)) return {};
   }

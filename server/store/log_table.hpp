@@ -29,8 +29,12 @@ class LogTable {
   StoreResult<EditRecord> read_one(sql::Statement& reader, Sequence seq);
 
  private:
-  LogTable(sql::Database& database, sql::Statement first, sql::Statement last, sql::Statement insert)
-      : database_(&database), first_(std::move(first)), last_(std::move(last)), insert_(std::move(insert)) {}
+  LogTable(sql::Database& database, sql::Statement first, sql::Statement last,
+           sql::Statement insert)
+      : database_(&database),
+        first_(std::move(first)),
+        last_(std::move(last)),
+        insert_(std::move(insert)) {}
   Unexpected<StoreError> corrupt(Sequence seq, std::string what) const;
 
   sql::Database* database_;

@@ -8,7 +8,10 @@
 namespace runstone {
 
 LogWriter::LogWriter(Store& store, Callbacks callbacks, Limits limits)
-    : store_(store), callbacks_(std::move(callbacks)), limits_(limits), thread_([this] { run(); }) {}
+    : store_(store),
+      callbacks_(std::move(callbacks)),
+      limits_(limits),
+      thread_([this] { run(); }) {}
 
 LogWriter::~LogWriter() { stop(); }
 
@@ -34,7 +37,8 @@ bool LogWriter::save_snapshots(SnapshotChunks chunks, std::optional<Sequence> ch
   return queue({std::move(chunks), checkpoint, 0, std::nullopt, {}});
 }
 
-bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done) {
+bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe,
+                              KeyframeDone done) {
   return queue({std::move(chunks), std::nullopt, 0, keyframe, std::move(done)});
 }
 
@@ -94,7 +98,8 @@ void LogWriter::run() {
       }
       if (group.room == 0 && !job) return;  // stopping, and nothing is left
     }
-    if (const auto written = write(group); !written) return fail(written.error(), job ? &*job : nullptr);
+    if (const auto written = write(group); !written)
+      return fail(written.error(), job ? &*job : nullptr);
     // After every slice the records that came meanwhile get their turn.
     if (job) {
       if (const auto written = write_slice(*job); !written) return fail(written.error(), nullptr);
@@ -127,7 +132,8 @@ StoreResult<void> LogWriter::write(const Batch& group) {
 
 StoreResult<void> LogWriter::write_slice(Job& job) {
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
-  const std::span<const std::pair<ChunkKey, ChunkPtr>> slice(job.chunks.data() + job.written, count);
+  const std::span<const std::pair<ChunkKey, ChunkPtr>> slice(job.chunks.data() + job.written,
+                                                             count);
   const bool last = job.written + count == job.chunks.size();
   if (job.done) {
     const auto saved = store_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
@@ -139,7 +145,8 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
     if (job.is_over()) job.done(saved);
     return {};
   }
-  if (auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved) return saved;
+  if (auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved)
+    return saved;
   job.written += count;
   const std::lock_guard guard(mutex_);
   counters_.snapshots += count;

@@ -27,7 +27,8 @@ class LogWriter {
  public:
   struct Limits {
     std::size_t queued_records_max = 65536;  // counted until they are durable
-    std::size_t commit_records_max = 4096;  // per transaction; a single larger batch is still one transaction
+    std::size_t commit_records_max =
+        4096;  // per transaction; a single larger batch is still one transaction
     std::size_t jobs_max = 4;
     std::size_t slice_chunks_max = 32;  // chunks per transaction
   };

@@ -102,7 +102,8 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
   meta.chunk_edge = static_cast<std::uint16_t>(in.integer("chunk_edge", 16, kSideMax));
   if (!std::has_single_bit(meta.chunk_edge)) in.reject("chunk_edge");
   meta.generator.name = in.text("generator");
-  meta.generator.version = static_cast<std::uint32_t>(in.integer("generator_version", 0, 0xffffffff));
+  meta.generator.version =
+      static_cast<std::uint32_t>(in.integer("generator_version", 0, 0xffffffff));
   meta.generator.seed = static_cast<std::uint64_t>(in.integer("seed", kIntegerMin, kIntegerMax));
   meta.generator.parameters = in.text("generator_parameters");
   auto materials = parse_material_table(in.text("materials"), "meta");
@@ -126,7 +127,8 @@ StoreResult<MetaTable> MetaTable::open(sql::Database& database) {
   if (!all) return Unexpected<StoreError>{all.error()};
   auto one = database.prepare("SELECT key, value, checksum FROM meta WHERE key = ?1");
   if (!one) return Unexpected<StoreError>{one.error()};
-  auto write = database.prepare("INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, ?2, ?3)");
+  auto write =
+      database.prepare("INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, ?2, ?3)");
   if (!write) return Unexpected<StoreError>{write.error()};
   return MetaTable(database.file(), *std::move(all), *std::move(one), *std::move(write));
 }

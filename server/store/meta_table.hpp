@@ -44,7 +44,10 @@ class MetaTable {
 
  private:
   MetaTable(std::string file, sql::Statement all, sql::Statement one, sql::Statement write)
-      : file_(std::move(file)), all_(std::move(all)), one_(std::move(one)), write_(std::move(write)) {}
+      : file_(std::move(file)),
+        all_(std::move(all)),
+        one_(std::move(one)),
+        write_(std::move(write)) {}
   StoreResult<MetaValue> read_row(sql::Statement& row, std::string_view key);
   StoreResult<MetaValue> get(const std::string& key);
   Unexpected<StoreError> corrupt(std::string_view key, std::string what) const;

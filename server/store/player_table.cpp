@@ -14,12 +14,12 @@ std::int64_t checksum_of(std::int64_t author, ByteView key, std::string_view nam
   return RowChecksum("player").integer(author).blob(key).text(name).value();
 }
 
-std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_t decided,
+std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_t resolved,
                          std::int64_t last_us) {
   return RowChecksum("player_instance")
       .integer(author)
       .integer(instance)
-      .integer(decided)
+      .integer(resolved)
       .integer(last_us)
       .value();
 }
@@ -29,7 +29,8 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
 StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
   auto players = database.prepare("SELECT author, key, name, checksum FROM player ORDER BY author");
   if (!players) return Unexpected<StoreError>{players.error()};
-  const std::string mark_row = "SELECT author, instance, decided, last_us, checksum FROM player_instance";
+  const std::string mark_row =
+      "SELECT author, instance, decided, last_us, checksum FROM player_instance";
   auto marks = database.prepare(mark_row + " ORDER BY author, instance");
   if (!marks) return Unexpected<StoreError>{marks.error()};
   auto mark = database.prepare(mark_row + " WHERE author = ?1 AND instance = ?2");
@@ -40,8 +41,10 @@ StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
       "excluded.checksum");
   if (!put) return Unexpected<StoreError>{put.error()};
   auto raise = database.prepare(
-      "INSERT INTO player_instance(author, instance, decided, last_us, checksum) VALUES(?1, ?2, ?3, ?4, ?5) "
-      "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, last_us = excluded.last_us, "
+      "INSERT INTO player_instance(author, instance, decided, last_us, checksum) VALUES(?1, ?2, "
+      "?3, ?4, ?5) "
+      "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, last_us = "
+      "excluded.last_us, "
       "checksum = excluded.checksum");
   if (!raise) return Unexpected<StoreError>{raise.error()};
   return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(mark),
@@ -61,8 +64,9 @@ StoreResult<std::vector<PlayerRow>> PlayerTable::players() {
     row.name = players_.text(2);
     if (players_.integer(3) != checksum_of(author, key, row.name) || author < 1 ||
         author > std::numeric_limits<AuthorId>::max() || key.size() != row.key.size()) {
-      return Unexpected<StoreError>{
-          {StoreError::Kind::corrupt, file_, "player author=" + std::to_string(author), "checksum is wrong"}};
+      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
+                                     "player author=" + std::to_string(author),
+                                     "checksum is wrong"}};
     }
     row.author = static_cast<AuthorId>(author);
     std::copy(key.begin(), key.end(), row.key.begin());
@@ -86,17 +90,18 @@ StoreResult<std::vector<HighWater>> PlayerTable::high_waters() {
 StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {
   const std::int64_t author = row.integer(0);
   const std::int64_t instance = row.integer(1);
-  const std::int64_t decided = row.integer(2);
+  const std::int64_t resolved = row.integer(2);
   const std::int64_t last_us = row.integer(3);
-  if (row.integer(4) != checksum_of(author, instance, decided, last_us) || author < 0 ||
-      author > std::numeric_limits<AuthorId>::max() || decided < 0) {
-    return Unexpected<StoreError>{{StoreError::Kind::corrupt, file_,
-                                   "player_instance author=" + std::to_string(author) +
-                                       " instance=" + std::to_string(static_cast<ClientInstance>(instance)),
-                                   "checksum is wrong"}};
+  if (row.integer(4) != checksum_of(author, instance, resolved, last_us) || author < 0 ||
+      author > std::numeric_limits<AuthorId>::max() || resolved < 0) {
+    return Unexpected<StoreError>{
+        {StoreError::Kind::corrupt, file_,
+         "player_instance author=" + std::to_string(author) +
+             " instance=" + std::to_string(static_cast<ClientInstance>(instance)),
+         "checksum is wrong"}};
   }
   return HighWater{static_cast<AuthorId>(author), static_cast<ClientInstance>(instance),
-                   static_cast<ClientSequence>(decided), last_us};
+                   static_cast<ClientSequence>(resolved), last_us};
 }
 
 StoreResult<void> PlayerTable::put(const PlayerRow& player) {
@@ -116,16 +121,16 @@ StoreResult<void> PlayerTable::raise(HighWater mark) {
     if (*found) {
       const auto stored = mark_of(mark_);
       if (!stored) return Unexpected<StoreError>{stored.error()};
-      mark.decided = std::max(mark.decided, stored->decided);
+      mark.resolved = std::max(mark.resolved, stored->resolved);
       mark.last_us = std::max(mark.last_us, stored->last_us);
     }
   }
-  const auto decided = static_cast<std::int64_t>(mark.decided);
+  const auto resolved = static_cast<std::int64_t>(mark.resolved);
   return raise_.bind(1, std::int64_t{mark.author})
       .bind(2, instance)
-      .bind(3, decided)
+      .bind(3, resolved)
       .bind(4, mark.last_us)
-      .bind(5, checksum_of(mark.author, instance, decided, mark.last_us))
+      .bind(5, checksum_of(mark.author, instance, resolved, mark.last_us))
       .run();
 }
 

@@ -15,7 +15,8 @@ VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
 }
 
 bool is_small(const VoxelBox& box) {
-  return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) <= kSegmentSide;
+  return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z}) <=
+         kSegmentSide;
 }
 
 }  // namespace
@@ -54,7 +55,8 @@ StoreResult<void> SegmentTable::write(Open& open) {
   if (open.is_written) return {};
   if (!put_) {
     auto put = database_->prepare(
-        "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, last_seq, "
+        "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, "
+        "last_seq, "
         "author) "
         "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
     if (!put) return Unexpected<StoreError>{put.error()};
@@ -75,14 +77,17 @@ StoreResult<void> SegmentTable::write(Open& open) {
 }
 
 StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<VoxelBox>& box,
-                                                        std::optional<AuthorId> author, Sequence first,
-                                                        Sequence last) {
+                                                        std::optional<AuthorId> author,
+                                                        Sequence first, Sequence last) {
   std::string text =
-      "SELECT first_seq, last_seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM log_box WHERE "
+      "SELECT first_seq, last_seq, author, min_x, min_y, min_z, max_x, max_y, max_z FROM log_box "
+      "WHERE "
       "first_seq <= ?1 AND last_seq >= ?2";
   if (author) text += " AND author = ?3";
   if (box)
-    text += " AND min_x < ?4 AND max_x > ?5 AND min_y < ?6 AND max_y > ?7 AND min_z < ?8 AND max_z > ?9";
+    text +=
+        " AND min_x < ?4 AND max_x > ?5 AND min_y < ?6 AND max_y > ?7 AND min_z < ?8 AND max_z > "
+        "?9";
   auto rows = database_->prepare(text);
   if (!rows) return Unexpected<StoreError>{rows.error()};
   rows->bind(1, static_cast<std::int64_t>(last)).bind(2, static_cast<std::int64_t>(first));
@@ -92,17 +97,19 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
     rows->bind(6, std::int64_t{box->max.y}).bind(7, std::int64_t{box->min.y});
     rows->bind(8, std::int64_t{box->max.z}).bind(9, std::int64_t{box->min.z});
   }
-  const auto coordinate = [&](int column) { return static_cast<std::int32_t>(rows->integer(column)); };
+  const auto coordinate = [&](int column) {
+    return static_cast<std::int32_t>(rows->integer(column));
+  };
   std::vector<LogSegment> segments;
   for (;;) {
     const auto more = rows->step();
     if (!more) return Unexpected<StoreError>{more.error()};
     if (!*more) break;
-    segments.push_back(
-        {static_cast<Sequence>(rows->integer(0)),
-         static_cast<Sequence>(rows->integer(1)),
-         static_cast<AuthorId>(rows->integer(2)),
-         {{coordinate(3), coordinate(4), coordinate(5)}, {coordinate(6), coordinate(7), coordinate(8)}}});
+    segments.push_back({static_cast<Sequence>(rows->integer(0)),
+                        static_cast<Sequence>(rows->integer(1)),
+                        static_cast<AuthorId>(rows->integer(2)),
+                        {{coordinate(3), coordinate(4), coordinate(5)},
+                         {coordinate(6), coordinate(7), coordinate(8)}}});
   }
   std::sort(segments.begin(), segments.end(),
             [](const LogSegment& a, const LogSegment& b) { return a.first < b.first; });

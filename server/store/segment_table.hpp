@@ -35,7 +35,8 @@ class SegmentTable {
 
   /// Segments that may hold such edits, by their first sequence.
   StoreResult<std::vector<LogSegment>> find(const std::optional<VoxelBox>& box,
-                                            std::optional<AuthorId> author, Sequence first, Sequence last);
+                                            std::optional<AuthorId> author, Sequence first,
+                                            Sequence last);
 
  private:
   struct Open {
@@ -46,7 +47,8 @@ class SegmentTable {
   StoreResult<void> write(Open& open);
 
   sql::Database* database_;
-  std::optional<sql::Statement> put_;  // prepared when first needed: a world of format 1 lacks the table
+  std::optional<sql::Statement>
+      put_;  // prepared when first needed: a world of format 1 lacks the table
   std::map<AuthorId, Open> open_;
 };
 

@@ -31,7 +31,8 @@ StoreError::Kind kind_of_code(int code) {
 Unexpected<StoreError> failure(sqlite3* handle, int code) {
   const char* name = sqlite3_db_filename(handle, "main");
   std::string what = sqlite3_errmsg(handle);
-  if (const int system = sqlite3_system_errno(handle); system != 0 && (code & 0xff) != SQLITE_CONSTRAINT) {
+  if (const int system = sqlite3_system_errno(handle);
+      system != 0 && (code & 0xff) != SQLITE_CONSTRAINT) {
     what += " (system error " + std::to_string(system) + ")";
   }
   return {StoreError{kind_of_code(code), name == nullptr ? "" : name, "", std::move(what)}};
@@ -66,8 +67,8 @@ Statement& Statement::bind(int parameter, std::int64_t value) {
 Statement& Statement::bind(int parameter, ByteView value) {
   // An empty view may have a null pointer, which SQLite would store as NULL.
   const int code = value.empty() ? sqlite3_bind_zeroblob(handle_.get(), parameter, 0)
-                                 : sqlite3_bind_blob64(handle_.get(), parameter, value.data(), value.size(),
-                                                       SQLITE_STATIC);
+                                 : sqlite3_bind_blob64(handle_.get(), parameter, value.data(),
+                                                       value.size(), SQLITE_STATIC);
   if (bind_error_ == SQLITE_OK) bind_error_ = code;
   return *this;
 }
@@ -103,11 +104,15 @@ void Statement::reset() {
   bind_error_ = SQLITE_OK;
 }
 
-std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(handle_.get(), column);
+}
 
 ByteView Statement::blob(int column) const {
   const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(handle_.get(), column));
-  return {data, data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
+  return {data, data == nullptr
+                    ? 0
+                    : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 
 std::string_view Statement::text(int column) const {
@@ -149,7 +154,8 @@ StoreResult<Database> Database::open(const std::string& file, Mode mode, const s
       break;
   }
   sqlite3* handle = nullptr;
-  const int code = sqlite3_open_v2(uri.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
+  const int code =
+      sqlite3_open_v2(uri.c_str(), &handle, flags, vfs.empty() ? nullptr : vfs.c_str());
   Database database(file, handle);
   if (code != SQLITE_OK) {
     auto error = failure(handle, code);

@@ -67,7 +67,12 @@ class ResetAtEnd {
 
 class Database {
  public:
-  enum class Mode { read, write, create, header };  // header: the main file alone, without locks and WAL
+  enum class Mode {
+    read,
+    write,
+    create,
+    header
+  };  // header: the main file alone, without locks and WAL
 
   /// `vfs`: name of an SQLite VFS; empty for the default.
   static StoreResult<Database> open(const std::string& file, Mode mode, const std::string& vfs);
@@ -97,7 +102,9 @@ class Database {
 class Transaction {
  public:
   static StoreResult<Transaction> begin(Database& database);
-  Transaction(Transaction&& other) noexcept : database_(other.database_) { other.database_ = nullptr; }
+  Transaction(Transaction&& other) noexcept : database_(other.database_) {
+    other.database_ = nullptr;
+  }
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
   StoreResult<void> commit();

@@ -31,14 +31,16 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
     const auto chunk = load_stored(stored);
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (!chunk->has_value()) {
-      return Unexpected<StoreError>{
-          {StoreError::Kind::corrupt, file(), "keyframe_chunk chunk=" + text_of(stored.key), "is missing"}};
+      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
+                                     "keyframe_chunk chunk=" + text_of(stored.key), "is missing"}};
     }
     if (!stored.is_base) {
-      if (auto saved = base_.save(stored.key, **chunk, meta_.chunk_edge, *base_fold); !saved) return saved;
+      if (auto saved = base_.save(stored.key, **chunk, meta_.chunk_edge, *base_fold); !saved)
+        return saved;
     }
     if (needs_snapshot) {
-      if (auto saved = snapshots_.save(stored.key, **chunk, meta_.chunk_edge, *snapshot_fold); !saved)
+      if (auto saved = snapshots_.save(stored.key, **chunk, meta_.chunk_edge, *snapshot_fold);
+          !saved)
         return saved;
     }
   }
@@ -64,13 +66,16 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
     const auto checkpoint = meta_table_.counter("checkpoint");
     if (!checkpoint) return Unexpected<StoreError>{checkpoint.error()};
     if (*checkpoint < keyframe) {
-      if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put) return put;
+      if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put)
+        return put;
     }
     if (auto put = meta_table_.put_log_head(moment->at); !put) return put;
-    if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe); !gone)
+    if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
+        !gone)
       return gone;
     // A segment that goes on behind the head stays as it is: its box is larger than need be, nothing else.
-    if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone) return gone;
+    if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone)
+      return gone;
     return (*table)->remove(keyframe);
   });
   segments_.forget();

@@ -76,8 +76,8 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
     if (*table == nullptr) return std::optional<Chunk>();
     keyframes = *table;
   }
-  auto loaded =
-      chunk.is_base ? load_base(chunk.key) : keyframes->load(chunk.key, chunk.version.seq, meta_.chunk_edge);
+  auto loaded = chunk.is_base ? load_base(chunk.key)
+                              : keyframes->load(chunk.key, chunk.version.seq, meta_.chunk_edge);
   if (!loaded || !loaded->has_value()) return loaded;
   if ((*loaded)->version != chunk.version) return std::optional<Chunk>();  // completed anew
   if ((*loaded)->digest == chunk.digest) return loaded;

@@ -10,9 +10,9 @@
 
 namespace runstone {
 
-SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock, StoreAccess access,
-                         MetaTable meta_table, PlayerTable player_table, LogTable log_table, ChunkTable base,
-                         ChunkTable snapshots)
+SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock,
+                         StoreAccess access, MetaTable meta_table, PlayerTable player_table,
+                         LogTable log_table, ChunkTable base, ChunkTable snapshots)
     : lock_(std::move(lock)),
       database_(std::move(database)),
       meta_table_(std::move(meta_table)),
@@ -73,15 +73,18 @@ StoreResult<Sequence> SqliteStore::checkpoint() {
   if (!range) return Unexpected<StoreError>{range.error()};
   const Sequence last = range->last.version.seq;
   if (*checkpoint <= last && *checkpoint + 1 >= range->first) return checkpoint;
-  const std::string log = *checkpoint > last ? "ends at seq=" + std::to_string(last) + ", before"
-                                             : "begins at seq=" + std::to_string(range->first) + ", behind";
+  const std::string log = *checkpoint > last
+                              ? "ends at seq=" + std::to_string(last) + ", before"
+                              : "begins at seq=" + std::to_string(range->first) + ", behind";
   return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "edit_log",
                                  log + " the checkpoint seq=" + std::to_string(*checkpoint)}};
 }
 
 StoreResult<std::vector<PlayerRow>> SqliteStore::players() { return player_table_.players(); }
 
-StoreResult<std::vector<HighWater>> SqliteStore::high_waters() { return player_table_.high_waters(); }
+StoreResult<std::vector<HighWater>> SqliteStore::high_waters() {
+  return player_table_.high_waters();
+}
 
 StoreResult<LogEnd> SqliteStore::log_head() { return meta_table_.log_head(); }
 
@@ -106,7 +109,8 @@ StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> recor
     }
     epoch = record.version.epoch;
     if (record.log != 0) return refuse(where, "belongs to another log");
-    if (const auto numbers = validate_numbers(record); !numbers) return refuse(where, numbers.error().what);
+    if (const auto numbers = validate_numbers(record); !numbers)
+      return refuse(where, numbers.error().what);
   }
   return {};
 }
@@ -143,8 +147,9 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
     if (auto added = segments_.add(record); !added) return added;
     const auto [author, instance, seq] = record.op;
     HighWater& mark =
-        marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us}).first->second;
-    mark.decided = std::max(mark.decided, seq);
+        marks.try_emplace({author, instance}, HighWater{author, instance, seq, record.time_us})
+            .first->second;
+    mark.resolved = std::max(mark.resolved, seq);
     mark.last_us = std::max(mark.last_us, record.time_us);
   }
   for (const auto& [client, mark] : marks) {
@@ -247,8 +252,8 @@ StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
                                     ": what was before that time was compacted away");
     }
     if (range->last.time_us <= time_us) return range->last.version.seq;
-    const auto behind =
-        LogSearch(*database_, segments_, *range).first_at(time_us + 1, range->first, range->last.version.seq);
+    const auto behind = LogSearch(*database_, segments_, *range)
+                            .first_at(time_us + 1, range->first, range->last.version.seq);
     if (!behind) return behind;
     return *behind - 1;
   });

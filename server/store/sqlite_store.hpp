@@ -17,12 +17,14 @@
 namespace runstone {
 
 struct SqliteOptions {
-  std::string vfs;   // SQLite VFS by name; empty: the default
-  bool sync = true;  // false is for one test only: it shows that the power-loss test notices a missing fsync
+  std::string vfs;  // SQLite VFS by name; empty: the default
+  bool sync =
+      true;  // false is for one test only: it shows that the power-loss test notices a missing fsync
 };
 
 /// As create_world() and open_world(), which use the default options.
-StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder, const WorldMeta& meta,
+StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
+                                                        const WorldMeta& meta,
                                                         const SqliteOptions& options);
 StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
                                                       const SqliteOptions& options);
@@ -30,9 +32,10 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
 class SqliteStore final : public Store {
  public:
   /// Everything is checked before the object exists: marks, meta rows, log ids. `in_file`: as of check_marks().
-  static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder, StoreAccess access,
-                                                        const SqliteOptions& options, WriterLock lock,
-                                                        std::uint32_t in_file);
+  static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder,
+                                                        StoreAccess access,
+                                                        const SqliteOptions& options,
+                                                        WriterLock lock, std::uint32_t in_file);
 
   const WorldMeta& meta() const override { return meta_; }
   const std::string& file() const override { return database_->file(); }
@@ -45,7 +48,8 @@ class SqliteStore final : public Store {
   StoreResult<Sequence> checkpoint() override;
   StoreResult<std::vector<PlayerRow>> players() override;
   StoreResult<std::vector<HighWater>> high_waters() override;
-  StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override;
+  StoreResult<void> append(std::span<const PlayerRow> players,
+                           std::span<const EditRecord> records) override;
   StoreResult<void> append_history(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) override;
   StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
@@ -89,7 +93,8 @@ class SqliteStore final : public Store {
   StoreResult<void> complete_base(const StoredMoment& moment);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
-  StoreResult<void> save_chunks(ChunkTable& table, std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
+  StoreResult<void> save_chunks(ChunkTable& table,
+                                std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
   /// Also that they are of the epoch of now or, for history, that epochs do not fall.
   StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
   /// In the caller's transaction.
@@ -113,7 +118,8 @@ class SqliteStore final : public Store {
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;
-  std::optional<KeyframeTable> keyframes_;  // opened when first needed: older formats lack the tables
+  std::optional<KeyframeTable>
+      keyframes_;  // opened when first needed: older formats lack the tables
   StoreAccess access_;
   WorldMeta meta_;
   Epoch epoch_ = 0;

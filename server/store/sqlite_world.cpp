@@ -44,7 +44,8 @@ constexpr mode_t kFolderMode = 0700;
 StoreResult<void> make_file(const std::string& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
   if (descriptor < 0) {
-    return failure(StoreError::Kind::io, file, "cannot be made: " + std::generic_category().message(errno));
+    return failure(StoreError::Kind::io, file,
+                   "cannot be made: " + std::generic_category().message(errno));
   }
   ::close(descriptor);
   return {};
@@ -61,7 +62,8 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
       !(errno == EEXIST && std::filesystem::is_directory(whole))) {
     error = std::error_code(errno, std::generic_category());
   }
-  if (error) return failure(StoreError::Kind::io, file, "the folder cannot be made: " + error.message());
+  if (error)
+    return failure(StoreError::Kind::io, file, "the folder cannot be made: " + error.message());
   const auto parent = whole / "..";
   const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
@@ -84,7 +86,8 @@ StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool 
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return Unexpected<StoreError>{mode.error()};
   if (*mode != "wal")
-    return failure(StoreError::Kind::io, database.file(), "the file system has no shared memory for WAL");
+    return failure(StoreError::Kind::io, database.file(),
+                   "the file system has no shared memory for WAL");
   // Overwritten rows of the log's tree hold nothing secret, so freed pages need not be zeroed.
   return database.run(
       "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
@@ -115,11 +118,14 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
 
 }  // namespace
 
-StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder, StoreAccess access,
-                                                            const SqliteOptions& options, WriterLock lock,
+StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
+                                                            StoreAccess access,
+                                                            const SqliteOptions& options,
+                                                            WriterLock lock,
                                                             std::uint32_t in_file) {
   const std::string file = file_in(folder);
-  const auto mode = access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
+  const auto mode =
+      access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
   auto opened = sql::Database::open(file, mode, options.vfs);
   if (!opened) return Unexpected<StoreError>{opened.error()};
   auto database = std::make_unique<sql::Database>(*std::move(opened));
@@ -153,9 +159,9 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   const auto epoch = meta_table->counter("epoch");
   if (!epoch) return Unexpected<StoreError>{epoch.error()};
 
-  std::unique_ptr<SqliteStore> store(
-      new SqliteStore(std::move(database), std::move(lock), access, *std::move(meta_table),
-                      *std::move(players), *std::move(log), *std::move(base), *std::move(snapshots)));
+  std::unique_ptr<SqliteStore> store(new SqliteStore(
+      std::move(database), std::move(lock), access, *std::move(meta_table), *std::move(players),
+      *std::move(log), *std::move(base), *std::move(snapshots)));
   store->meta_ = *std::move(meta);
   store->epoch_ = static_cast<Epoch>(*epoch);
   if (access == StoreAccess::read_write) {
@@ -165,13 +171,16 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   return store;
 }
 
-StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder, const WorldMeta& meta,
+StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
+                                                        const WorldMeta& meta,
                                                         const SqliteOptions& options) {
   const std::string file = file_in(folder);
   if (auto readable = meta_of(rows_of(meta)); !readable) {
-    return failure(StoreError::Kind::bad_request, file, "a new world cannot have this " + readable.error());
+    return failure(StoreError::Kind::bad_request, file,
+                   "a new world cannot have this " + readable.error());
   }
-  if (const auto made = make_folder(folder, file); !made) return Unexpected<StoreError>{made.error()};
+  if (const auto made = make_folder(folder, file); !made)
+    return Unexpected<StoreError>{made.error()};
   auto lock = WriterLock::take(folder, file);
   if (!lock) return Unexpected<StoreError>{lock.error()};
   const auto there = exists(file, options.vfs);
@@ -187,8 +196,8 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
       return Unexpected<StoreError>{written.error()};
     }
   }
-  auto store =
-      SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock), kStoreFormatVersion);
+  auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock),
+                                 kStoreFormatVersion);
   if (!store) return Unexpected<StoreError>{store.error()};
   return std::unique_ptr<Store>(*std::move(store));
 }

@@ -25,18 +25,29 @@
 #include "common/materials/material_table.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/world/player_rows.hpp"
 #include "server/store/log_query.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 
 inline constexpr std::uint32_t kStoreFormatVersion = 4;
 
 struct StoreError {
-  enum class Kind { io, not_a_world, newer_version, corrupt, exists, full, bad_request, locked, cancelled };
+  enum class Kind {
+    io,
+    not_a_world,
+    newer_version,
+    corrupt,
+    exists,
+    full,
+    bad_request,
+    locked,
+    cancelled
+  };
   Kind kind = Kind::io;
-  std::string file;   // the database
-  std::string where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
+  std::string file;  // the database
+  std::string
+      where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
   std::string what;
   std::string message() const;  // one line: "FILE: WHERE: WHAT"
 };

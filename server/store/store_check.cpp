@@ -24,9 +24,10 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
     const auto chunk = table.load(key, meta_.chunk_edge);
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (version > newest) {
-      return Unexpected<StoreError>{
-          {StoreError::Kind::corrupt, file(), table.name() + " chunk=" + text_of(key),
-           is_base ? "holds edits that are in the log as well" : "is newer than the end of the log"}};
+      return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
+                                     table.name() + " chunk=" + text_of(key),
+                                     is_base ? "holds edits that are in the log as well"
+                                             : "is newer than the end of the log"}};
     }
   }
   return {};
@@ -43,7 +44,7 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
   std::optional<OperationId> uncovered;
   auto read = read_log(1, *last, [&](const EditRecord& record) {
     const auto mark = marks.find({record.op.author, record.op.instance});
-    if (mark == marks.end() || mark->second.decided < record.op.seq ||
+    if (mark == marks.end() || mark->second.resolved < record.op.seq ||
         mark->second.last_us < record.time_us) {
       uncovered = record.op;
     }
@@ -74,14 +75,15 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
     for (; next != segments->end() && next->first <= seq; ++next) open[next->author] = &*next;
     const auto found = open.find(record.op.author);
     const VoxelBox box = bounding_box(record.edit);
-    if (found == open.end() || found->second->last < seq || intersect(found->second->box, box) != box) {
+    if (found == open.end() || found->second->last < seq ||
+        intersect(found->second->box, box) != box) {
       uncovered = seq;
     }
     return uncovered == 0;
   });
   if (!read || uncovered == 0) return read;
-  return Unexpected<StoreError>{
-      {StoreError::Kind::corrupt, file(), "log_box", "lacks edit_log seq=" + std::to_string(uncovered)}};
+  return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "log_box",
+                                 "lacks edit_log seq=" + std::to_string(uncovered)}};
 }
 
 StoreResult<void> SqliteStore::check_keyframes() {
@@ -103,7 +105,8 @@ StoreResult<void> SqliteStore::check_keyframes() {
     for (const StoredChunk& row : *rows) {
       const auto loaded = load_stored(row);
       if (!loaded) return Unexpected<StoreError>{loaded.error()};
-      if (!loaded->has_value() || row.version <= head->version || row.version > range->last.version) {
+      if (!loaded->has_value() || row.version <= head->version ||
+          row.version > range->last.version) {
         return Unexpected<StoreError>{
             {StoreError::Kind::corrupt, file(),
              "keyframe_chunk chunk=" + text_of(row.key) + " seq=" + std::to_string(row.version.seq),

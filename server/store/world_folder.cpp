@@ -14,7 +14,8 @@ Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
 Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   if (creation.edge != 16 && creation.edge != 32 && creation.edge != 64 && creation.edge != 128) {
-    return failure("--edge " + std::to_string(creation.edge) + ": chunks have an edge of 16, 32, 64 or 128");
+    return failure("--edge " + std::to_string(creation.edge) +
+                   ": chunks have an edge of 16, 32, 64 or 128");
   }
   auto materials = read_materials(creation.materials_file);
   if (!materials) return failure(materials.error());
@@ -25,7 +26,8 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   meta.generator.parameters = creation.generator_parameters;
   meta.materials = *std::move(materials);
   const auto generator = make_generator(meta.generator, meta.materials);
-  if (!generator) return failure("--generator " + meta.generator.name + ": " + generator.error().what);
+  if (!generator)
+    return failure("--generator " + meta.generator.name + ": " + generator.error().what);
   meta.spawn = {0.5, static_cast<double>((*generator)->surface_y(0, 0)) + 2.0, 0.5};
   draw_identity(meta);
   return meta;
@@ -57,8 +59,8 @@ Result<std::unique_ptr<Generator>, std::string> generator_of(const Store& store)
   const WorldMeta& meta = store.meta();
   auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {
-    return failure(store.file() + ": meta generator=" + meta.generator.name +
-                   " version=" + std::to_string(meta.generator.version) + ": " + generator.error().what);
+    return failure(store.file() + ": meta generator=" + meta.generator.name + " version=" +
+                   std::to_string(meta.generator.version) + ": " + generator.error().what);
   }
   return *std::move(generator);
 }
@@ -70,8 +72,9 @@ Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
   const auto file = std::filesystem::path(folder) / "world.sqlite";
   std::error_code ignored;
   if (!opened.is_new && std::filesystem::file_size(file, ignored) == 0) {
-    return failure(file.string() +
-                   ": is empty, as a creation that was cut short leaves it: delete it to begin anew");
+    return failure(
+        file.string() +
+        ": is empty, as a creation that was cut short leaves it: delete it to begin anew");
   }
   if (opened.is_new) {
     const auto meta = new_meta(creation);

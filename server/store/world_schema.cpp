@@ -115,7 +115,8 @@ StoreResult<std::uint32_t> check_marks(const std::string& file, const std::strin
     return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
   };
   auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
-  if (!database) return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
+  if (!database)
+    return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
   // The bytes themselves, not PRAGMAs: after a crash in the middle of a checkpoint the main file alone is no
   // sound database (its WAL mends it), but these marks were on disk before the WAL
   // existed; an upgrade brings its own there, at the next start if a crash or a reader kept it from that.
@@ -138,7 +139,8 @@ StoreResult<std::uint32_t> check_marks(const std::string& file, const std::strin
                    "is of world format " + std::to_string(version) + "; this program knows up to " +
                        std::to_string(kStoreFormatVersion) + ". Nothing was changed.");
   }
-  if (version < 1) return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
+  if (version < 1)
+    return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
   return version;
 }
 

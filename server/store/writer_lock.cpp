@@ -15,13 +15,13 @@ StoreResult<WriterLock> WriterLock::take(const std::string& folder, const std::s
   WriterLock lock;
   lock.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock.descriptor_ < 0) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::io, path, "", "cannot be written: " + std::generic_category().message(errno)}};
+    return Unexpected<StoreError>{{StoreError::Kind::io, path, "",
+                                   "cannot be written: " + std::generic_category().message(errno)}};
   }
   // flock, not fcntl: it belongs to the open file, so a second Store of this process is refused as well.
   if (::flock(lock.descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    return Unexpected<StoreError>{
-        {StoreError::Kind::locked, file, "", "another program is writing this world (it holds world.lock)"}};
+    return Unexpected<StoreError>{{StoreError::Kind::locked, file, "",
+                                   "another program is writing this world (it holds world.lock)"}};
   }
   return lock;
 }

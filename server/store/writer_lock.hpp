@@ -15,7 +15,9 @@ class WriterLock {
 
   /// Holds nothing.
   WriterLock() = default;
-  WriterLock(WriterLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
+  WriterLock(WriterLock&& other) noexcept : descriptor_(other.descriptor_) {
+    other.descriptor_ = -1;
+  }
   WriterLock& operator=(WriterLock&& other) noexcept;
   ~WriterLock();
 

@@ -25,30 +25,30 @@ Authority::Authority(const EditLimits& limits, const LogPosition& log)
       last_time_us_(log.last_time_us),
       chunks_(limits.chunk_edge) {}
 
-void Authority::restack(const EditRecord& record) {
+void Authority::replay_onto_stack(const EditRecord& record) {
   for (const ChunkCoord at : touched_chunks(record.edit, limits_.chunk_edge)) {
-    chunks_.restack({0, at}, record.version, record.edit);
+    chunks_.replay_onto_stack({0, at}, record.version, record.edit);
   }
 }
 
 std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_has_room) {
-  if (decided_.knows(offer.op)) return decided_.answer_to(offer.op);
-  auto refusal =
-      offer.cause == Cause::player ? check_edit(offer.edit, limits_) : check_own_edit(offer.edit, limits_);
+  if (resolved_.knows(offer.op)) return resolved_.answer_to(offer.op);
+  auto refusal = offer.cause == Cause::player ? check_edit(offer.edit, limits_)
+                                              : check_server_edit(offer.edit, limits_);
   if (!refusal && !log_has_room) refusal = RejectReason::busy;
   if (refusal) {
-    decided_.refuse(offer.op, *refusal);
+    resolved_.refuse(offer.op, *refusal);
     return refusal;
   }
-  decided_.raise(offer.op);
+  resolved_.raise(offer.op);
   queue_.push_back(offer);
   return std::nullopt;
 }
 
-std::optional<OrderedBatch> Authority::commit(const Now& now) {
+std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
   if (queue_.empty()) return std::nullopt;
-  last_time_us_ =
-      std::max(last_time_us_, now.utc_us);  // the wall clock may be set back; the log's time never goes
+  last_time_us_ = std::max(
+      last_time_us_, now.utc_us);  // the wall clock may be set back; the log's time never goes
   OrderedBatch batch;
   batch.commit.epoch = epoch_;
   batch.commit.first = head_ + 1;
@@ -69,9 +69,11 @@ std::optional<OrderedBatch> Authority::commit(const Now& now) {
       ordered.previous.push_back(chunks_.push(key, version, offer.edit));
       batch.touched.push_back(key);
     }
-    bytes += kOrderedEditBytesMax + encode(offer.edit).size() + kPreviousBytesMax * ordered.previous.size();
+    bytes += kOrderedEditBytesMax + encode(offer.edit).size() +
+             kPreviousBytesMax * ordered.previous.size();
     batch.commit.edits.push_back(std::move(ordered));
-    batch.records.push_back({version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
+    batch.records.push_back(
+        {version, offer.op, last_time_us_, offer.cause, offer.edit, offer.subject});
   }
   std::sort(batch.touched.begin(), batch.touched.end());
   batch.touched.erase(std::unique(batch.touched.begin(), batch.touched.end()), batch.touched.end());

@@ -5,7 +5,7 @@
 //   - sequences have no gaps and continue the log of the last start; the epoch is that of this start;
 //   - a commit needs no voxels: a chunk that is not in memory keeps its edits on its stack until
 //     it is loaded;
-//   - an operation (author, instance, client sequence) is decided once: see DecidedMarks.
+//   - an operation (author, instance, client sequence) is decided once: see OperationWatermarks.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,10 +14,10 @@
 
 #include "common/edits/descriptor/edit_record.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/world/decided_marks.hpp"
+#include "server/world/clocks.hpp"
 #include "server/world/edit_check.hpp"
+#include "server/world/operation_watermarks.hpp"
 #include "server/world/world_chunks.hpp"
-#include "server/world/world_time.hpp"
 
 namespace runstone {
 
@@ -50,23 +50,23 @@ class Authority {
   // ---- start: before the first offer
   WorldChunks& chunks() { return chunks_; }
   const WorldChunks& chunks() const { return chunks_; }
-  DecidedMarks& decided() { return decided_; }
-  const DecidedMarks& decided() const { return decided_; }
+  OperationWatermarks& resolved() { return resolved_; }
+  const OperationWatermarks& resolved() const { return resolved_; }
   /// A record of the log above the checkpoint: back on the stacks of the chunks it touches. In log order.
-  void restack(const EditRecord& record);
+  void replay_onto_stack(const EditRecord& record);
 
   // ---- edits
   /// Nothing: queued, and its client sequence is decided. Else why not, which decides it too: busy (if
-  /// `log_has_room` is false) or what check_edit() says, for another cause than player check_own_edit(). An edit decided before is answered as it was then:
-  /// with its refusal, or already_decided.
+  /// `log_has_room` is false) or what check_edit() says, for another cause than player check_server_edit(). An edit decided before is answered as it was then:
+  /// with its refusal, or already_resolved.
   std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
   /// Decides a client sequence without an edit: it was refused for a reason outside the authority's sight.
-  void refuse(const OperationId& op, RejectReason reason) { decided_.refuse(op, reason); }
+  void refuse(const OperationId& op, RejectReason reason) { resolved_.refuse(op, reason); }
 
   std::size_t queued() const { return queue_.size(); }
   /// Orders as many queued edits as one commit message may carry; nothing if none is queued. Call again until
   /// then. O(per touched chunk: runs + its edits).
-  std::optional<OrderedBatch> commit(const Now& now);
+  std::optional<OrderedBatch> commit(const Clocks& now);
 
   Epoch epoch() const { return epoch_; }
   /// The sequence that an edit which was ever accepted has at most.
@@ -80,7 +80,7 @@ class Authority {
   Sequence head_;
   TimeUs last_time_us_;
   WorldChunks chunks_;
-  DecidedMarks decided_;
+  OperationWatermarks resolved_;
   std::deque<EditOffer> queue_;
 };
 

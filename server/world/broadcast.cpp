@@ -11,10 +11,12 @@
 namespace runstone {
 namespace {
 
-std::vector<PlayerRow> unsaved_players_of(WorldState& world, const std::vector<EditRecord>& records) {
+std::vector<PlayerRow> unsaved_players_of(WorldState& world,
+                                          const std::vector<EditRecord>& records) {
   std::vector<PlayerRow> players;
   for (const EditRecord& record : records) {
-    if (auto player = world.players.take_unsaved(record.op.author)) players.push_back(std::move(*player));
+    if (auto player = world.players.take_unsaved(record.op.author))
+      players.push_back(std::move(*player));
   }
   return players;
 }
@@ -33,11 +35,14 @@ void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessi
 /// Ascending. Also notes whose edits these are.
 std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch) {
   std::set<std::pair<AuthorId, ClientInstance>> authors;
-  for (const OrderedEdit& edit : batch.commit.edits) authors.emplace(edit.op.author, edit.op.instance);
+  for (const OrderedEdit& edit : batch.commit.edits)
+    authors.emplace(edit.op.author, edit.op.instance);
   std::vector<SessionId> receivers, own, scratch;
-  for (const ChunkKey& key : batch.touched) add_sessions(world.interest.subscribers(key), receivers, scratch);
+  for (const ChunkKey& key : batch.touched)
+    add_sessions(world.interest.subscribers(key), receivers, scratch);
   for (auto& [id, session] : world.sessions) {
-    if (session.state == SessionStage::open && authors.contains({session.author, session.instance})) {
+    if (session.state == SessionStage::open &&
+        authors.contains({session.author, session.instance})) {
       own.push_back(id);
       session.awaits_durable = world.authority.head();
     }
@@ -48,7 +53,8 @@ std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch
 
 /// The commit did not fit. The session's chunks become stale; its own edits in it are answered by a small
 /// message, for the client cannot tell from a snapshot that they were applied.
-void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch, const Now& now) {
+void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch,
+                     const Clocks& now) {
   mark_stale(world, session, batch.touched, now);
   const WorldSession& mine = *world.find(session);
   const OperationId own{mine.author, mine.instance, 0};
@@ -56,14 +62,14 @@ void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& b
     const OrderedEdit& edit = batch.commit.edits[i];
     if (edit.op.author != own.author || edit.op.instance != own.instance) continue;
     answer(world, session,
-           {edit.op.seq, RejectReason::already_decided, "applied; its commit did not fit the queue",
-            batch.commit.first + i});
+           {edit.op.seq, RejectReason::already_resolved,
+            "applied; its commit did not fit the queue", batch.commit.first + i});
   }
 }
 
 }  // namespace
 
-void commit_and_broadcast(WorldState& world, const Now& now) {
+void commit_and_broadcast(WorldState& world, const Clocks& now) {
   while (auto batch = world.authority.commit(now)) {
     const EncodedMessage encoded = encode_message(batch->commit);
     ++world.counters.commits;
@@ -77,7 +83,8 @@ void commit_and_broadcast(WorldState& world, const Now& now) {
     world.counters.queue_full += full.size();
     for (const SessionId session : full) drop_commit_for(world, session, *batch, now);
     for (const ChunkKey& key : batch->touched) {
-      if (world.authority.chunks().stack_size(key) > world.config.restack_load_edits) ask_load(world, key);
+      if (world.authority.chunks().stack_size(key) > world.config.restack_load_edits)
+        ask_load(world, key);
     }
   }
 }
@@ -90,7 +97,7 @@ void tell_durable_to_authors(WorldState& world) {
   }
 }
 
-void broadcast_durable(WorldState& world, const Now& now) {
+void broadcast_durable(WorldState& world, const Clocks& now) {
   if (now.steady_us - world.durable_us < world.config.durable_interval_us) return;
   world.durable_us = now.steady_us;
   const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});

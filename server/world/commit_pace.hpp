@@ -23,9 +23,11 @@ struct CommitSending {
 class CommitPace {
  public:
   static constexpr TimeUs kGatherUsMax = 25'000;  // no edit waits longer for others
-  static constexpr TimeUs kSavedUsMax = 5'000;    // sending time saved up in calm moments, for a burst
-  static constexpr TimeUs kPerSendingUs = 2;      // half a core: two microseconds pay for one of sending
-  static constexpr TimeUs kCallUsFirst = 10;      // what a call is taken to cost before one was made
+  static constexpr TimeUs kSavedUsMax =
+      5'000;  // sending time saved up in calm moments, for a burst
+  static constexpr TimeUs kPerSendingUs =
+      2;  // half a core: two microseconds pay for one of sending
+  static constexpr TimeUs kCallUsFirst = 10;  // what a call is taken to cost before one was made
 
   /// An edit has come and none waited: when to commit, `now_us` at the earliest and kGatherUsMax later at the latest.
   TimeUs due(TimeUs now_us, const CommitSending& sending) {
@@ -34,9 +36,11 @@ class CommitPace {
     last_us_ = std::max(last_us_, now_us);
     last_spent_us_ = sending.spent_us;
     // Debt is bounded too: after a stall the next commits gather for a while, not for ever.
-    saved_ = std::clamp(saved_ + passed - kPerSendingUs * spent, -kDebtMax, kPerSendingUs * kSavedUsMax);
-    const TimeUs call_us =
-        sending.calls == 0 ? kCallUsFirst : sending.spent_us / static_cast<TimeUs>(sending.calls) + 1;
+    saved_ =
+        std::clamp(saved_ + passed - kPerSendingUs * spent, -kDebtMax, kPerSendingUs * kSavedUsMax);
+    const TimeUs call_us = sending.calls == 0
+                               ? kCallUsFirst
+                               : sending.spent_us / static_cast<TimeUs>(sending.calls) + 1;
     const TimeUs to_spend = static_cast<TimeUs>(sending.due) * call_us;
     return now_us + std::clamp<TimeUs>(kPerSendingUs * to_spend - saved_, 0, kGatherUsMax);
   }

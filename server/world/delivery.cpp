@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/world/held_steps.hpp"
+#include "server/world/cached_chunk_handlers.hpp"
 #include "server/world/time_travel.hpp"
 
 namespace runstone {
 namespace {
 
-bool is_stalled(const WorldState& world, const WorldSession& session, const Now& now) {
+bool is_stalled(const WorldState& world, const WorldSession& session, const Clocks& now) {
   return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
 }
 
 /// The session's queue is full: the chunk has to wait for room.
-void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Now& now) {
+void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Clocks& now) {
   ++world.counters.queue_full;
   world.find(session)->stalled_us = now.steady_us;
   world.interest.set_state(session, key, ChunkInterest::wanted);
 }
 
 /// Sends what stands before the session's next chunk. False: its queue is full.
-bool send_moment(WorldState& world, SessionId session, const Now& now) {
+bool send_moment(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   // What was said of the live world comes before the past begins.
   const bool turns = mine.begins_due || mine.word_due;
@@ -30,7 +30,7 @@ bool send_moment(WorldState& world, SessionId session, const Now& now) {
     return false;
   }
   if (turns && !send_uniform(world, session, now)) return false;
-  for (std::optional<Moment>* due : {&mine.begins_due, &mine.word_due}) {
+  for (std::optional<HistoryState>* due : {&mine.begins_due, &mine.word_due}) {
     if (!*due) continue;
     if (!world.ports.send(session, encode_message(**due))) {
       ++world.counters.queue_full;
@@ -44,9 +44,10 @@ bool send_moment(WorldState& world, SessionId session, const Now& now) {
 
 /// Counts a chunk of one material as sent; it goes with others. False: too many wait already.
 bool gather_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
-                    const Now& now) {
+                    const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  const bool is_full = mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
+  const bool is_full =
+      mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
   if (is_full) return false;
   mine.uniform.push_back({key, material_at(chunk.voxels, {0, 0, 0}), chunk.version});
   if (mine.uniform.size() >= kUniformGathered) send_uniform(world, session, now);
@@ -54,7 +55,7 @@ bool gather_uniform(WorldState& world, SessionId session, const ChunkKey& key, c
 }
 
 /// Gathered chunks wait only while more may come soon.
-void send_uniform_if_last(WorldState& world, SessionId session, const Now& now) {
+void send_uniform_if_last(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   const bool more_come = world.interest.find(session)->count(ChunkInterest::waiting) > 0 ||
                          (mine.visit && mine.visit->loading > 0);
@@ -63,7 +64,7 @@ void send_uniform_if_last(WorldState& world, SessionId session, const Now& now) 
 
 }  // namespace
 
-bool send_uniform(WorldState& world, SessionId session, const Now& now) {
+bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.uniform.empty()) return true;
   if (is_stalled(world, mine, now)) return false;
@@ -74,7 +75,8 @@ bool send_uniform(WorldState& world, SessionId session, const Now& now) {
   const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
   UniformChunks message{mine.uniform};
   std::sort(message.chunks.begin(), message.chunks.end(), before);
-  message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same), message.chunks.end());
+  message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same),
+                       message.chunks.end());
   if (!world.ports.send(session, encode_message(message))) {
     ++world.counters.queue_full;
     mine.stalled_us = now.steady_us;
@@ -88,12 +90,13 @@ bool send_uniform(WorldState& world, SessionId session, const Now& now) {
 void forget_unsent(WorldState& world, SessionId session) {
   WorldSession& mine = *world.find(session);
   const View& view = *world.interest.find(session)->view();
-  std::erase_if(mine.uniform, [&](const UniformChunk& chunk) { return !view.contains(chunk.key.at); });
+  std::erase_if(mine.uniform,
+                [&](const UniformChunk& chunk) { return !view.contains(chunk.key.at); });
   world.ports.forget_outside(session, view);
 }
 
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                  ChunkInterest then, const Now& now) {
+                  ChunkInterest then, const Clocks& now) {
   if (chunk == nullptr) {
     const ChunkUnavailable unavailable{{key}, UnavailableReason::damaged};
     if (!world.ports.send(session, encode_message(unavailable))) {
@@ -104,8 +107,9 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     ++world.counters.unavailable_sent;
     return true;
   }
-  const HeldAnswer held =
-      then == ChunkInterest::subscribed ? answer_held(world, session, key, chunk) : HeldAnswer::none;
+  const HeldAnswer held = then == ChunkInterest::subscribed
+                              ? answer_held(world, session, key, chunk)
+                              : HeldAnswer::none;
   if (held == HeldAnswer::queued) {
     world.interest.set_state(session, key, then);
     return true;
@@ -137,7 +141,7 @@ void start_loads(WorldState& world) {
   }
 }
 
-void deliver(WorldState& world, SessionId session, const Now& now) {
+void deliver(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionStage::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
@@ -160,13 +164,14 @@ void deliver(WorldState& world, SessionId session, const Now& now) {
       if (residency == Residency::absent) world.loads.ask(session, *key);
     }
   }
-  const bool is_more = world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
+  const bool is_more =
+      world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
   send_same(world, session, is_more);
   send_uniform_if_last(world, session, now);
   start_loads(world);
 }
 
-void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
+void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
   const ChunkPtr chunk = world.authority.chunks().find(key);
   for (const SessionId session : world.interest.waiting(key)) {
     world.loads.take_back(session, key);  // another lane's turn came first
@@ -179,7 +184,8 @@ void deliver_loaded(WorldState& world, const ChunkKey& key, const Now& now) {
   }
 }
 
-void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys, const Now& now) {
+void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys,
+                const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
   mine->stalled_us = now.steady_us;

@@ -17,7 +17,8 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
   return std::nullopt;
 }
 
-std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const EditLimits& limits) {
+std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
+                                              const EditLimits& limits) {
   EditLimits own = limits;
   own.heights = {};
   own.volume_max = std::numeric_limits<std::uint64_t>::max();

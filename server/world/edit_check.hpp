@@ -24,7 +24,7 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
 
 /// The same for the server's own edits, which put back what was there before: neither heights nor volume limit
 /// them, for both may have been wider once. What a commit can carry still does.
-std::optional<RejectReason> check_own_edit(const EditDescriptor& edit, const EditLimits& limits);
+std::optional<RejectReason> check_server_edit(const EditDescriptor& edit, const EditLimits& limits);
 
 /// What an edit costs of its session's rate: a token for each chunk that it may touch, kTouchedChunksMax at most, and for a
 /// clipboard one more per KiB that it has begun.

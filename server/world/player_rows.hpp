@@ -18,7 +18,7 @@ struct PlayerRow {
 struct HighWater {
   AuthorId author = 0;
   ClientInstance instance = 0;
-  ClientSequence decided = 0;
+  ClientSequence resolved = 0;
   TimeUs last_us = 0;  // UTC, of the instance's last record: old instances may be forgotten one day
 };
 

@@ -25,10 +25,11 @@ void open_next(WorldState& world, SessionId session) {
   world.ports.open_moment(session, *mine.next_travel);
 }
 
-void return_to_live(WorldState& world, SessionId session, std::uint32_t request, const Now& now) {
+void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
+                    const Clocks& now) {
   WorldSession& mine = *world.find(session);
   mine.visit.reset();
-  mine.begins_due = Moment{request, MomentPhase::begins, false, 0, 0, ""};
+  mine.begins_due = HistoryState{request, HistoryPhase::begins, false, 0, 0, ""};
   mine.word_due.reset();
   want_all(world, session);
   deliver(world, session, now);
@@ -36,9 +37,10 @@ void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
 
 }  // namespace
 
-void on_travel(WorldState& world, SessionId session, const Travel& travel, const Now& now) {
+void on_history_request(WorldState& world, SessionId session, const HistoryRequest& travel,
+                        const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  if (travel.to == TravelTo::live) {
+  if (travel.to == HistoryTarget::live) {
     mine.next_travel.reset();  // a moment being opened is not wanted any more
     return return_to_live(world, session, travel.request, now);
   }
@@ -54,7 +56,7 @@ void open_waiting_moments(WorldState& world) {
 }
 
 void on_moment_opened(WorldState& world, SessionId session, std::uint32_t request,
-                      const Result<OpenedMoment, std::string>& opened, const Now& now) {
+                      const Result<OpenedMoment, std::string>& opened, const Clocks& now) {
   --world.moments_opening;
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
@@ -64,49 +66,51 @@ void on_moment_opened(WorldState& world, SessionId session, std::uint32_t reques
   mine->next_travel.reset();
   if (!opened) {
     const bool is_past = mine->visit.has_value();
-    mine->word_due =
-        Moment{request, MomentPhase::refused, is_past, is_past ? mine->visit->seq : 0, 0, opened.error()};
+    mine->word_due = HistoryState{
+        request, HistoryPhase::refused, is_past, is_past ? mine->visit->seq : 0, 0, opened.error()};
     return deliver(world, session, now);
   }
-  Visit visit;
+  HistoryView visit;
   visit.number = ++world.visits;
   visit.request = request;
   visit.seq = opened->seq;
   if (mine->visit) visit.sent = std::move(mine->visit->sent);
   mine->visit = std::move(visit);
   mine->word_due.reset();
-  mine->begins_due = Moment{request, MomentPhase::begins, true, opened->seq, opened->utc_us, ""};
+  mine->begins_due =
+      HistoryState{request, HistoryPhase::begins, true, opened->seq, opened->utc_us, ""};
   want_all(world, session);
   deliver(world, session, now);
 }
 
-void deliver_past(WorldState& world, SessionId session, const Now& now) {
+void deliver_past(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  Visit& visit = *mine.visit;
+  HistoryView& visit = *mine.visit;
   while (visit.loading < kPastChunksLoadingMax) {
     const auto key = world.interest.nearest_wanted(session);
     if (!key) break;
-    world.interest.set_state(session, *key, ChunkInterest::recalling);
+    world.interest.set_state(session, *key, ChunkInterest::loading_history);
     ++visit.loading;
     world.ports.load_past_chunk(session, visit.number, visit.seq, *key);
   }
   if (visit.loading != 0 || visit.is_complete || world.interest.nearest_wanted(session)) return;
   visit.is_complete = true;
-  mine.word_due = Moment{visit.request, MomentPhase::complete, true, visit.seq, 0, ""};
+  mine.word_due = HistoryState{visit.request, HistoryPhase::complete, true, visit.seq, 0, ""};
   deliver(world, session, now);
 }
 
-void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit_number, const ChunkKey& key,
-                   const ChunkPtr& chunk, const Now& now) {
+void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit_number,
+                   const ChunkKey& key, const ChunkPtr& chunk, const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || !mine->visit || mine->visit->number != visit_number) return;  // it went on
-  Visit& visit = *mine->visit;
+  HistoryView& visit = *mine->visit;
   --visit.loading;
-  if (world.interest.find(session)->state(key) == ChunkInterest::recalling) {
+  if (world.interest.find(session)->state(key) == ChunkInterest::loading_history) {
     const auto sent = visit.sent.find(key);
     if (chunk != nullptr && sent != visit.sent.end() && sent->second == chunk->version) {
       world.interest.set_state(session, key, ChunkInterest::recalled);
-    } else if (answer_chunk(world, session, key, chunk, ChunkInterest::recalled, now) && chunk != nullptr) {
+    } else if (answer_chunk(world, session, key, chunk, ChunkInterest::recalled, now) &&
+               chunk != nullptr) {
       visit.sent[key] = chunk->version;
     }
   }

@@ -11,18 +11,19 @@ namespace runstone {
 
 /// The newest wish of a session replaces those before it. Back to the live world at once; to the past when a worker has
 /// opened the moment, of which kMomentsOpeningMax are under way at a time.
-void on_travel(WorldState& world, SessionId session, const Travel& travel, const Now& now);
+void on_history_request(WorldState& world, SessionId session, const HistoryRequest& travel,
+                        const Clocks& now);
 /// A new tick: wishes that had to wait.
 void open_waiting_moments(WorldState& world);
 /// The port's answer: where the moment lies, or why there is none.
 void on_moment_opened(WorldState& world, SessionId session, std::uint32_t request,
-                      const Result<OpenedMoment, std::string>& opened, const Now& now);
+                      const Result<OpenedMoment, std::string>& opened, const Clocks& now);
 /// The port's answer; null if the chunk cannot be read.
 void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit, const ChunkKey& key,
-                   const ChunkPtr& chunk, const Now& now);
+                   const ChunkPtr& chunk, const Clocks& now);
 
 /// Asks for the session's nearest wanted chunks as they were. Requires a visit.
-void deliver_past(WorldState& world, SessionId session, const Now& now);
+void deliver_past(WorldState& world, SessionId session, const Clocks& now);
 /// The session's view has changed: what it may have forgotten is not known.
 void forget_sent(WorldSession& session);
 

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::size_t kChunkOverheadBytes = 192;  // entry, control block, vectors: about
 
-std::size_t bytes_of(const Chunk& chunk) { return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes; }
+std::size_t bytes_of(const Chunk& chunk) {
+  return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes;
+}
 
 }  // namespace
 
@@ -30,7 +32,8 @@ void WorldChunks::set_saved(const ChunkKey& key, Version version) {
   e.version = e.saved = version;
 }
 
-void WorldChunks::restack(const ChunkKey& key, Version version, const EditDescriptor& edit) {
+void WorldChunks::replay_onto_stack(const ChunkKey& key, Version version,
+                                    const EditDescriptor& edit) {
   if (version <= entries_[key].saved) return;
   push(key, version, edit);
 }
@@ -53,7 +56,8 @@ Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescr
 
 void WorldChunks::settle(const ChunkKey& key, Entry& e, Chunk chunk) {
   // Edits the loaded chunk already contains lie at the bottom of the stack.
-  const auto first_new = std::upper_bound(e.stack_seqs.begin(), e.stack_seqs.end(), chunk.version.seq);
+  const auto first_new =
+      std::upper_bound(e.stack_seqs.begin(), e.stack_seqs.end(), chunk.version.seq);
   const auto skip = static_cast<std::size_t>(first_new - e.stack_seqs.begin());
   const std::span<const EditDescriptor> edits = std::span(e.stack).subspan(skip);
   if (!edits.empty()) {
@@ -103,7 +107,8 @@ std::vector<std::pair<ChunkKey, ChunkPtr>> WorldChunks::edited() const {
   for (const auto& [key, e] : entries_) {
     if (e.published != nullptr && e.version != Version{}) chunks.emplace_back(key, e.published);
   }
-  std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(chunks.begin(), chunks.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
   return chunks;
 }
 
@@ -126,8 +131,8 @@ std::optional<std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk)
   if (chunk.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) {
     wrong = "its sides are not the world's";
   } else if (chunk.version < e->saved || e->version < chunk.version) {
-    wrong = "it stands at version " + text_of(chunk.version) + ", the world at " + text_of(e->version) +
-            " with a snapshot at " + text_of(e->saved);
+    wrong = "it stands at version " + text_of(chunk.version) + ", the world at " +
+            text_of(e->version) + " with a snapshot at " + text_of(e->saved);
   }
   if (!wrong.empty()) {
     quarantine(key);
@@ -156,7 +161,8 @@ void WorldChunks::released(const ChunkKey& key) {
 
 void WorldChunks::evict(std::size_t bytes_max, std::size_t steps_max,
                         const std::function<bool(const ChunkKey&)>& is_used) {
-  for (std::size_t step = 0; step < steps_max && resident_bytes_ > bytes_max && !idle_.empty(); ++step) {
+  for (std::size_t step = 0; step < steps_max && resident_bytes_ > bytes_max && !idle_.empty();
+       ++step) {
     const ChunkKey key = idle_.front();
     idle_.pop_front();
     Entry& e = *entry(key);

@@ -35,10 +35,10 @@ class WorldChunks {
   explicit WorldChunks(std::int32_t edge) : edge_(edge) {}
 
   // ---- start
-  /// Says at which version a chunk's snapshot stands. Before any restack().
+  /// Says at which version a chunk's snapshot stands. Before any replay_onto_stack().
   void set_saved(const ChunkKey& key, Version version);
   /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot has it. In log order.
-  void restack(const ChunkKey& key, Version version, const EditDescriptor& edit);
+  void replay_onto_stack(const ChunkKey& key, Version version, const EditDescriptor& edit);
 
   // ---- order
   /// Puts an ordered edit on top of the chunk's stack and moves its version. Returns the sequence it stood

@@ -9,9 +9,9 @@
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/handshake.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/world/player_rows.hpp"
 #include "server/world/authority.hpp"
-#include "server/world/snapshot_keeper.hpp"
+#include "server/world/checkpointer.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 
@@ -28,19 +28,21 @@ struct WorldConfig {
   std::size_t sessions_max = 256;             // beyond it: server_full
   std::uint8_t view_radius_max = 16;          // chunks; larger views are cut to it
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
-  double reach_max = 0;                       // voxels from the player's pose to the edit; 0: no limit
-  std::uint64_t edits_per_second = 2'000;     // per session; 0: no limit
+  double reach_max = 0;                    // voxels from the player's pose to the edit; 0: no limit
+  std::uint64_t edits_per_second = 2'000;  // per session; 0: no limit
   std::uint64_t edit_burst = 4'000;
-  std::size_t loads_per_session_max = 64;     // chunks one session may wait for at a time
-  std::size_t loads_in_flight_max = 8;        // with the workers at a time, at least 1
-  TimeUs view_interval_us = 50'000;           // between two views of a session that take effect
-  std::size_t view_chunks_per_tick = 65'536;  // that views bring in, all sessions together, at least 1
+  std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
+  std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
+  TimeUs view_interval_us = 50'000;        // between two views of a session that take effect
+  std::size_t view_chunks_per_tick =
+      65'536;  // that views bring in, all sessions together, at least 1
   TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
   ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers it
   // Rhythm.
-  TimeUs pose_interval_us = 100'000;       // at least; longer in a crowd (people.hpp)
-  TimeUs durable_interval_us = 1'000'000;  // of the watermark, to sessions without edits of their own
+  TimeUs pose_interval_us = 100'000;  // at least; longer in a crowd (people.hpp)
+  TimeUs durable_interval_us =
+      1'000'000;  // of the watermark, to sessions without edits of their own
   TimeUs audit_interval_us = 1'000'000;
   std::size_t audit_chunks = 8;            // per session and interval
   TimeUs retry_interval_us = 100'000;      // after a full queue, unless drained() comes first
@@ -50,13 +52,13 @@ struct WorldConfig {
   SnapshotPolicy snapshots;
 };
 
-/// What the store remembers. Log records above the checkpoint follow by WorldServer::restack().
+/// What the store remembers. Log records above the checkpoint follow by WorldServer::replay_onto_stack().
 struct WorldStart {
   LogPosition log;
   Sequence checkpoint = 0;
   std::vector<std::pair<ChunkKey, Version>> snapshots;
   std::vector<PlayerRow> players;
-  std::vector<HighWater> decided;
+  std::vector<HighWater> resolved;
 };
 
 /// Fills a buffer with unpredictable bytes (predictable ones in tests).

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "common/core/key_text.hpp"
-#include "server/world/audit_turns.hpp"
 #include "server/world/broadcast.hpp"
-#include "server/world/command_steps.hpp"
+#include "server/world/cached_chunk_handlers.hpp"
+#include "server/world/command_handlers.hpp"
 #include "server/world/delivery.hpp"
+#include "server/world/digest_check_scheduler.hpp"
 #include "server/world/edit_check.hpp"
-#include "server/world/handshake_steps.hpp"
-#include "server/world/held_steps.hpp"
-#include "server/world/people.hpp"
-#include "server/world/request_steps.hpp"
+#include "server/world/handshake_handlers.hpp"
+#include "server/world/presence.hpp"
+#include "server/world/request_handlers.hpp"
 #include "server/world/time_travel.hpp"
-#include "server/world/view_turns.hpp"
+#include "server/world/view_scheduler.hpp"
 #include "server/world/world_state.hpp"
 
 namespace runstone {
@@ -28,26 +28,31 @@ constexpr std::size_t kEvictionStepsPerTick = 512;
 bool needs_open(const Message& message) {
   return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
          std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-         std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
-         std::holds_alternative<CommandRequest>(message) || std::holds_alternative<Held>(message);
+         std::holds_alternative<Ping>(message) || std::holds_alternative<HistoryRequest>(message) ||
+         std::holds_alternative<CommandRequest>(message) ||
+         std::holds_alternative<CachedChunks>(message);
 }
 
-void on_open_message(WorldState& world, SessionId session, const Message& message, const Now& now) {
+void on_open_message(WorldState& world, SessionId session, const Message& message,
+                     const Clocks& now) {
   if (const auto* view = std::get_if<View>(&message)) return on_view(world, session, *view, now);
-  if (const auto* held = std::get_if<Held>(&message)) return on_held(world, session, *held);
+  if (const auto* held = std::get_if<CachedChunks>(&message))
+    return on_cached_chunks(world, session, *held);
   if (const auto* request = std::get_if<ChunkRequest>(&message)) {
     return on_chunk_request(world, session, *request, now);
   }
-  if (const auto* edit = std::get_if<EditRequest>(&message)) return on_edit(world, session, *edit, now);
+  if (const auto* edit = std::get_if<EditRequest>(&message))
+    return on_edit(world, session, *edit, now);
   if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
-  if (const auto* travel = std::get_if<Travel>(&message)) return on_travel(world, session, *travel, now);
+  if (const auto* travel = std::get_if<HistoryRequest>(&message))
+    return on_history_request(world, session, *travel, now);
   if (const auto* command = std::get_if<CommandRequest>(&message)) {
     return on_command(world, session, *command, now);
   }
 }
 
-void close_silent_sessions(WorldState& world, const Now& now) {
+void close_silent_sessions(WorldState& world, const Clocks& now) {
   std::vector<std::pair<SessionId, bool>> silent;
   for (const auto& [id, session] : world.sessions) {
     const bool is_open = session.state == SessionStage::open;
@@ -61,7 +66,7 @@ void close_silent_sessions(WorldState& world, const Now& now) {
   }
 }
 
-void retry_owed(WorldState& world, const Now& now) {
+void retry_owed(WorldState& world, const Clocks& now) {
   for (const SessionId id : world.open_sessions()) {
     send_owed(world, id);
     deliver(world, id, now);
@@ -78,21 +83,25 @@ void load_ended(WorldState& world, const ChunkKey& key) {
 
 }  // namespace
 
-WorldServer::WorldServer(WorldConfig config, const WorldStart& start, WorldPorts& ports, RandomBytes random)
+WorldServer::WorldServer(WorldConfig config, const WorldStart& start, WorldEnvironment& ports,
+                         RandomBytes random)
     : state_(std::make_unique<WorldState>(std::move(config), start, ports, std::move(random))) {}
 WorldServer::~WorldServer() = default;
 
-void WorldServer::restack(const EditRecord& record) { state_->authority.restack(record); }
+void WorldServer::replay_onto_stack(const EditRecord& record) {
+  state_->authority.replay_onto_stack(record);
+}
 
-void WorldServer::connected(SessionId session, const Now& now) {
+void WorldServer::connected(SessionId session, const Clocks& now) {
   WorldSession fresh;
   fresh.connected_us = fresh.heard_us = now.steady_us;
   const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
   RUNSTONE_ASSERT(is_new);
-  if (state_->is_stopping) close_session(*state_, session, GoodbyeReason::closing, "the server stops");
+  if (state_->is_stopping)
+    close_session(*state_, session, GoodbyeReason::closing, "the server stops");
 }
 
-void WorldServer::received(SessionId session, Message&& message, const Now& now) {
+void WorldServer::received(SessionId session, Message&& message, const Clocks& now) {
   WorldState& world = *state_;
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
@@ -104,14 +113,16 @@ void WorldServer::received(SessionId session, Message&& message, const Now& now)
   }
   if (mine->state == SessionStage::awaits_hello && std::holds_alternative<Hello>(message)) {
     on_hello(world, session, *std::get_if<Hello>(&message));
-  } else if (mine->state == SessionStage::awaits_proof && std::holds_alternative<Proof>(message)) {
-    on_proof(world, session, *std::get_if<Proof>(&message), now);
+  } else if (mine->state == SessionStage::awaits_proof &&
+             std::holds_alternative<ClientAuth>(message)) {
+    on_client_auth(world, session, *std::get_if<ClientAuth>(&message), now);
   } else if (mine->state == SessionStage::open && needs_open(message)) {
     on_open_message(world, session, message, now);
   } else if (mine->state != SessionStage::open && needs_open(message)) {
     close_session(world, session, GoodbyeReason::not_authenticated, "the handshake comes first");
   } else {
-    close_session(world, session, GoodbyeReason::unexpected_message, "not now, or not from a client");
+    close_session(world, session, GoodbyeReason::unexpected_message,
+                  "not now, or not from a client");
   }
 }
 
@@ -120,7 +131,7 @@ void WorldServer::disconnected(SessionId session) {
   collect_released(*state_);
 }
 
-void WorldServer::drained(SessionId session, const Now& now) {
+void WorldServer::drained(SessionId session, const Clocks& now) {
   WorldSession* mine = state_->find(session);
   if (mine == nullptr) return;
   mine->stalled_us.reset();
@@ -130,17 +141,17 @@ void WorldServer::drained(SessionId session, const Now& now) {
 
 bool WorldServer::has_queued() const { return state_->authority.queued() > 0; }
 
-void WorldServer::commit(const Now& now) { commit_and_broadcast(*state_, now); }
+void WorldServer::commit(const Clocks& now) { commit_and_broadcast(*state_, now); }
 
-WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offers, AuthorId payer,
-                                             const Now& now) {
+WorldServer::OwnEdits WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
+                                                      AuthorId payer, const Clocks& now) {
   using State = OwnEdits::State;
   WorldState& world = *state_;
   commit(now);
   if (!world.accepts_edits) return {State::closed};
   if (offers.empty()) return {};
   // Anybody sees the instance of an edit, so the author's own client can come under it and take numbers.
-  if (world.authority.decided().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
+  if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
     return {State::taken};
   std::vector<WorldSession*> purses;
   for (auto& [id, session] : world.sessions) {
@@ -170,8 +181,8 @@ WorldServer::OwnEdits WorldServer::order_own(const std::vector<EditOffer>& offer
   return out;
 }
 
-void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done,
-                                 bool is_ok) {
+void WorldServer::answer_command(SessionId session, const std::vector<std::string>& lines,
+                                 bool is_done, bool is_ok) {
   send_command_output(*state_, session, lines, is_done, is_ok);
 }
 
@@ -184,13 +195,13 @@ std::vector<WorldServer::Present> WorldServer::present() const {
   return out;
 }
 
-void WorldServer::step_keeper(const Now& now) {
+void WorldServer::step_keeper(const Clocks& now) {
   WorldState& world = *state_;
   world.keeper.step(world.authority, world.durable, now, world.ports,
                     [&](const ChunkKey& key) { ask_load(world, key); });
 }
 
-void WorldServer::tick(const Now& now) {
+void WorldServer::tick(const Clocks& now) {
   WorldState& world = *state_;
   commit(now);
   forget_gone_authors(world);
@@ -208,7 +219,7 @@ void WorldServer::tick(const Now& now) {
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
 }
 
-void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now) {
+void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;
   load_ended(world, key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
@@ -222,7 +233,7 @@ void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now)
   start_loads(world);
 }
 
-void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Now& now) {
+void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Clocks& now) {
   WorldState& world = *state_;
   load_ended(world, key);
   ++world.counters.chunks_failed;
@@ -234,18 +245,20 @@ void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, con
 }
 
 void WorldServer::moment_opened(SessionId session, std::uint32_t request,
-                                const Result<OpenedMoment, std::string>& opened, const Now& now) {
+                                const Result<OpenedMoment, std::string>& opened,
+                                const Clocks& now) {
   on_moment_opened(*state_, session, request, opened, now);
 }
 
 void WorldServer::past_chunk(SessionId session, std::uint32_t request, const ChunkKey& key,
-                             const Result<ChunkPtr, std::string>& chunk, const Now& now) {
+                             const Result<ChunkPtr, std::string>& chunk, const Clocks& now) {
   if (!chunk)
-    state_->ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " of the past: " + chunk.error());
+    state_->ports.log(WorldLogLevel::error,
+                      "chunk=" + text_of(key) + " of the past: " + chunk.error());
   on_past_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
 }
 
-void WorldServer::durable(Sequence seq, const Now& now) {
+void WorldServer::durable(Sequence seq, const Clocks& now) {
   WorldState& world = *state_;
   RUNSTONE_ASSERT(seq <= world.authority.head());
   if (seq <= world.durable) return;
@@ -254,14 +267,14 @@ void WorldServer::durable(Sequence seq, const Now& now) {
   step_keeper(now);
 }
 
-void WorldServer::snapshots_saved(const Now& now) {
+void WorldServer::snapshots_saved(const Clocks& now) {
   state_->keeper.saved(state_->authority.chunks());
   step_keeper(now);
 }
 
 void WorldServer::log_failed() { state_->accepts_edits = false; }
 
-void WorldServer::begin_stop(const Now& now) {
+void WorldServer::begin_stop(const Clocks& now) {
   WorldState& world = *state_;
   commit(now);  // what was accepted is ordered
   world.accepts_edits = false;
@@ -282,17 +295,25 @@ bool WorldServer::is_settled() const {
 bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
 Epoch WorldServer::epoch() const { return state_->authority.epoch(); }
 Sequence WorldServer::head() const { return state_->authority.head(); }
-ClientSequence WorldServer::decided(AuthorId author, ClientInstance instance) const {
-  return state_->authority.decided().of(author, instance);
+ClientSequence WorldServer::resolved(AuthorId author, ClientInstance instance) const {
+  return state_->authority.resolved().of(author, instance);
 }
 Sequence WorldServer::durable() const { return state_->durable; }
 Sequence WorldServer::checkpoint() const { return state_->keeper.checkpoint(); }
 std::size_t WorldServer::session_count() const { return state_->sessions.size(); }
-std::size_t WorldServer::resident_chunks() const { return state_->authority.chunks().resident_count(); }
-std::size_t WorldServer::resident_bytes() const { return state_->authority.chunks().resident_bytes(); }
-const StackDepths& WorldServer::stack_depths() const { return state_->authority.chunks().stack_depths(); }
+std::size_t WorldServer::resident_chunks() const {
+  return state_->authority.chunks().resident_count();
+}
+std::size_t WorldServer::resident_bytes() const {
+  return state_->authority.chunks().resident_bytes();
+}
+const StackDepths& WorldServer::stack_depths() const {
+  return state_->authority.chunks().stack_depths();
+}
 const WorldCounters& WorldServer::counters() const { return state_->counters; }
-ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const { return state_->authority.chunks().find(key); }
+ChunkPtr WorldServer::find_chunk(const ChunkKey& key) const {
+  return state_->authority.chunks().find(key);
+}
 std::vector<std::pair<ChunkKey, ChunkPtr>> WorldServer::edited_chunks() const {
   return state_->authority.chunks().edited();
 }

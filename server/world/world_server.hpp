@@ -1,5 +1,5 @@
 // WorldServer: the face of the world strand. Everything that happens to the world comes in here, one call at
-// a time, with the time as an argument; everything it wants done goes out by WorldPorts. No clock, socket,
+// a time, with the time as an argument; everything it wants done goes out by WorldEnvironment. No clock, socket,
 // disk or thread: a test runs it in virtual time. A turn: deliver what arrived by received(), then commit()
 // once. What was queued together becomes one commit, and nothing waits for a tick. Call tick() some 20 times
 // a second. Threads: all calls on one strand. Ports must not call back in; their answers come as later calls.
@@ -11,10 +11,10 @@
 
 #include "common/edits/apply/stack_depths.hpp"
 #include "protocol/codec/messages.hpp"
+#include "server/world/clocks.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
-#include "server/world/world_ports.hpp"
-#include "server/world/world_time.hpp"
+#include "server/world/world_environment.hpp"
 
 namespace runstone {
 
@@ -23,30 +23,31 @@ struct WorldState;
 class WorldServer {
  public:
   /// `ports` must outlive the server.
-  WorldServer(WorldConfig config, const WorldStart& start, WorldPorts& ports, RandomBytes random);
+  WorldServer(WorldConfig config, const WorldStart& start, WorldEnvironment& ports,
+              RandomBytes random);
   ~WorldServer();
   WorldServer(const WorldServer&) = delete;
   WorldServer& operator=(const WorldServer&) = delete;
 
   /// Before the first session: each record of the log above the checkpoint, in order.
-  void restack(const EditRecord& record);
+  void replay_onto_stack(const EditRecord& record);
 
   // ---- sessions
-  void connected(SessionId session, const Now& now);
+  void connected(SessionId session, const Clocks& now);
   /// A verified message. One that the session's state does not allow closes it: not_authenticated before
   /// ready, unexpected_message otherwise. Messages of sessions that were closed are ignored.
-  void received(SessionId session, Message&& message, const Now& now);
+  void received(SessionId session, Message&& message, const Clocks& now);
   void disconnected(SessionId session);
   /// The session's queues have room again.
-  void drained(SessionId session, const Now& now);
+  void drained(SessionId session, const Clocks& now);
 
   // ---- turns
   /// Edits wait for commit().
   bool has_queued() const;
   /// Orders and sends the edits queued by received(). Cheap when there are none.
-  void commit(const Now& now);
+  void commit(const Clocks& now);
   /// Timeouts, poses, roster, audits, snapshot rounds, eviction, retries.
-  void tick(const Now& now);
+  void tick(const Clocks& now);
 
   // ---- the server's own edits: rollback, undo, redo
   struct OwnEdits {
@@ -61,14 +62,16 @@ class WorldServer {
     const char* reason = "";  // of busy: names the limit
   };
   /// Orders the offers at once and in order, behind all that is queued, as far as the log has room. Their edits must
-  /// pass check_own_edit(), their client sequences ascend, of one author and instance, and their cause is not
+  /// pass check_server_edit(), their client sequences ascend, of one author and instance, and their cause is not
   /// player. `payer`: the author who pays edit_tokens() for each of them, from the first of their sessions that can; an
   /// edit dearer than edit_burst costs a full bucket. Without a session, or if 0, nobody pays.
-  OwnEdits order_own(const std::vector<EditOffer>& offers, AuthorId payer, const Now& now);
+  OwnEdits order_server_edits(const std::vector<EditOffer>& offers, AuthorId payer,
+                              const Clocks& now);
 
   // ---- commands
   /// Output of the session's command under way, as lines; the last one is done. Ignored if the session is gone.
-  void answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done, bool is_ok);
+  void answer_command(SessionId session, const std::vector<std::string>& lines, bool is_done,
+                      bool is_ok);
   struct Present {
     SessionId session = 0;
     AuthorId author = 0;
@@ -80,25 +83,25 @@ class WorldServer {
   std::vector<Present> present() const;
 
   // ---- answers of the ports
-  void chunk_loaded(const ChunkKey& key, Chunk chunk, const Now& now);
+  void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);
   /// `what` names file, table and row. The chunk is quarantined.
-  void chunk_failed(const ChunkKey& key, const std::string& what, const Now& now);
+  void chunk_failed(const ChunkKey& key, const std::string& what, const Clocks& now);
   /// The moment that a session asked for by `request`, or why there is none.
   void moment_opened(SessionId session, std::uint32_t request,
-                     const Result<OpenedMoment, std::string>& opened, const Now& now);
+                     const Result<OpenedMoment, std::string>& opened, const Clocks& now);
   /// A chunk as it was then, or what cannot be read: names file, table and row.
   void past_chunk(SessionId session, std::uint32_t visit, const ChunkKey& key,
-                  const Result<ChunkPtr, std::string>& chunk, const Now& now);
+                  const Result<ChunkPtr, std::string>& chunk, const Clocks& now);
   /// Everything up to `seq` is on disk.
-  void durable(Sequence seq, const Now& now);
+  void durable(Sequence seq, const Clocks& now);
   /// The oldest unanswered save_snapshots() is on disk.
-  void snapshots_saved(const Now& now);
+  void snapshots_saved(const Clocks& now);
   /// The log cannot be written any more: edits are rejected busy from now on.
   void log_failed();
 
   // ---- stop
   /// Says goodbye to everybody, refuses edits, and writes all snapshots; goes on by the ports' answers.
-  void begin_stop(const Now& now);
+  void begin_stop(const Clocks& now);
   /// Everything ordered is durable and contained in snapshots (but for quarantined chunks).
   bool is_settled() const;
 
@@ -107,7 +110,7 @@ class WorldServer {
   Epoch epoch() const;
   Sequence head() const;
   /// The highest client sequence of the instance that was ever decided; 0: none.
-  ClientSequence decided(AuthorId author, ClientInstance instance) const;
+  ClientSequence resolved(AuthorId author, ClientInstance instance) const;
   Sequence durable() const;
   Sequence checkpoint() const;
   std::size_t session_count() const;  // in any state
@@ -124,7 +127,7 @@ class WorldServer {
   Version chunk_version(const ChunkKey& key) const;
 
  private:
-  void step_keeper(const Now& now);
+  void step_keeper(const Clocks& now);
   std::unique_ptr<WorldState> state_;
 };
 

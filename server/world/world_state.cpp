@@ -21,7 +21,8 @@ EditLimits limits_of(const WorldConfig& config) {
 
 }  // namespace
 
-WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts& ports_, RandomBytes random_)
+WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& ports_,
+                       RandomBytes random_)
     : config(std::move(config_)),
       ports(ports_),
       random(std::move(random_)),
@@ -33,8 +34,8 @@ WorldState::WorldState(WorldConfig config_, const WorldStart& start, WorldPorts&
       view_chunks_left(config.view_chunks_per_tick) {
   for (const auto& [key, version] : start.snapshots) authority.chunks().set_saved(key, version);
   for (const PlayerRow& player : start.players) players.restore(player);
-  for (const auto& mark : start.decided)
-    authority.decided().raise({mark.author, mark.instance, mark.decided});
+  for (const auto& mark : start.resolved)
+    authority.resolved().raise({mark.author, mark.instance, mark.resolved});
 }
 
 void forget_session(WorldState& world, SessionId session) {
@@ -51,24 +52,26 @@ void forget_session(WorldState& world, SessionId session) {
 
 void forget_gone_authors(WorldState& world) {
   if (world.gone_authors.empty()) return;
-  RUNSTONE_ASSERT(world.authority.queued() == 0);  // or their rows would be missing when they are ordered
+  RUNSTONE_ASSERT(world.authority.queued() ==
+                  0);  // or their rows would be missing when they are ordered
   std::set<AuthorId> present;
   for (const auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open) present.insert(session.author);
   }
   for (const AuthorId author : std::exchange(world.gone_authors, {})) {
     if (present.contains(author) || !world.players.forget_unsaved(author)) continue;
-    world.authority.decided().forget(author);
+    world.authority.resolved().forget(author);
   }
 }
 
-void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text) {
+void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
+                   const std::string& text) {
   if (world.find(session) == nullptr) return;
   ++world.counters.sessions_closed;
   const auto level = reason == GoodbyeReason::closing ? WorldLogLevel::debug : WorldLogLevel::warn;
   world.ports.log(level, "session=" + std::to_string(session) +
-                             " closed reason=" + std::to_string(static_cast<unsigned>(reason)) + " (" +
-                             to_string(reason) + ") text=\"" + text + "\"");
+                             " closed reason=" + std::to_string(static_cast<unsigned>(reason)) +
+                             " (" + to_string(reason) + ") text=\"" + text + "\"");
   forget_session(world, session);
   world.ports.close(session, reason, text);
 }
@@ -76,7 +79,8 @@ void close_session(WorldState& world, SessionId session, GoodbyeReason reason, c
 bool send_or_close(WorldState& world, SessionId session, const Message& message) {
   if (world.ports.send(session, encode_message(message))) return true;
   ++world.counters.queue_full;
-  close_session(world, session, GoodbyeReason::timed_out, "send queue full: the peer reads too slowly");
+  close_session(world, session, GoodbyeReason::timed_out,
+                "send queue full: the peer reads too slowly");
   return false;
 }
 
@@ -87,7 +91,8 @@ void answer(WorldState& world, SessionId session, Reject reject) {
   if (mine->owed.size() == 1) {
     send_owed(world, session);
   } else if (mine->owed.size() > kOwedMax) {
-    close_session(world, session, GoodbyeReason::timed_out, "send queue full: the peer reads too slowly");
+    close_session(world, session, GoodbyeReason::timed_out,
+                  "send queue full: the peer reads too slowly");
   }
 }
 
@@ -95,7 +100,8 @@ void send_owed(WorldState& world, SessionId session) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
   std::size_t sent = 0;
-  while (sent < mine->owed.size() && send_or_skip(world, session, encode_message(mine->owed[sent]))) ++sent;
+  while (sent < mine->owed.size() && send_or_skip(world, session, encode_message(mine->owed[sent])))
+    ++sent;
   mine->owed.erase(mine->owed.begin(), mine->owed.begin() + static_cast<std::ptrdiff_t>(sent));
   if (mine->durable_told < world.durable && mine->durable_told < mine->awaits_durable) {
     tell_durable(world, session, encode_message(Durable{world.authority.epoch(), world.durable}));

@@ -7,29 +7,31 @@
 
 #include "server/interest/interest.hpp"
 #include "server/world/authority.hpp"
+#include "server/world/checkpointer.hpp"
 #include "server/world/load_queue.hpp"
 #include "server/world/players.hpp"
-#include "server/world/snapshot_keeper.hpp"
 #include "server/world/world_config.hpp"
 #include "server/world/world_counters.hpp"
-#include "server/world/world_ports.hpp"
+#include "server/world/world_environment.hpp"
 #include "server/world/world_session.hpp"
 
 namespace runstone {
 
 struct WorldState {
-  WorldState(WorldConfig config_, const WorldStart& start, WorldPorts& ports_, RandomBytes random_);
+  WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& ports_,
+             RandomBytes random_);
 
   WorldConfig config;
-  WorldPorts& ports;
+  WorldEnvironment& ports;
   RandomBytes random;
   Authority authority;
-  SnapshotKeeper keeper;
+  Checkpointer keeper;
   Interest interest;
   LoadQueue loads;
   Players players;
-  std::map<SessionId, WorldSession> sessions;  // by number: who receives first never depends on a hash
-  std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
+  std::map<SessionId, WorldSession>
+      sessions;                        // by number: who receives first never depends on a hash
+  std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
   WorldCounters counters;
   Sequence durable = 0;
   bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
@@ -60,7 +62,8 @@ struct WorldState {
 };
 
 /// Sends goodbye with a reason and forgets the session. Unknown sessions are allowed.
-void close_session(WorldState& world, SessionId session, GoodbyeReason reason, const std::string& text);
+void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
+                   const std::string& text);
 /// Once no edit is queued: forgets what only authors without a row and without a session have left.
 void forget_gone_authors(WorldState& world);
 /// Forgets a session that is gone.

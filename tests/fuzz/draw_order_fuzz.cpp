@@ -22,7 +22,9 @@ struct Outcome {
 
 struct Rewrite {
   Bytes& out;
-  void operator()(const DrawWorld& world) const { append_draw_world(world.edge, world.materials, out); }
+  void operator()(const DrawWorld& world) const {
+    append_draw_world(world.edge, world.materials, out);
+  }
   void operator()(const DrawChunk& chunk) const {
     RUNSTONE_ASSERT(validate(chunk.voxels).has_value());
     append_draw_chunk(chunk.key, chunk.voxels, out);

@@ -36,8 +36,9 @@ EditDescriptor read_edit(ByteReader& in) {
   const std::int32_t z = in.u8() % 40;
   if (kind >= 192) {
     SplitMix64 rng{in.u16()};
-    edit.shape = Paste{at, random_clipboard(rng, 1 + static_cast<unsigned>(x), 4),
-                       *Orientation::of_byte(static_cast<std::uint8_t>(kind - 192) % kOrientationCount)};
+    edit.shape =
+        Paste{at, random_clipboard(rng, 1 + static_cast<unsigned>(x), 4),
+              *Orientation::of_byte(static_cast<std::uint8_t>(kind - 192) % kOrientationCount)};
     edit.material = kEmpty;
     return edit;
   }
@@ -46,9 +47,11 @@ EditDescriptor read_edit(ByteReader& in) {
   if (kind % 4 == 2) edit.shape = FillSphere{at, static_cast<std::uint16_t>(x)};
   if (kind % 4 == 3) {
     FillStroke stroke{{at}, static_cast<std::uint16_t>(1 + kind / 4 % 4)};
-    for (const VoxelPos step : {VoxelPos{x - 20, y - 20, z - 20}, VoxelPos{20 - y, x / 2 - 10, z / 4}}) {
+    for (const VoxelPos step :
+         {VoxelPos{x - 20, y - 20, z - 20}, VoxelPos{20 - y, x / 2 - 10, z / 4}}) {
       const VoxelPos& last = stroke.points.back();
-      if (step != VoxelPos{}) stroke.points.push_back({last.x + step.x, last.y + step.y, last.z + step.z});
+      if (step != VoxelPos{})
+        stroke.points.push_back({last.x + step.x, last.y + step.y, last.z + step.z});
     }
     edit.shape = stroke.points.size() > 1 ? EditShape{stroke} : EditShape{SetVoxel{at}};
   }

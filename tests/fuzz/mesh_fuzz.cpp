@@ -19,8 +19,8 @@
 #include "common/core/hash.hpp"
 #include "common/runs/run_builder.hpp"
 #include "tests/support/mesh_scene.hpp"
-#include "tests/support/mesher_jury.hpp"
-#include "tests/support/polygon_jury.hpp"
+#include "tests/support/mesher_checks.hpp"
+#include "tests/support/polygon_checks.hpp"
 
 namespace {
 
@@ -46,7 +46,9 @@ class Input {
     return byte;
   }
   /// Random bytes behind the end.
-  std::uint8_t next_or_drawn() { return empty() ? static_cast<std::uint8_t>(rng_.below(256)) : next(); }
+  std::uint8_t next_or_drawn() {
+    return empty() ? static_cast<std::uint8_t>(rng_.below(256)) : next();
+  }
 
  private:
   std::span<const std::uint8_t> bytes_;
@@ -74,7 +76,8 @@ AxisOrder read_order(Input& in) { return kAxisOrders[in.next() % kAxisOrderCount
 Extent extent_beyond(Extent extent, Axis axis, unsigned code) {
   constexpr std::array<std::uint8_t, 3> kDeep = {64, 65, 128};
   if (code == 0) return extent;
-  const auto depth = code < 40 ? static_cast<std::uint8_t>(kSideMin + code - 1) : kDeep.at(code - 40);
+  const auto depth =
+      code < 40 ? static_cast<std::uint8_t>(kSideMin + code - 1) : kDeep.at(code - 40);
   (axis == Axis::x ? extent.x : axis == Axis::y ? extent.y : extent.z) = depth;
   return extent;
 }
@@ -104,7 +107,8 @@ test::MeshScene read_scene(Input& in) {
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     if ((mask >> d & 1) == 0) continue;
     const std::uint8_t form = in.next();
-    const Extent theirs = extent_beyond(extent, axis_of(static_cast<Direction>(d)), form / kAxisOrderCount);
+    const Extent theirs =
+        extent_beyond(extent, axis_of(static_cast<Direction>(d)), form / kAxisOrderCount);
     scene.neighbours[d] = read_chunk(in, theirs, kAxisOrders[form % kAxisOrderCount], stone);
   }
   return scene;
@@ -112,7 +116,8 @@ test::MeshScene read_scene(Input& in) {
 
 DirtyLayers read_edit(Input& in, RunChunk& chunk) {
   const std::uint64_t high = in.next_or_drawn();
-  const auto first = static_cast<std::uint32_t>((high << 8 | in.next_or_drawn()) * chunk.volume() >> 16);
+  const auto first =
+      static_cast<std::uint32_t>((high << 8 | in.next_or_drawn()) * chunk.volume() >> 16);
   const std::uint32_t byte = in.next_or_drawn();
   const std::uint32_t length = byte < 128 ? 1 : byte - 126;
   const auto material = static_cast<Material>(in.next_or_drawn() % (test::kMeshMaterialCount + 1));
@@ -147,8 +152,8 @@ class Trial {
   void mesh(const test::MeshScene& scene) {
     const std::string fault = jury_.fault(scene);
     demand(fault.empty(), fault.c_str());
-    const std::string of_polygons =
-        polygon_jury_.fault(scene, test::mesh_visibility(), test::mesh_materials(), jury_.exposed());
+    const std::string of_polygons = polygon_jury_.fault(scene, test::mesh_visibility(),
+                                                        test::mesh_materials(), jury_.exposed());
     demand(of_polygons.empty(), of_polygons.c_str());
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, mesh_);
     const auto difference =
@@ -164,10 +169,12 @@ class Trial {
       kept_[d].read(*scene.neighbours[d], test::mesh_visibility());
       borders[d] = &kept_[d];
     }
-    mesh_rdm(scene.chunk, scene.pointers(), borders, test::mesh_visibility(), scratch_, other_, &own_);
+    mesh_rdm(scene.chunk, scene.pointers(), borders, test::mesh_visibility(), scratch_, other_,
+             &own_);
     demand(equal(mesh_, other_), "kept borders give other quads");
     read_.read(scene.chunk, test::mesh_visibility());
-    demand(test::equal_borders(scene.chunk, own_, read_), "a mesh makes other borders than its chunk has");
+    demand(test::equal_borders(scene.chunk, own_, read_),
+           "a mesh makes other borders than its chunk has");
   }
 
   /// Edits a scene that was meshed; dirty layers give the mesh that all of it does.
@@ -180,7 +187,8 @@ class Trial {
     } else {
       beyond[place] = read_edit(in, *scene.neighbours[place]);
     }
-    mesh_rdm_layers(scene.chunk, scene.pointers(), test::mesh_visibility(), dirty, beyond, scratch_, mesh_);
+    mesh_rdm_layers(scene.chunk, scene.pointers(), test::mesh_visibility(), dirty, beyond, scratch_,
+                    mesh_);
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, other_);
     demand(equal(mesh_, other_), "remeshed layers differ from a full mesh");
   }

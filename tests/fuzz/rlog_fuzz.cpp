@@ -25,9 +25,11 @@ void read(const Bytes& file) {
     RUNSTONE_ASSERT(contents.records.empty() || contents.error->seq >= next);
     return;
   }
-  const Bytes again = test::rlog_of(contents.world, contents.players, contents.records, {0, kRlogCountMax});
+  const Bytes again =
+      test::rlog_of(contents.world, contents.players, contents.records, {0, kRlogCountMax});
   const test::RlogContents second = test::read_rlog(again);
-  RUNSTONE_ASSERT(!second.error && second.world == contents.world && second.players == contents.players);
+  RUNSTONE_ASSERT(!second.error && second.world == contents.world &&
+                  second.players == contents.players);
   RUNSTONE_ASSERT(second.records == contents.records);
 }
 

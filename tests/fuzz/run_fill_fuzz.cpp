@@ -66,7 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RunChunk turned = reorder(chunk, other);
     demand(validate(turned).has_value(), "reordered chunk is invalid", -1);
     demand(test::DenseChunk::of(turned) == oracle, "reordered voxels differ", -1);
-    demand(turned.runs.size() == counts[static_cast<std::size_t>(other)], "counted runs differ", -1);
+    demand(turned.runs.size() == counts[static_cast<std::size_t>(other)], "counted runs differ",
+           -1);
   }
   return 0;
 }

@@ -72,7 +72,8 @@ class Pass {
 
   /// Faces of line m, s towards the line `word_step` words, `voxel_step` voxels further, as bits along the
   /// line.
-  Word faces(std::uint32_t m, std::uint32_t s, std::ptrdiff_t word_step, std::ptrdiff_t voxel_step) const {
+  Word faces(std::uint32_t m, std::uint32_t s, std::ptrdiff_t word_step,
+             std::ptrdiff_t voxel_step) const {
     const std::size_t word = word_at(m, s);
     const std::size_t other = word + static_cast<std::size_t>(word_step);
     const Word shown = own_[word] & ~hiding(other);
@@ -91,10 +92,12 @@ class Pass {
       start_layer(direction, s);
       Word any = 0;
       for (std::uint32_t m = 0; m < e_.m; ++m) {
-        plane[m] = faces(m, s, sign * (static_cast<std::ptrdiff_t>(e_.m) + 2), sign * grid_.layer_stride());
+        plane[m] = faces(m, s, sign * (static_cast<std::ptrdiff_t>(e_.m) + 2),
+                         sign * grid_.layer_stride());
         any |= plane[m];
       }
-      if (any != 0) merge<true>(plane.data(), e_.m, grid_.line(0, s), 1, grid_.line_stride(), shape, s);
+      if (any != 0)
+        merge<true>(plane.data(), e_.m, grid_.line(0, s), 1, grid_.line_stride(), shape, s);
     }
     end_layers(direction, e_.s);
   }
@@ -129,7 +132,8 @@ class Pass {
   void across_fast(Direction direction) {
     const bool positive = is_positive(direction);
     const Shape shape(direction, axes_[1], axes_[2]);
-    std::vector<Word>& planes = scratch_.planes;  // word s of layer f: planes[f * kBinarySideMax + s]
+    std::vector<Word>& planes =
+        scratch_.planes;  // word s of layer f: planes[f * kBinarySideMax + s]
     planes.assign(std::size_t{kBinarySideMax} * kBinarySideMax, 0);
     Plane slab;
     Word any = 0;
@@ -139,7 +143,8 @@ class Pass {
         slab[m] = faces_along(m, s, positive);
         any |= slab[m];
         for (Word left = slab[m]; left != 0 && faces_left != 0; left &= left - 1, --faces_left) {
-          planes[static_cast<std::size_t>(std::countr_zero(left)) * kBinarySideMax + s] |= Word{1} << m;
+          planes[static_cast<std::size_t>(std::countr_zero(left)) * kBinarySideMax + s] |= Word{1}
+                                                                                           << m;
         }
       }
       if (faces_left != 0) continue;
@@ -151,8 +156,8 @@ class Pass {
     for (std::uint32_t f = 0; f < e_.f; ++f) {
       start_layer(direction, f);
       if ((any >> f & 1) == 0) continue;
-      merge<false>(planes.data() + f * kBinarySideMax, e_.s, grid_.origin() + f, grid_.line_stride(),
-                   grid_.layer_stride(), shape, f);
+      merge<false>(planes.data() + f * kBinarySideMax, e_.s, grid_.origin() + f,
+                   grid_.line_stride(), grid_.layer_stride(), shape, f);
     }
     end_layers(direction, e_.f);
   }
@@ -161,11 +166,13 @@ class Pass {
   /// Faces of line m, s towards the next or the last voxel of the same line.
   Word faces_along(std::uint32_t m, std::uint32_t s, bool positive) const {
     const std::size_t word = word_at(m, s);
-    const unsigned ends = mask_.ends[word] >> (positive ? 1 : 0);  // bit 0: opaque beyond, bit 2: transparent
+    const unsigned ends =
+        mask_.ends[word] >> (positive ? 1 : 0);  // bit 0: opaque beyond, bit 2: transparent
     const auto moved = [&](Word w, bool end) {
       return positive ? w >> 1 | Word{end} << (e_.f - 1) : w << 1 | Word{end};
     };
-    const Word shown = own_[word] & ~moved(hiding(word), (ends & (kTransparent && kOne ? 5u : 1u)) != 0);
+    const Word shown =
+        own_[word] & ~moved(hiding(word), (ends & (kTransparent && kOne ? 5u : 1u)) != 0);
     if constexpr (!kTransparent || kOne) return shown;
     const Word beside = moved(own_[word], (ends & 4) != 0);
     if ((shown & beside) == 0) return shown;
@@ -207,7 +214,8 @@ class Pass {
           if (equal_run<kContiguous>(above, bit_stride, length, material) != length) break;
           plane[end] ^= run;
         }
-        *out++ = {base | std::uint64_t{from} << shape.bit_shift | std::uint64_t{w} << shape.word_shift |
+        *out++ = {base | std::uint64_t{from} << shape.bit_shift |
+                  std::uint64_t{w} << shape.word_shift |
                   std::uint64_t{length - 1} << shape.bits_shift |
                   std::uint64_t{end - w - 1} << shape.words_shift | std::uint64_t{material} << 38};
       }
@@ -219,7 +227,8 @@ class Pass {
   void start_layer(Direction direction, std::uint32_t layer) {
     out_.first[static_cast<std::size_t>(direction) * kSideMax + layer] = count_;
     const std::size_t most = std::size_t{count_} + kBinarySideMax * kBinarySideMax;
-    if (scratch_.quads.size() < most) scratch_.quads.resize(std::max(most, 2 * scratch_.quads.size()));
+    if (scratch_.quads.size() < most)
+      scratch_.quads.resize(std::max(most, 2 * scratch_.quads.size()));
   }
   void end_layers(Direction direction, std::uint32_t layers) {
     const auto first = out_.first.begin() + static_cast<std::ptrdiff_t>(direction) * kSideMax;
@@ -239,8 +248,8 @@ class Pass {
 };
 
 template <bool kTransparent>
-void run_pass(const DenseGrid& grid, const OccupancyMask& mask, bool any, bool one, BinaryScratch& scratch,
-              QuadLayers& out) {
+void run_pass(const DenseGrid& grid, const OccupancyMask& mask, bool any, bool one,
+              BinaryScratch& scratch, QuadLayers& out) {
   if (!any) {
     out.clear();
   } else if (one) {
@@ -261,8 +270,8 @@ void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, Binary
   run_pass<true>(grid, mask, mask.any_transparent, mask.one_transparent, scratch, out.transparent);
 }
 
-void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility, BinaryScratch& scratch,
-                        ChunkMesh& out) {
+void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
+                        BinaryScratch& scratch, ChunkMesh& out) {
   occupancy_of(grid, visibility, scratch.mask);
   mesh_binary_greedy(grid, scratch.mask, scratch, out);
 }

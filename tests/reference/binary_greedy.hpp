@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/mesh/chunk_mesh.hpp"
+#include "common/mesh/visibility.hpp"
 #include "tests/reference/dense_grid.hpp"
 #include "tests/reference/occupancy_mask.hpp"
-#include "common/mesh/visibility.hpp"
 
 namespace runstone::reference {
 
@@ -29,8 +29,8 @@ void mesh_binary_greedy(const DenseGrid& grid, const OccupancyMask& mask, Binary
                         ChunkMesh& out);
 
 /// The same from a grid alone: builds the mask first.
-void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility, BinaryScratch& scratch,
-                        ChunkMesh& out);
+void mesh_binary_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
+                        BinaryScratch& scratch, ChunkMesh& out);
 
 /// The same from runs: decodes a grid, makes its mask from the runs as well, and meshes. What "decode +
 /// binary greedy" means wherever meshers are compared. Counts a dense expansion.

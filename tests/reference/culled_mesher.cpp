@@ -12,7 +12,8 @@ void mesh_culled(const DenseGrid& grid, const VisibilityTable& visibility, std::
   std::array<std::ptrdiff_t, kDirectionCount> beside{};
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     const auto direction = static_cast<Direction>(d);
-    beside[d] = is_positive(direction) ? grid.stride(axis_of(direction)) : -grid.stride(axis_of(direction));
+    beside[d] =
+        is_positive(direction) ? grid.stride(axis_of(direction)) : -grid.stride(axis_of(direction));
   }
   for (std::uint32_t s = 0; s < e.s; ++s) {
     for (std::uint32_t m = 0; m < e.m; ++m) {

@@ -46,7 +46,8 @@ void decode_inside(const Runs& runs, OrderedExtent e, DenseGrid& grid) {
     to = stop;
     if (line_end == end) {  // the next run starts with a line
       to += gap;
-      if (lines_left == 1) to += grid.layer_stride() - static_cast<std::ptrdiff_t>(e.m) * grid.line_stride();
+      if (lines_left == 1)
+        to += grid.layer_stride() - static_cast<std::ptrdiff_t>(e.m) * grid.line_stride();
     }
   }
 }
@@ -69,7 +70,8 @@ void decode_border(const RunChunk* neighbour, Direction direction, std::vector<M
   layer.resize(us * vs);
   if (!uniform) {
     const auto theirs = neighbour->extent.sides();
-    RUNSTONE_ASSERT(theirs[static_cast<std::size_t>(u)] == us && theirs[static_cast<std::size_t>(v)] == vs);
+    RUNSTONE_ASSERT(theirs[static_cast<std::size_t>(u)] == us &&
+                    theirs[static_cast<std::size_t>(v)] == vs);
     const std::uint32_t depth = theirs[static_cast<std::size_t>(axis)];
     read_layer(*neighbour, axis, is_positive(direction) ? 0 : depth - 1, u, std::span(layer));
   }

@@ -39,7 +39,9 @@ class DenseGrid {
   /// The first voxel of line m of slow layer s. Requires -1 <= m, s <= their side; [-1] and [side] of a line
   /// are its border. The twelve edges of the border belong to no face: decode() and the octree may write
   /// anything.
-  const Material* line(std::ptrdiff_t m, std::ptrdiff_t s) const { return voxels_.data() + offset(m, s); }
+  const Material* line(std::ptrdiff_t m, std::ptrdiff_t s) const {
+    return voxels_.data() + offset(m, s);
+  }
   Material* line(std::ptrdiff_t m, std::ptrdiff_t s) { return voxels_.data() + offset(m, s); }
   /// The voxel at 0 0 0; others lie at multiples of stride().
   const Material* origin() const { return line(0, 0); }

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/core/ids.hpp"
+#include "common/mesh/visibility.hpp"
 #include "tests/reference/dense_grid.hpp"
 #include "tests/reference/voxel_faces.hpp"
-#include "common/mesh/visibility.hpp"
 
 namespace runstone::reference {
 
@@ -18,7 +18,9 @@ struct FacePlane {
   std::vector<Material> faces;          // row after row, u along a row; kEmpty: no face
 
   Material* row(std::uint32_t v) { return faces.data() + static_cast<std::size_t>(v) * width; }
-  const Material* row(std::uint32_t v) const { return faces.data() + static_cast<std::size_t>(v) * width; }
+  const Material* row(std::uint32_t v) const {
+    return faces.data() + static_cast<std::size_t>(v) * width;
+  }
 };
 
 /// A rectangle of equal faces of a plane.
@@ -31,8 +33,8 @@ struct PlaneRectangle {
 
 /// Replaces `plane` by the drawn faces of `direction` in `layer`; returns whether there are any. O(faces of a
 /// layer).
-inline bool read_faces(const DenseGrid& grid, const VisibilityTable& visibility, Direction direction,
-                       std::uint32_t layer, FacePlane& plane) {
+inline bool read_faces(const DenseGrid& grid, const VisibilityTable& visibility,
+                       Direction direction, std::uint32_t layer, FacePlane& plane) {
   const Axis across = axis_of(direction);
   const Axis u = u_axis_of(across);
   const Axis v = v_axis_of(across);
@@ -64,7 +66,8 @@ void each_face_plane(const DenseGrid& grid, const VisibilityTable& visibility, F
                      Merge&& merge) {
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     const auto direction = static_cast<Direction>(d);
-    const std::uint32_t layers = grid.extent().sides()[static_cast<std::size_t>(axis_of(direction))];
+    const std::uint32_t layers =
+        grid.extent().sides()[static_cast<std::size_t>(axis_of(direction))];
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       if (read_faces(grid, visibility, direction, layer, plane)) merge(direction, layer);
     }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
+#include "common/mesh/visibility.hpp"
 #include "tests/reference/dense_grid.hpp"
 #include "tests/reference/face_plane.hpp"
-#include "common/mesh/visibility.hpp"
 
 namespace runstone::reference {
 

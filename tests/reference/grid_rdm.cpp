@@ -21,12 +21,14 @@ void make_strips(const DenseGrid& grid, const VisibilityTable& visibility, Direc
                  std::vector<Strip>& strips) {
   const Traversal t = kTraversals[static_cast<std::size_t>(axis_of(direction))];
   const auto sides = grid.extent().sides();
-  const std::ptrdiff_t beside = is_positive(direction) ? grid.stride(t.layer) : -grid.stride(t.layer);
+  const std::ptrdiff_t beside =
+      is_positive(direction) ? grid.stride(t.layer) : -grid.stride(t.layer);
   const std::ptrdiff_t step = grid.stride(t.run);
   strips.clear();
   for (std::uint8_t layer = 0; layer < sides[static_cast<std::size_t>(t.layer)]; ++layer) {
     for (std::uint8_t row = 0; row < sides[static_cast<std::size_t>(t.row)]; ++row) {
-      const Material* voxel = grid.origin() + layer * grid.stride(t.layer) + row * grid.stride(t.row);
+      const Material* voxel =
+          grid.origin() + layer * grid.stride(t.layer) + row * grid.stride(t.row);
       bool open = false;  // the last strip ends at this voxel
       for (std::uint8_t at = 0; at < sides[static_cast<std::size_t>(t.run)]; ++at, voxel += step) {
         const bool drawn = visibility.face_drawn(*voxel, voxel[beside]);
@@ -91,8 +93,8 @@ Quad quad_of(const Strip& strip, Direction direction) {
 
 }  // namespace
 
-void mesh_grid_rdm(const DenseGrid& grid, const VisibilityTable& visibility, GridRdmScratch& scratch,
-                   std::vector<Quad>& out) {
+void mesh_grid_rdm(const DenseGrid& grid, const VisibilityTable& visibility,
+                   GridRdmScratch& scratch, std::vector<Quad>& out) {
   out.clear();
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     const auto direction = static_cast<Direction>(d);

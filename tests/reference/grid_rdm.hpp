@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
-#include "tests/reference/dense_grid.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/reference/dense_grid.hpp"
 
 namespace runstone::reference {
 
@@ -25,7 +25,7 @@ struct GridRdmScratch {
 /// Replaces `out` by the mesh of `grid`. Run and row axis of a direction are the thesis' (in our axes: x
 /// faces run along z in rows of y, y faces along z in rows of x, z faces along x in rows of y). O(volume +
 /// strips * strips of a row).
-void mesh_grid_rdm(const DenseGrid& grid, const VisibilityTable& visibility, GridRdmScratch& scratch,
-                   std::vector<Quad>& out);
+void mesh_grid_rdm(const DenseGrid& grid, const VisibilityTable& visibility,
+                   GridRdmScratch& scratch, std::vector<Quad>& out);
 
 }  // namespace runstone::reference

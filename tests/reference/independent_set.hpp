@@ -45,7 +45,8 @@ class IndependentSet {
   std::vector<std::uint32_t> distance_;  // of left vertices: pairs of edges from an unmatched one
   std::vector<std::uint8_t> reached_;    // right vertices the same search came by
   std::vector<std::uint32_t> queue_, next_edge_, path_;
-  std::uint32_t shortest_ = kFar;  // distance of the left vertices before the nearest unmatched right ones
+  std::uint32_t shortest_ =
+      kFar;  // distance of the left vertices before the nearest unmatched right ones
 };
 
 }  // namespace runstone::reference

@@ -17,13 +17,15 @@ constexpr VoxelPos child_of(VoxelPos at, std::int32_t half, std::uint32_t child)
 /// Place of a voxel in its brick; takes coordinates relative to the brick's or the tree's origin.
 constexpr std::size_t place_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   constexpr std::int32_t kLow = MaterialOctree::kBrickSide - 1;
-  return static_cast<std::size_t>((x & kLow) + MaterialOctree::kBrickSide *
-                                                   ((y & kLow) + MaterialOctree::kBrickSide * (z & kLow)));
+  return static_cast<std::size_t>((x & kLow) +
+                                  MaterialOctree::kBrickSide *
+                                      ((y & kLow) + MaterialOctree::kBrickSide * (z & kLow)));
 }
 
 }  // namespace
 
-MaterialOctree::MaterialOctree(VoxelPos origin, unsigned depth) : origin_(origin), depth_(depth), nodes_(1) {
+MaterialOctree::MaterialOctree(VoxelPos origin, unsigned depth)
+    : origin_(origin), depth_(depth), nodes_(1) {
   RUNSTONE_ASSERT(depth <= kDepthMax);
 }
 
@@ -52,7 +54,8 @@ void MaterialOctree::insert(VoxelPos first, const RunChunk& chunk) {
   for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
     const Run run = chunk.runs[i];
     for (; begin < run.end; ++begin) {
-      const LocalPos local = from_ordered({begin % e.f, begin / e.f % e.m, begin / e.layer()}, chunk.order);
+      const LocalPos local =
+          from_ordered({begin % e.f, begin / e.f % e.m, begin / e.layer()}, chunk.order);
       const std::int32_t x = first.x - origin_.x + local.x;
       const std::int32_t y = first.y - origin_.y + local.y;
       const std::int32_t z = first.z - origin_.z + local.z;
@@ -73,7 +76,8 @@ bool MaterialOctree::compact(std::uint32_t node, MaterialOctree& into, std::uint
   const Node& from = nodes_[node];
   if (from.brick != 0) {
     const Brick& brick = bricks_[from.brick - 1];
-    const bool uniform = std::all_of(brick.begin(), brick.end(), [&](Material m) { return m == brick[0]; });
+    const bool uniform =
+        std::all_of(brick.begin(), brick.end(), [&](Material m) { return m == brick[0]; });
     if (uniform) {
       into.nodes_[to].material = brick[0];
     } else {
@@ -123,8 +127,8 @@ void MaterialOctree::sample(VoxelPos first, DenseGrid& grid) const {
   sample(nodes_[0], {0, 0, 0}, side(), wanted, grid);
 }
 
-void MaterialOctree::sample(const Node& node, VoxelPos at, std::int32_t side, const VoxelBox& wanted,
-                            DenseGrid& grid) const {
+void MaterialOctree::sample(const Node& node, VoxelPos at, std::int32_t side,
+                            const VoxelBox& wanted, DenseGrid& grid) const {
   const VoxelBox part = intersect({at, {at.x + side, at.y + side, at.z + side}}, wanted);
   if (part.empty()) return;
   if (node.children != 0) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/core/coords.hpp"
-#include "tests/reference/dense_grid.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "tests/reference/dense_grid.hpp"
 
 namespace runstone::reference {
 
@@ -31,11 +31,13 @@ class MaterialOctree {
   /// empty outside the cube. Counts a dense expansion. Requires a grid of order xyz. O(volume + nodes met).
   void sample(VoxelPos first, DenseGrid& grid) const;
 
-  std::size_t byte_size() const { return nodes_.size() * sizeof(Node) + bricks_.size() * sizeof(Brick); }
+  std::size_t byte_size() const {
+    return nodes_.size() * sizeof(Node) + bricks_.size() * sizeof(Brick);
+  }
 
  private:
-  using Brick =
-      std::array<Material, std::size_t{kBrickSide} * kBrickSide * kBrickSide>;  // x fastest, z slowest
+  using Brick = std::array<Material, std::size_t{kBrickSide} * kBrickSide *
+                                         kBrickSide>;  // x fastest, z slowest
   struct Node {
     std::uint32_t children = 0;  // the first of eight nodes, x fastest; 0: none
     std::uint32_t brick = 0;     // index + 1; 0: none

@@ -5,7 +5,8 @@
 namespace runstone::reference {
 namespace {
 
-constexpr std::array<std::uint8_t, 2> kWall = {1, 2};  // by Line: the edge from here to the next corner
+constexpr std::array<std::uint8_t, 2> kWall = {
+    1, 2};  // by Line: the edge from here to the next corner
 constexpr std::uint8_t kConcave = 4;
 constexpr std::uint8_t kServed = 8;  // a chord that was taken ends here
 
@@ -132,8 +133,8 @@ void MinimumPartition::read_off(const FacePlane& plane, std::vector<PlaneRectang
       while (!is_wall(corner + r.width, along_v)) ++r.width;
       while (!is_wall(corner + r.height * step_[along_v], along_u)) ++r.height;
       for (std::uint32_t row = 0; row < r.height; ++row) {
-        std::fill_n(covered_.begin() + static_cast<std::ptrdiff_t>(face + row * plane.width), r.width,
-                    std::uint8_t{1});
+        std::fill_n(covered_.begin() + static_cast<std::ptrdiff_t>(face + row * plane.width),
+                    r.width, std::uint8_t{1});
       }
       out.push_back(r);
     }

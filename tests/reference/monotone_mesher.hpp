@@ -18,8 +18,8 @@ struct MonotoneScratch {
 
 /// Replaces `out` by the exposed faces of `grid`, by direction, layer and region. O(volume + corners log
 /// corners).
-inline void mesh_monotone(const DenseGrid& grid, const VisibilityTable& visibility, MonotoneScratch& scratch,
-                          TriangleMesh& out) {
+inline void mesh_monotone(const DenseGrid& grid, const VisibilityTable& visibility,
+                          MonotoneScratch& scratch, TriangleMesh& out) {
   mesh_polygons(grid, visibility, scratch.polygons, scratch.triangulation, out);
 }
 

@@ -87,7 +87,8 @@ void MonotoneTriangulation::close_slab(SlabId slab) {
 /// that lies within a slab.
 MonotoneTriangulation::SlabId MonotoneTriangulation::slab_around(CornerId corner) const {
   const auto inside = [&](SlabId slab) {
-    return at(slabs_[slab].left_end).u < at(corner).u && at(corner).u < at(slabs_[slab].right_end).u;
+    return at(slabs_[slab].left_end).u < at(corner).u &&
+           at(corner).u < at(slabs_[slab].right_end).u;
   };
   const auto found = std::find_if(open_slabs_.begin(), open_slabs_.end(), inside);
   RUNSTONE_ASSERT(found != open_slabs_.end());

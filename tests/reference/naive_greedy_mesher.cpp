@@ -23,8 +23,8 @@ bool take_row(Material* row, std::uint32_t width, Material material) {
 
 }  // namespace
 
-void mesh_naive_greedy(const DenseGrid& grid, const VisibilityTable& visibility, NaiveGreedyScratch& scratch,
-                       std::vector<Quad>& out) {
+void mesh_naive_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
+                       NaiveGreedyScratch& scratch, std::vector<Quad>& out) {
   out.clear();
   FacePlane& plane = scratch.plane;
   each_face_plane(grid, visibility, plane, [&](Direction direction, std::uint32_t layer) {
@@ -34,7 +34,8 @@ void mesh_naive_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
         if (material == kEmpty) continue;
         const std::uint32_t width = take_run(plane.row(v) + u, plane.width - u, material);
         std::uint32_t height = 1;
-        while (v + height < plane.height && take_row(plane.row(v + height) + u, width, material)) ++height;
+        while (v + height < plane.height && take_row(plane.row(v + height) + u, width, material))
+          ++height;
         out.push_back(quad_in_plane(direction, layer, {u, v, width, height, material}));
       }
     }

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
+#include "common/mesh/visibility.hpp"
 #include "tests/reference/dense_grid.hpp"
 #include "tests/reference/face_plane.hpp"
-#include "common/mesh/visibility.hpp"
 
 namespace runstone::reference {
 
@@ -24,7 +24,7 @@ struct NaiveGreedyScratch {
 };
 
 /// Replaces `out` by the mesh of `grid`, by direction, layer and column of the first face. O(volume).
-void mesh_naive_greedy(const DenseGrid& grid, const VisibilityTable& visibility, NaiveGreedyScratch& scratch,
-                       std::vector<Quad>& out);
+void mesh_naive_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
+                       NaiveGreedyScratch& scratch, std::vector<Quad>& out);
 
 }  // namespace runstone::reference

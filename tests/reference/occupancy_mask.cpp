@@ -126,7 +126,8 @@ class Builder {
   }
   /// The same where it is one material before and one behind every line.
   void set_ends(Material before, Material behind) {
-    const unsigned ends = end_bits(look_up(before, false), false) | end_bits(look_up(behind, false), true);
+    const unsigned ends =
+        end_bits(look_up(before, false), false) | end_bits(look_up(behind, false), true);
     for_each_line([ends](std::ptrdiff_t, std::ptrdiff_t) { return ends; });
   }
 
@@ -176,8 +177,9 @@ void occupancy_of(const DenseGrid& grid, const VisibilityTable& visibility, Occu
   builder.finish();
 }
 
-void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours, const DenseGrid& grid,
-                          const VisibilityTable& visibility, OccupancyMask& mask) {
+void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours,
+                          const DenseGrid& grid, const VisibilityTable& visibility,
+                          OccupancyMask& mask) {
   RUNSTONE_ASSERT(grid.extent() == chunk.extent && grid.order() == chunk.order);
   const OrderedExtent e = grid.sides();
   // Where lines hold many runs, comparing voxels side by side is faster than stepping through runs.
@@ -189,7 +191,9 @@ void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbour
   const RunChunk* const before = neighbours[fast];
   const RunChunk* const behind = neighbours[fast + 1];
   const auto uniform = [](const RunChunk* c) { return c == nullptr || c->is_uniform(); };
-  const auto material = [](const RunChunk* c) { return c == nullptr ? kEmpty : c->runs.material(0); };
+  const auto material = [](const RunChunk* c) {
+    return c == nullptr ? kEmpty : c->runs.material(0);
+  };
   if (uniform(before) && uniform(behind)) {
     builder.set_ends(material(before), material(behind));
   } else {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/reference/dense_grid.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/reference/dense_grid.hpp"
 
 namespace runstone::reference {
 
@@ -17,7 +17,8 @@ struct OccupancyMask {
   /// By line, border lines included: line m of slow layer s is word (m + 1) + (m's side + 2) * (s + 1), bit f
   /// its voxel f. The border voxels of a line are in `ends`.
   std::vector<std::uint64_t> opaque, transparent;
-  std::vector<std::uint8_t> ends;  // bit 0, 1: opaque before, behind the line; bit 2, 3: transparent likewise
+  std::vector<std::uint8_t>
+      ends;  // bit 0, 1: opaque before, behind the line; bit 2, 3: transparent likewise
   /// No two opaque (transparent) materials occur, so that faces merge and cull without a look at the grid.
   bool one_opaque = true, one_transparent = true;
   bool any_opaque = false, any_transparent = false;
@@ -32,7 +33,8 @@ void occupancy_of(const DenseGrid& grid, const VisibilityTable& visibility, Occu
 
 /// The same for a grid that was decoded from `chunk` and `neighbours`, with the words inside made from the
 /// runs. O(runs + lines).
-void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours, const DenseGrid& grid,
-                          const VisibilityTable& visibility, OccupancyMask& mask);
+void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbours,
+                          const DenseGrid& grid, const VisibilityTable& visibility,
+                          OccupancyMask& mask);
 
 }  // namespace runstone::reference

@@ -32,7 +32,9 @@ void OutlineTracer::trace(const FacePlane& plane, Outlines& out) {
       out.regions.push_back({material, static_cast<std::uint32_t>(out.rings.size()), 0, 0});
       // The first face lies lowest, so the first ring is the outer one. Every ring has a side that runs along
       // +u and starts with a corner.
-      const auto ours = [this](int at_u, int at_v) { return region_[index(at_u, at_v)] == regions_; };
+      const auto ours = [this](int at_u, int at_v) {
+        return region_[index(at_u, at_v)] == regions_;
+      };
       for (const Cell& cell : cells_) {
         const bool side = !ours(cell.u, cell.v - 1);
         const bool corner = !ours(cell.u - 1, cell.v) || ours(cell.u - 1, cell.v - 1);
@@ -80,7 +82,9 @@ void OutlineTracer::trace_ring(int u, int v, Outlines& out) {
     if (way == 0) traced_[index(u, v)] = 1;
     u += kSteps[way].u;
     v += kSteps[way].v;
-    const auto ours = [&](const Step& ahead) { return region_[index(u + ahead.u, v + ahead.v)] == region; };
+    const auto ours = [&](const Step& ahead) {
+      return region_[index(u + ahead.u, v + ahead.v)] == region;
+    };
     const bool right = ours(kAheadRight[way]);
     std::size_t next = way;
     if (!ours(kAheadLeft[way])) {

@@ -54,9 +54,10 @@ class OutlineTracer {
   void trace_ring(int u, int v, Outlines& out);
 
   std::size_t stride_ = 0;
-  std::vector<std::uint32_t> region_;  // of each face, from 1; a margin of none lies around the plane
-  std::vector<std::uint8_t> traced_;   // whether the side towards -v belongs to a ring
-  std::vector<Cell> cells_;            // of the region at hand
+  std::vector<std::uint32_t>
+      region_;  // of each face, from 1; a margin of none lies around the plane
+  std::vector<std::uint8_t> traced_;  // whether the side towards -v belongs to a ring
+  std::vector<Cell> cells_;           // of the region at hand
   std::uint32_t regions_ = 0;
 };
 

@@ -17,8 +17,8 @@ struct Poly2TriScratch {
 
 /// Replaces `out` by the exposed faces of `grid`, by direction, layer and region. O(volume + corners log
 /// corners + flips).
-inline void mesh_poly2tri(const DenseGrid& grid, const VisibilityTable& visibility, Poly2TriScratch& scratch,
-                          TriangleMesh& out) {
+inline void mesh_poly2tri(const DenseGrid& grid, const VisibilityTable& visibility,
+                          Poly2TriScratch& scratch, TriangleMesh& out) {
   mesh_polygons(grid, visibility, scratch.polygons, scratch.triangulation, out);
 }
 

@@ -22,8 +22,8 @@ struct PolygonScratch {
 /// Replaces `out` by the triangles of every region of a grid. Triangulation has run(outlines, region), then
 /// points() and triangles() of that region, counter-clockwise over u, v.
 template <class Triangulation>
-void mesh_polygons(const DenseGrid& grid, const VisibilityTable& visibility, PolygonScratch& scratch,
-                   Triangulation& triangulation, TriangleMesh& out) {
+void mesh_polygons(const DenseGrid& grid, const VisibilityTable& visibility,
+                   PolygonScratch& scratch, Triangulation& triangulation, TriangleMesh& out) {
   out.clear();
   scratch.regions = scratch.touching_regions = scratch.touching_corners = 0;
   each_face_plane(grid, visibility, scratch.plane, [&](Direction direction, std::uint32_t layer) {
@@ -44,9 +44,10 @@ void mesh_polygons(const DenseGrid& grid, const VisibilityTable& visibility, Pol
         out.vertices.push_back({at[0], at[1], at[2]});
       }
       for (const auto& [a, b, c] : triangulation.triangles()) {
-        out.triangles.push_back({{first + a, first + (positive ? b : c), first + (positive ? c : b)},
-                                 direction,
-                                 region.material});
+        out.triangles.push_back(
+            {{first + a, first + (positive ? b : c), first + (positive ? c : b)},
+             direction,
+             region.material});
       }
     }
   });

@@ -7,7 +7,8 @@
 
 namespace runstone::reference {
 
-void mesh_rle_rdm(const RunChunk& chunk, const VisibilityTable& visibility, std::vector<Quad>& out) {
+void mesh_rle_rdm(const RunChunk& chunk, const VisibilityTable& visibility,
+                  std::vector<Quad>& out) {
   RUNSTONE_ASSERT(chunk.order == AxisOrder::zyx);
   out.clear();
   const OrderedExtent e = ordered(chunk.extent, chunk.order);

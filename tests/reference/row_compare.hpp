@@ -32,7 +32,8 @@ inline std::uint64_t differing_bits(const Material* a, const Material* b, std::u
                            _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + i)));
   };
   for (std::uint32_t i = 0; i < count; i += 16) {
-    const auto bits = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(eight(i), eight(i + 8))));
+    const auto bits =
+        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(eight(i), eight(i + 8))));
     equal |= std::uint64_t{bits} << i;
   }
 #else
@@ -49,7 +50,8 @@ inline std::uint32_t equal_prefix(const Material* row, std::uint32_t count, Mate
   const __m128i wanted = _mm_set1_epi16(static_cast<short>(material));
   for (; i < count; i += 8) {
     const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + i));
-    const auto other = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi16(here, wanted))) ^ 0xffffu;
+    const auto other =
+        static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi16(here, wanted))) ^ 0xffffu;
     if (other != 0) {
       i += static_cast<std::uint32_t>(__builtin_ctz(other)) / 2;
       break;

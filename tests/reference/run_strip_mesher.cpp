@@ -23,7 +23,8 @@ std::array<Way, kDirectionCount> ways_through(const DenseGrid& grid) {
     const auto direction = static_cast<Direction>(d);
     const Axis across = axis_of(direction);
     const Axis run = across == Axis::y ? Axis::x : Axis::y;
-    const std::ptrdiff_t beside = is_positive(direction) ? grid.stride(across) : -grid.stride(across);
+    const std::ptrdiff_t beside =
+        is_positive(direction) ? grid.stride(across) : -grid.stride(across);
     ways[d] = {direction, run, beside, grid.stride(run), run == Axis::y ? 1u : grid.extent().y};
   }
   return ways;
@@ -62,7 +63,8 @@ void mesh_run_strips(const DenseGrid& grid, const VisibilityTable& visibility, H
         for (const Way& way : ways) {
           const bool done = (*covered >> static_cast<unsigned>(way.direction) & 1) != 0;
           if (done || !visibility.face_drawn(*voxel, voxel[way.beside])) continue;
-          const auto most = static_cast<std::uint32_t>(way.run == Axis::y ? extent.y - y : extent.x - x);
+          const auto most =
+              static_cast<std::uint32_t>(way.run == Axis::y ? extent.y - y : extent.x - x);
           const std::uint32_t length = cover_run(visibility, hidden, way, voxel, covered, most);
           out.push_back(strip_quad({x, y, z}, way.direction, *voxel, way.run, length));
         }

@@ -7,20 +7,21 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
-#include "tests/reference/dense_grid.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/reference/dense_grid.hpp"
 
 namespace runstone::reference {
 
 /// What a hidden face of the same material does to a run.
 enum class HiddenFaces : std::uint8_t {
   end_run,  // ends it: exposed faces are drawn and no others
-  run_on    // nothing, as in the original: fewer quads and comparisons, and hidden faces that are drawn
+  run_on  // nothing, as in the original: fewer quads and comparisons, and hidden faces that are drawn
 };
 
 /// Buffers reused between calls. Belongs to one thread.
 struct RunStripScratch {
-  std::vector<std::uint8_t> covered;  // a byte a voxel, y fastest, then x, then z: bit d for direction d
+  std::vector<std::uint8_t>
+      covered;  // a byte a voxel, y fastest, then x, then z: bit d for direction d
 };
 
 /// Replaces `out` by the mesh of `grid`, by z, x and y of the voxel that begins a run and by direction. With

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/mesh/quad.hpp"
-#include "tests/reference/dense_grid.hpp"
 #include "common/mesh/visibility.hpp"
+#include "tests/reference/dense_grid.hpp"
 
 namespace runstone::reference {
 

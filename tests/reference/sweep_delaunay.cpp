@@ -46,7 +46,9 @@ SweepDelaunay::EdgeId SweepDelaunay::add_triangle(PointId a, PointId b, PointId 
 void SweepDelaunay::join(EdgeId e, EdgeId twin) {
   twin_[e] = twin;
   twin_[twin] = e;
-  side_[e] = side_[twin] == Side::inner ? Side::outer : side_[twin] == Side::outer ? Side::inner : Side::free;
+  side_[e] = side_[twin] == Side::inner   ? Side::outer
+             : side_[twin] == Side::outer ? Side::inner
+                                          : Side::free;
 }
 
 void SweepDelaunay::set_hull(PointId from, PointId to, EdgeId edge) {
@@ -81,7 +83,9 @@ void SweepDelaunay::start_front(std::size_t row) {
 
 /// Joins a point to all it sees of the hull, starting from the point before it, which is the highest.
 void SweepDelaunay::point_event(PointId point) {
-  const auto seen = [&](PointId from) { return turn(at(from), at(hull_next_[from]), at(point)) < 0; };
+  const auto seen = [&](PointId from) {
+    return turn(at(from), at(hull_next_[from]), at(point)) < 0;
+  };
   PointId first = point - 1;
   PointId last = first;
   while (seen(last)) last = hull_next_[last];
@@ -142,8 +146,8 @@ void SweepDelaunay::cross(PointId from, PointId to) {
     flip(e);
     const std::array<PointId, 2> ends = {from_[e], end_of(e)};
     const auto side_of = [&](PointId p) { return turn(at(from), at(to), at(p)); };
-    const bool crosses =
-        (side_of(ends[0]) < 0) != (side_of(ends[1]) < 0) && side_of(ends[0]) != 0 && side_of(ends[1]) != 0;
+    const bool crosses = (side_of(ends[0]) < 0) != (side_of(ends[1]) < 0) &&
+                         side_of(ends[0]) != 0 && side_of(ends[1]) != 0;
     (crosses ? crossed_ : fresh_).push_back(ends);
   }
   mark(from, to);
@@ -193,7 +197,8 @@ void SweepDelaunay::each_edge_from(PointId from, F&& visit) const {
 
 /// Whether the two triangles of an edge are a convex polygon, without a straight corner at its ends.
 bool SweepDelaunay::convex(EdgeId e) const {
-  const LayerPoint a = at(from_[e]), b = at(end_of(e)), c = at(apex_of(e)), d = at(apex_of(twin_[e]));
+  const LayerPoint a = at(from_[e]), b = at(end_of(e)), c = at(apex_of(e)),
+                   d = at(apex_of(twin_[e]));
   return turn(c, a, d) > 0 && turn(d, b, c) > 0;
 }
 
@@ -202,7 +207,8 @@ bool SweepDelaunay::convex(EdgeId e) const {
 void SweepDelaunay::flip(EdgeId e) {
   const EdgeId f = twin_[e];
   const std::array<EdgeId, 4> around = {next(e), previous(e), next(f), previous(f)};
-  const std::array<PointId, 4> starts = {from_[around[1]], from_[e], from_[around[3]], from_[f]};  // c a d b
+  const std::array<PointId, 4> starts = {from_[around[1]], from_[e], from_[around[3]],
+                                         from_[f]};  // c a d b
   const EdgeId twin_first = twin_[around[0]];
   const Side side_first = side_[around[0]];
   for (std::size_t i = 0; i < 4; ++i) {
@@ -229,7 +235,8 @@ void SweepDelaunay::restore() {
     const EdgeId e = doubtful_.back();
     doubtful_.pop_back();
     if (twin_[e] == kNone || side_[e] != Side::free) continue;
-    if (in_circle(at(from_[e]), at(end_of(e)), at(apex_of(e)), at(apex_of(twin_[e]))) <= 0) continue;
+    if (in_circle(at(from_[e]), at(end_of(e)), at(apex_of(e)), at(apex_of(twin_[e]))) <= 0)
+      continue;
     flip(e);
     for (const EdgeId half : {e, twin_[e]}) {
       doubtful_.push_back(next(half));

@@ -36,7 +36,8 @@ class SweepDelaunay {
 
  private:
   using PointId = std::uint32_t;
-  using EdgeId = std::uint32_t;  // 3 t + i: from corner i of triangle t to the next, the triangle on its left
+  using EdgeId =
+      std::uint32_t;  // 3 t + i: from corner i of triangle t to the next, the triangle on its left
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// What an edge is to the region.
   enum class Side : std::uint8_t { free, inner, outer };  // outer: the region is on its right

@@ -14,8 +14,9 @@ void SweepPoints::read(const Outlines& outlines, const Outlines::Region& region)
 
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0u);
-  std::sort(order_.begin(), order_.end(),
-            [at](std::uint32_t a, std::uint32_t b) { return at[a] == at[b] ? a < b : at[a] < at[b]; });
+  std::sort(order_.begin(), order_.end(), [at](std::uint32_t a, std::uint32_t b) {
+    return at[a] == at[b] ? a < b : at[a] < at[b];
+  });
   rank_.resize(count);
   points.clear();
   corners.resize(count);

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/reference/each_polygon.hpp"
 #include "common/runs/extent.hpp"
+#include "tests/reference/each_polygon.hpp"
 
 namespace runstone::reference {
 namespace {
@@ -32,8 +32,8 @@ void each_inner_point(const Corner& from, const Corner& to, F&& visit) {
   const Corner way = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
   const int count = std::gcd(std::gcd(way[0], way[1]), way[2]);
   for (int i = 1; i < count; ++i) {
-    visit(LatticeBits::at(
-        {from[0] + way[0] / count * i, from[1] + way[1] / count * i, from[2] + way[2] / count * i}));
+    visit(LatticeBits::at({from[0] + way[0] / count * i, from[1] + way[1] / count * i,
+                           from[2] + way[2] / count * i}));
   }
 }
 

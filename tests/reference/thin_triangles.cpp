@@ -21,7 +21,8 @@ std::int64_t doubled_area(const Corner& a, const Corner& b, const Corner& c) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t u = (axis + 1) % 3;
     const std::size_t v = (axis + 2) % 3;
-    sum += std::abs(std::int64_t{b[u] - a[u]} * (c[v] - a[v]) - std::int64_t{b[v] - a[v]} * (c[u] - a[u]));
+    sum += std::abs(std::int64_t{b[u] - a[u]} * (c[v] - a[v]) -
+                    std::int64_t{b[v] - a[v]} * (c[u] - a[u]));
   }
   return sum;
 }
@@ -32,7 +33,8 @@ ThinTriangles count_thin_triangles(const Surface& surface) {
   ThinTriangles out;
   const auto add = [&out](const Corner& a, const Corner& b, const Corner& c) {
     // Length over height is length squared over the doubled area.
-    const std::int64_t longest = std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+    const std::int64_t longest =
+        std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
     const std::int64_t area = doubled_area(a, b, c);
     out.above_16 += longest > 16 * area ? 1 : 0;
     out.above_100 += longest > 100 * area ? 1 : 0;

@@ -11,10 +11,10 @@
 namespace runstone::reference {
 
 /// A rectangle of faces in one direction that starts at `at`, `along_u` and `along_v` faces large.
-constexpr Quad face_quad(LocalPos at, Direction direction, Material material, std::uint32_t along_u = 1,
-                         std::uint32_t along_v = 1) {
-  return pack({at.x, at.y, at.z, static_cast<std::uint8_t>(along_u), static_cast<std::uint8_t>(along_v),
-               direction, material});
+constexpr Quad face_quad(LocalPos at, Direction direction, Material material,
+                         std::uint32_t along_u = 1, std::uint32_t along_v = 1) {
+  return pack({at.x, at.y, at.z, static_cast<std::uint8_t>(along_u),
+               static_cast<std::uint8_t>(along_v), direction, material});
 }
 
 /// A strip of `length` faces along `axis`, which is not the direction's.

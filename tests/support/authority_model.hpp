@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -25,7 +25,8 @@ class AuthorityModel {
     const auto it = chunks_.find(at);
     if (it != chunks_.end()) return it->second;
     Chunk fresh;
-    fresh.voxels = uniform_chunk(Extent::cube(static_cast<unsigned>(edge_)), at.y < 0 ? Material{1} : kEmpty);
+    fresh.voxels =
+        uniform_chunk(Extent::cube(static_cast<unsigned>(edge_)), at.y < 0 ? Material{1} : kEmpty);
     fresh.digest = digest_of(fresh.voxels);
     return chunks_.emplace(at, std::move(fresh)).first->second;
   }
@@ -33,7 +34,8 @@ class AuthorityModel {
   ChunkSnapshot snapshot(ChunkCoord at) { return {{0, at}, chunk(at)}; }
 
   /// Gives the edits the next sequence numbers and applies them.
-  Commit commit(const std::vector<std::pair<OperationId, EditDescriptor>>& edits, TimeUs now_us = 0) {
+  Commit commit(const std::vector<std::pair<OperationId, EditDescriptor>>& edits,
+                TimeUs now_us = 0) {
     Commit out;
     out.epoch = epoch_;
     out.first = head_ + 1;
@@ -70,7 +72,8 @@ class AuthorityModel {
   /// Replaces a material by air in a chunk that is to be handed out.
   static void hollow(Chunk& chunk, Material material) {
     for (VoxelIndex i = 0; i < chunk.voxels.volume(); ++i) {
-      if (chunk.voxels.runs.material(find_run(chunk.voxels, i)) == material) fill(chunk.voxels, i, 1, kEmpty);
+      if (chunk.voxels.runs.material(find_run(chunk.voxels, i)) == material)
+        fill(chunk.voxels, i, 1, kEmpty);
     }
     chunk.digest = digest_of(chunk.voxels);
   }

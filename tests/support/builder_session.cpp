@@ -53,8 +53,9 @@ void BuilderSession::advance(Builder& builder) {
 }
 
 EditRecord BuilderSession::next() {
-  Builder& builder = *std::min_element(builders_.begin(), builders_.end(),
-                                       [](const auto& a, const auto& b) { return a.due_us < b.due_us; });
+  Builder& builder =
+      *std::min_element(builders_.begin(), builders_.end(),
+                        [](const auto& a, const auto& b) { return a.due_us < b.due_us; });
   EditRecord record;
   record.version = {1, ++seq_};
   const auto author = static_cast<AuthorId>(1 + (&builder - builders_.data()));

@@ -64,7 +64,9 @@ std::string_view letters(AxisOrder order) {
   std::abort();
 }
 
-std::int32_t& along(VoxelPos& p, char letter) { return letter == 'x' ? p.x : letter == 'y' ? p.y : p.z; }
+std::int32_t& along(VoxelPos& p, char letter) {
+  return letter == 'x' ? p.x : letter == 'y' ? p.y : p.z;
+}
 int side(Extent e, char letter) { return letter == 'x' ? e.x : letter == 'y' ? e.y : e.z; }
 
 // Steps to the next voxel in flattened order, as an odometer does.

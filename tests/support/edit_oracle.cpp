@@ -170,8 +170,8 @@ bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault) {
   return dx * dx + dy * dy + dz * dz < diameter * diameter;
 }
 
-OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
-                           OracleFault fault) {
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin,
+                           std::span<const EditDescriptor> edits, OracleFault fault) {
   OracleOutcome outcome;
   std::array<int, 3> last{};
   Material last_before = 0;
@@ -181,7 +181,8 @@ OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const E
         const Material before = chunk.at(x, y, z);
         Material now = before;
         for (const EditDescriptor& edit : edits) {
-          const auto written = oracle_writes(edit, {origin.x + x, origin.y + y, origin.z + z}, fault);
+          const auto written =
+              oracle_writes(edit, {origin.x + x, origin.y + y, origin.z + z}, fault);
           const Material judged = fault == OracleFault::early_mask ? before : now;
           if (written && is_admitted(edit.mask, judged)) now = *written;
         }
@@ -202,7 +203,8 @@ OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const E
   return outcome;
 }
 
-std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around, std::int32_t reach) {
+std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
+                                    std::int32_t reach) {
   std::vector<VoxelPos> out;
   for (std::int32_t x = around.x - reach; x <= around.x + reach; ++x) {
     for (std::int32_t y = around.y - reach; y <= around.y + reach; ++y) {
@@ -214,8 +216,8 @@ std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
   return out;
 }
 
-std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
-                                                                                  const RunChunk& after) {
+std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(
+    const RunChunk& before, const RunChunk& after) {
   // Lists runs as (begin, end, material); a run that is in both lists is kept.
   using Listed = std::tuple<std::uint32_t, std::uint32_t, Material>;
   const auto list = [](const RunChunk& chunk) {
@@ -295,7 +297,8 @@ std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side
   ClipboardBuilder builder(extent, order);
   builder.append(1, static_cast<Material>(rng.below(material_count)));  // something is touched
   while (builder.filled() < extent.volume()) {
-    const std::uint32_t count = std::min(1 + rng.below(stretch_max), extent.volume() - builder.filled());
+    const std::uint32_t count =
+        std::min(1 + rng.below(stretch_max), extent.volume() - builder.filled());
     if (rng.below(8) < untouched_of_8) {
       builder.append(count, std::nullopt);
     } else {
@@ -321,7 +324,8 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
   const std::int32_t margin = rng.below(4) == 0 ? 12 : 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const bool at_border = rng.below(4) == 0;
-    at[i] = at_border ? (rng.below(2) == 0 ? 0 : sides[i] - 1) : pick(rng, -margin, sides[i] - 1 + margin);
+    at[i] = at_border ? (rng.below(2) == 0 ? 0 : sides[i] - 1)
+                      : pick(rng, -margin, sides[i] - 1 + margin);
     end[i] = at[i] + 1 + static_cast<std::int32_t>(rng.below(rng.below(3) == 0 ? 40 : 6));
     if (rng.below(8) == 0) {  // whole lines and layers
       at[i] = 0 - static_cast<std::int32_t>(rng.below(2));
@@ -358,7 +362,8 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
   if (std::holds_alternative<Paste>(edit.shape)) edit.material = kEmpty;
   if (rng.below(2) == 0) {
     edit.mask.kind = static_cast<MaskKind>(rng.below(4));
-    if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.below(8));
+    if (edit.mask.kind == MaskKind::only_material)
+      edit.mask.material = static_cast<Material>(rng.below(8));
   }
   return edit;
 }
@@ -372,7 +377,9 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
            : draw == 2 ? pick(rng, std::max(low, -100), std::min(high, 100))
                        : pick(rng, low, high);
   };
-  const auto id = [&rng] { return static_cast<Material>(rng.below(4) == 0 ? 65535 : rng.below(65536)); };
+  const auto id = [&rng] {
+    return static_cast<Material>(rng.below(4) == 0 ? 65535 : rng.below(65536));
+  };
   switch (rng.below(5)) {
     case 3: {
       const auto inside = [&] { return span(-kWorldLimit, kWorldLimit - 20); };
@@ -382,8 +389,9 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
       break;
     }
     case 0:
-      edit.shape = SetVoxel{{span(-kWorldLimit, kWorldLimit - 1), span(-kWorldLimit, kWorldLimit - 1),
-                             span(-kWorldLimit, kWorldLimit - 1)}};
+      edit.shape =
+          SetVoxel{{span(-kWorldLimit, kWorldLimit - 1), span(-kWorldLimit, kWorldLimit - 1),
+                    span(-kWorldLimit, kWorldLimit - 1)}};
       break;
     case 1: {
       FillBox fill;
@@ -402,8 +410,8 @@ EditDescriptor random_edit_anywhere(SplitMix64& rng) {
       FillStroke stroke;
       const std::int32_t r = span(1, kEditRadiusMax);
       stroke.radius = static_cast<std::uint16_t>(r);
-      const auto count = static_cast<std::size_t>(rng.below(8) == 0 ? span(2, std::int32_t{kStrokePointsMax})
-                                                                    : 2 + span(0, 3));
+      const auto count = static_cast<std::size_t>(
+          rng.below(8) == 0 ? span(2, std::int32_t{kStrokePointsMax}) : 2 + span(0, 3));
       const std::int32_t low = -kWorldLimit + r, high = kWorldLimit - 1 - r;
       const auto step = [&](std::int32_t c) {
         return std::clamp(c + span(-kStrokeStepMax, kStrokeStepMax), low, high);

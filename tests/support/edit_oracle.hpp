@@ -51,15 +51,17 @@ struct OracleOutcome {
 };
 
 /// Applies the edits one after another, each voxel by voxel, to the chunk whose first voxel is `origin`.
-OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
+OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin,
+                           std::span<const EditDescriptor> edits,
                            OracleFault fault = OracleFault::none);
 
 /// Voxels of the geometry, found by trying every voxel up to `reach` away from `around`.
-std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around, std::int32_t reach);
+std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
+                                    std::int32_t reach);
 
 /// (first, before, after) of the groups of runs that differ between two run lists, by comparing all runs.
-std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(const RunChunk& before,
-                                                                                  const RunChunk& after);
+std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(
+    const RunChunk& before, const RunChunk& after);
 
 /// The spans of an edit's geometry in a chunk, maximal and ascending, found voxel by voxel.
 std::vector<IndexSpan> oracle_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent,

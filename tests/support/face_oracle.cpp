@@ -22,12 +22,15 @@ void sort_faces(std::vector<UnitFace>& faces) {
     for (const int at : {face.x, face.y, face.z}) key = key << 8 | static_cast<std::uint64_t>(at);
     keys.push_back((key << 8 | static_cast<std::uint64_t>(face.direction)) << 16 | face.material);
   }
-  const auto byte = [](std::uint64_t key, unsigned shift) { return static_cast<int>(key >> shift & 255); };
+  const auto byte = [](std::uint64_t key, unsigned shift) {
+    return static_cast<int>(key >> shift & 255);
+  };
   for (unsigned shift = 0; shift < 48; shift += 8) {
     std::array<std::size_t, 257> first{};  // of each value of the byte
     for (const std::uint64_t key : keys) ++first[static_cast<std::size_t>(byte(key, shift)) + 1];
     for (std::size_t value = 1; value < first.size(); ++value) first[value] += first[value - 1];
-    for (const std::uint64_t key : keys) sorted[first[static_cast<std::size_t>(byte(key, shift))]++] = key;
+    for (const std::uint64_t key : keys)
+      sorted[first[static_cast<std::size_t>(byte(key, shift))]++] = key;
     keys.swap(sorted);
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -60,8 +63,8 @@ Visibility visibility_of(const MaterialTable& materials, Material id) {
 }
 
 // The material next to a voxel, looked up in the neighbour where the step leaves the chunk.
-Material material_beside(const DenseChunk& chunk, const DenseNeighbours& neighbours, int x, int y, int z,
-                         const Step& step) {
+Material material_beside(const DenseChunk& chunk, const DenseNeighbours& neighbours, int x, int y,
+                         int z, const Step& step) {
   x += step.dx;
   y += step.dy;
   z += step.dz;
@@ -140,7 +143,8 @@ bool winds_outwards(Quad quad, const Rectangle& r) {
     if (corner[axis] != low[axis] + r.direction % 2) return false;
   }
   const int sign = r.direction % 2 == 1 ? 1 : -1;
-  for (std::size_t i = 0; i < 4; ++i) {  // each corner turns left, by the area of the whole rectangle
+  for (std::size_t i = 0; i < 4;
+       ++i) {  // each corner turns left, by the area of the whole rectangle
     const Corner a = edge(i, (i + 1) % 4);
     const Corner b = edge((i + 1) % 4, (i + 2) % 4);
     const std::size_t u = (axis + 1) % 3;
@@ -150,7 +154,8 @@ bool winds_outwards(Quad quad, const Rectangle& r) {
   return true;
 }
 
-std::string fault_of_rectangle(Quad quad, const Rectangle& r, Extent extent, Visibility visibility) {
+std::string fault_of_rectangle(Quad quad, const Rectangle& r, Extent extent,
+                               Visibility visibility) {
   if (r.reserved != 0) return "reserved bits are set";
   if (r.direction >= static_cast<int>(kDirectionCount)) return "looks in no direction";
   const std::array<int, 3> low = {r.x, r.y, r.z};
@@ -183,7 +188,8 @@ std::string describe(const Rectangle& r) {
 }
 
 std::optional<std::string> fault_of_pass(const QuadLayers& pass, bool transparent, Extent extent,
-                                         const MaterialTable& materials, std::vector<UnitFace>& covered) {
+                                         const MaterialTable& materials,
+                                         std::vector<UnitFace>& covered) {
   const char* const name = transparent ? "transparent pass: " : "opaque pass: ";
   if (pass.first.front() != 0 || pass.first.back() != pass.quads.size()) {
     return std::string(name) + "the layer index does not span the quads";
@@ -193,7 +199,8 @@ std::optional<std::string> fault_of_pass(const QuadLayers& pass, bool transparen
   }
   for (int direction = 0; direction < 6; ++direction) {
     for (int layer = 0; layer < static_cast<int>(kSideMax); ++layer) {
-      for (const Quad quad : pass.layer(static_cast<Direction>(direction), static_cast<unsigned>(layer))) {
+      for (const Quad quad :
+           pass.layer(static_cast<Direction>(direction), static_cast<unsigned>(layer))) {
         const Rectangle r = rectangle_of(quad);
         const Visibility visibility = visibility_of(materials, r.material);
         std::string fault = fault_of_rectangle(quad, r, extent, visibility);
@@ -226,17 +233,19 @@ std::optional<std::string> sorted_fault(std::vector<UnitFace>& covered) {
 // Both sorted.
 std::optional<std::string> first_odd_face(const std::vector<UnitFace>& found,
                                           const std::vector<UnitFace>& expected) {
-  const auto [is, should] = std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
+  const auto [is, should] =
+      std::mismatch(found.begin(), found.end(), expected.begin(), expected.end());
   if (is == found.end() && should == expected.end()) return std::nullopt;
-  if (should == expected.end() || (is != found.end() && *is < *should)) return text_of(*is) + " is too many";
+  if (should == expected.end() || (is != found.end() && *is < *should))
+    return text_of(*is) + " is too many";
   return text_of(*should) + " is missing";
 }
 
 }  // namespace
 
 std::ostream& operator<<(std::ostream& out, const UnitFace& face) {
-  return out << "face " << name_of(face.direction) << " of voxel " << face.x << ' ' << face.y << ' ' << face.z
-             << " in material " << face.material;
+  return out << "face " << name_of(face.direction) << " of voxel " << face.x << ' ' << face.y << ' '
+             << face.z << " in material " << face.material;
 }
 
 namespace {
@@ -282,7 +291,9 @@ std::vector<UnitFace> all_faces(const DenseChunk& chunk, const MaterialTable& ma
 std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialTable& materials) {
   const int line = chunk.side_z();
   const int layer = line * chunk.side_y();
-  const auto at_index = [&](int i) { return chunk.at(i / layer, i / line % chunk.side_y(), i % line); };
+  const auto at_index = [&](int i) {
+    return chunk.at(i / layer, i / line % chunk.side_y(), i % line);
+  };
   const auto same_from = [&](int first, int last, Material material) {  // and within the chunk
     if (first < 0) return false;
     for (int i = last; i >= first; --i) {
@@ -321,8 +332,11 @@ std::vector<UnitFace> run_on_faces(const DenseChunk& chunk, const std::vector<Un
   std::vector<UnitFace> faces = exposed;
   for (UnitFace face : exposed) {  // and those between it and the next exposed one
     for (;;) {
-      (face.direction == Direction::neg_y || face.direction == Direction::pos_y ? face.x : face.y)++;
-      if (!chunk.inside(face.x, face.y, face.z) || chunk.at(face.x, face.y, face.z) != face.material) break;
+      (face.direction == Direction::neg_y || face.direction == Direction::pos_y ? face.x
+                                                                                : face.y)++;
+      if (!chunk.inside(face.x, face.y, face.z) ||
+          chunk.at(face.x, face.y, face.z) != face.material)
+        break;
       if (std::binary_search(exposed.begin(), exposed.end(), face)) break;
       faces.push_back(face);
     }
@@ -346,7 +360,8 @@ namespace {
 
 /// mesh_fault(); `covered` are the faces of a mesh without one, sorted.
 std::optional<std::string> fault_and_faces(const ChunkMesh& mesh, Extent extent,
-                                           const MaterialTable& materials, std::vector<UnitFace>& covered) {
+                                           const MaterialTable& materials,
+                                           std::vector<UnitFace>& covered) {
   if (auto fault = fault_of_pass(mesh.opaque, false, extent, materials, covered)) return fault;
   if (auto fault = fault_of_pass(mesh.transparent, true, extent, materials, covered)) return fault;
   return sorted_fault(covered);
@@ -354,7 +369,8 @@ std::optional<std::string> fault_and_faces(const ChunkMesh& mesh, Extent extent,
 
 }  // namespace
 
-std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent, const MaterialTable& materials) {
+std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent,
+                                      const MaterialTable& materials) {
   std::vector<UnitFace> covered;
   return fault_and_faces(mesh, extent, materials, covered);
 }
@@ -373,7 +389,8 @@ std::optional<std::string> quads_difference(std::span<const Quad> quads, Extent 
   std::vector<UnitFace> covered;
   for (const Quad quad : quads) {
     const Rectangle r = rectangle_of(quad);
-    const std::string fault = fault_of_rectangle(quad, r, extent, visibility_of(materials, r.material));
+    const std::string fault =
+        fault_of_rectangle(quad, r, extent, visibility_of(materials, r.material));
     if (!fault.empty()) return describe(r) + ' ' + fault;
     for_each_face(r, [&](const UnitFace& face) { covered.push_back(face); });
   }
@@ -387,7 +404,8 @@ std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {
   for (const UnitFace& face : faces) {
     const std::array<int, 3> at = {face.x, face.y, face.z};
     const auto axis = static_cast<std::size_t>(face.direction) / 2;
-    planes[{face.direction, at.at(axis)}][{at.at((axis + 2) % 3), at.at((axis + 1) % 3)}] = face.material;
+    planes[{face.direction, at.at(axis)}][{at.at((axis + 2) % 3), at.at((axis + 1) % 3)}] =
+        face.material;
   }
   std::size_t quads = 0;
   for (auto& plane : planes) {

@@ -55,7 +55,8 @@ std::vector<UnitFace> unit_faces(const ChunkMesh& mesh);
 /// Says what is wrong with the form of a mesh: grouping by direction and layer, quads that leave the extent,
 /// reserved bits, corners that wind the wrong way, a material in the wrong pass, a face covered twice.
 /// Nothing if all is well.
-std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent, const MaterialTable& materials);
+std::optional<std::string> mesh_fault(const ChunkMesh& mesh, Extent extent,
+                                      const MaterialTable& materials);
 
 /// mesh_fault(), or the first unit face that is missing or too many against `expected` (sorted).
 std::optional<std::string> mesh_difference(const ChunkMesh& mesh, Extent extent,

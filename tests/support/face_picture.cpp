@@ -11,7 +11,8 @@ reference::FacePlane face_plane(const std::vector<std::string>& rows) {
   out.width = static_cast<std::uint32_t>(rows.front().size());
   out.height = static_cast<std::uint32_t>(rows.size());
   for (const std::string& row : rows) {
-    for (const char face : row) out.faces.push_back(face == '#' ? kStone : face == '+' ? kDirt : kEmpty);
+    for (const char face : row)
+      out.faces.push_back(face == '#' ? kStone : face == '+' ? kDirt : kEmpty);
   }
   return out;
 }

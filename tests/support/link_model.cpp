@@ -10,7 +10,8 @@ std::uint64_t LinkModel::queued_bytes(TimeNs now_ns) const {
   if (free_ns_ <= now_ns) return 0;
   constexpr double kBitNsPerByteSecond = 8e9;
   return static_cast<std::uint64_t>(static_cast<double>(free_ns_ - now_ns) *
-                                    static_cast<double>(profile_.bits_per_second) / kBitNsPerByteSecond);
+                                    static_cast<double>(profile_.bits_per_second) /
+                                    kBitNsPerByteSecond);
 }
 
 LinkPassage LinkModel::push(std::uint64_t bytes, TimeNs now_ns) {

@@ -15,14 +15,16 @@ struct LuantiBlockFields {
   std::vector<std::pair<std::uint16_t, std::string>> names;
   std::uint8_t content_width = 2, params_width = 2;
   std::vector<std::uint16_t> nodes = std::vector<std::uint16_t>(4096);  // z * 256 + y * 16 + x
-  Bytes rest = {0, 0, 0, 0, 0, 10, 0, 0};                               // empty metadata, objects and timers
+  Bytes rest = {0, 0, 0, 0, 0, 10, 0, 0};  // empty metadata, objects and timers
 };
 
 /// The bytes inside the stream.
 Bytes luanti_plain(const LuantiBlockFields& fields);
 /// A whole row: version byte and zstd stream, without a content size as the game writes it.
 Bytes luanti_row(const Bytes& plain, std::uint8_t version = 29);
-inline Bytes luanti_row(const LuantiBlockFields& fields) { return luanti_row(luanti_plain(fields)); }
+inline Bytes luanti_row(const LuantiBlockFields& fields) {
+  return luanti_row(luanti_plain(fields));
+}
 
 /// Reads a row back node by node: the name of every node, in node order. An oracle for whole worlds; rows
 /// must be sound.

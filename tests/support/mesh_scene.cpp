@@ -119,7 +119,8 @@ MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent, unsigned mater
   return scene;
 }
 
-DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material) {
+DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count,
+                          Material material) {
   const RunChunk before = chunk;
   fill(chunk, first, count, material);
   DirtyLayers dirty;
@@ -157,7 +158,8 @@ bool equal_borders(const RunChunk& chunk, const ChunkBorders& a, const ChunkBord
     const auto side = static_cast<Direction>(d);
     const std::size_t words = a.row_count(side) * a.row_words(side);
     if (a.bit_axis(side) != b.bit_axis(side) || a.row_count(side) != b.row_count(side) ||
-        a.row_words(side) != b.row_words(side) || a.has_transparent(side) != b.has_transparent(side) ||
+        a.row_words(side) != b.row_words(side) ||
+        a.has_transparent(side) != b.has_transparent(side) ||
         !std::equal(a.rows(side), a.rows(side) + words, b.rows(side))) {
       return false;
     }

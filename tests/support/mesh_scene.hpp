@@ -10,8 +10,8 @@
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/reference/dense_grid.hpp"
 #include "common/runs/run_chunk.hpp"
+#include "tests/reference/dense_grid.hpp"
 #include "tests/support/face_oracle.hpp"
 
 namespace runstone::test {
@@ -46,11 +46,13 @@ MeshScene scene_of_extent(SplitMix64& rng, Extent extent, AxisOrder order);
 
 /// Seeded scene of one extent with the first `materials` of many_materials() as noise, in which equal
 /// transparent ones meet. Some neighbours are missing, and one is the chunk itself. Dense.
-MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent, unsigned materials = kManyMaterialCount);
+MeshScene scene_of_many_materials(SplitMix64& rng, Extent extent,
+                                  unsigned materials = kManyMaterialCount);
 
 /// Fills voxels of the flattened chunk, and says in which layers any has another material than before.
 /// Requires first + count <= volume. O(count * log runs).
-DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material);
+DirtyLayers fill_and_mark(RunChunk& chunk, VoxelIndex first, std::uint32_t count,
+                          Material material);
 
 /// What the oracle says of a scene. Dense.
 std::vector<UnitFace> expected_faces(const MeshScene& scene,

@@ -10,7 +10,8 @@ Bytes zstd_frame(ByteView body, bool announce) {
   Bytes out(ZSTD_compressBound(body.size()));
   ZSTD_CCtx* const context = ZSTD_createCCtx();
   ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, announce ? 1 : 0);
-  const std::size_t size = ZSTD_compress2(context, out.data(), out.size(), body.data(), body.size());
+  const std::size_t size =
+      ZSTD_compress2(context, out.data(), out.size(), body.data(), body.size());
   ZSTD_freeCCtx(context);
   if (ZSTD_isError(size) != 0) throw std::runtime_error("zstd does not compress");
   out.resize(size);

@@ -60,7 +60,9 @@ class Components {
         of_(static_cast<std::size_t>((width + 2) * (height + 2)), 0) {
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
-        const auto material = [&plane](int x, int y) { return plane.row(static_cast<std::uint32_t>(y))[x]; };
+        const auto material = [&plane](int x, int y) {
+          return plane.row(static_cast<std::uint32_t>(y))[x];
+        };
         if (material(u, v) == kEmpty || at(u, v) != 0) continue;
         ++count;
         flood(u, v, false, [&](int x, int y) {
@@ -98,7 +100,9 @@ class Components {
   int count = 0;
 
  private:
-  std::size_t slot(int u, int v) const { return static_cast<std::size_t>((v + 1) * (width + 2) + u + 1); }
+  std::size_t slot(int u, int v) const {
+    return static_cast<std::size_t>((v + 1) * (width + 2) + u + 1);
+  }
   /// Goes on from each cell that enter(u, v) takes.
   template <class Enter>
   static void flood(int u, int v, bool across_corners, Enter&& enter) {
@@ -139,8 +143,9 @@ std::vector<Corner> concave_corners(const Components& cells, int component) {
 bool runs_inside(const Components& cells, int component, Corner a, Corner b) {
   const bool along_u = a.v == b.v;
   for (int i = along_u ? a.u : a.v; i < (along_u ? b.u : b.v); ++i) {
-    const bool inside = along_u ? cells.at(i, a.v - 1) == component && cells.at(i, a.v) == component
-                                : cells.at(a.u - 1, i) == component && cells.at(a.u, i) == component;
+    const bool inside = along_u
+                            ? cells.at(i, a.v - 1) == component && cells.at(i, a.v) == component
+                            : cells.at(a.u - 1, i) == component && cells.at(a.u, i) == component;
     if (!inside) return false;
   }
   return true;
@@ -156,8 +161,10 @@ std::size_t least_rectangles_by_formula(const FacePlane& plane) {
     std::vector<std::pair<Corner, Corner>> along_u, along_v;
     for (const Corner a : corners) {
       for (const Corner b : corners) {
-        if (a.v == b.v && a.u < b.u && runs_inside(cells, component, a, b)) along_u.emplace_back(a, b);
-        if (a.u == b.u && a.v < b.v && runs_inside(cells, component, a, b)) along_v.emplace_back(a, b);
+        if (a.v == b.v && a.u < b.u && runs_inside(cells, component, a, b))
+          along_u.emplace_back(a, b);
+        if (a.u == b.u && a.v < b.v && runs_inside(cells, component, a, b))
+          along_v.emplace_back(a, b);
       }
     }
     BipartiteGraph meetings;
@@ -165,7 +172,8 @@ std::size_t least_rectangles_by_formula(const FacePlane& plane) {
     for (const auto& [left, right] : along_u) {
       for (std::uint32_t i = 0; i < along_v.size(); ++i) {
         const auto& [top, bottom] = along_v[i];
-        const bool meet = left.u <= top.u && top.u <= right.u && top.v <= left.v && left.v <= bottom.v;
+        const bool meet =
+            left.u <= top.u && top.u <= right.u && top.v <= left.v && left.v <= bottom.v;
         if (meet) meetings.edges.push_back(i);
       }
       meetings.end_left();
@@ -180,7 +188,8 @@ std::string partition_fault(const FacePlane& plane, const std::vector<PlaneRecta
   std::vector<Material> covered(plane.faces.size(), kEmpty);
   for (const PlaneRectangle& r : rectangles) {
     if (r.width == 0 || r.height == 0) return "a rectangle of nothing";
-    if (r.u + r.width > plane.width || r.v + r.height > plane.height) return "a rectangle leaves the plane";
+    if (r.u + r.width > plane.width || r.v + r.height > plane.height)
+      return "a rectangle leaves the plane";
     if (r.material == kEmpty) return "a rectangle without a material";
     for (std::uint32_t v = r.v; v < r.v + r.height; ++v) {
       for (std::uint32_t u = r.u; u < r.u + r.width; ++u) {

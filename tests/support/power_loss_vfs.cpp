@@ -32,7 +32,8 @@ struct PowerLossCalls {
     std::uint64_t generation;
     int lock;
     bool delete_on_close;
-    bool sync_names;  // the next sync is the first of a new journal: SQLite's VFS then syncs the folder
+    bool
+        sync_names;  // the next sync is the first of a new journal: SQLite's VFS then syncs the folder
 
     bool alive() const { return generation == vfs->generation_ && !vfs->cut_; }
   };
@@ -43,10 +44,12 @@ struct PowerLossCalls {
     from.erase(std::remove(from.begin(), from.end(), what), from.end());
   }
 
-  static int open(sqlite3_vfs* vfs, const char* name, sqlite3_file* out, int flags, int* out_flags) {
+  static int open(sqlite3_vfs* vfs, const char* name, sqlite3_file* out, int flags,
+                  int* out_flags) {
     PowerLossVfs& self = of(vfs);
     out->pMethods = nullptr;
-    const std::string path = name == nullptr ? "temporary-" + std::to_string(self.operations_) : name;
+    const std::string path =
+        name == nullptr ? "temporary-" + std::to_string(self.operations_) : name;
     auto found = self.live_names_.find(path);
     const bool created = found == self.live_names_.end();
     if (created) {
@@ -136,9 +139,11 @@ struct PowerLossCalls {
     if (!handle.alive() || !handle.vfs->operate()) return SQLITE_IOERR_FSYNC;
     if (std::exchange(handle.vfs->fail_sync_, false)) return SQLITE_IOERR_FSYNC;
     ++handle.vfs->syncs_;
-    for (const Change& change : handle.file->pending) PowerLossVfs::apply(change, handle.file->durable);
+    for (const Change& change : handle.file->pending)
+      PowerLossVfs::apply(change, handle.file->durable);
     handle.file->pending.clear();
-    if (std::exchange(handle.sync_names, false)) handle.vfs->durable_names_ = handle.vfs->live_names_;
+    if (std::exchange(handle.sync_names, false))
+      handle.vfs->durable_names_ = handle.vfs->live_names_;
     return SQLITE_OK;
   }
 
@@ -151,7 +156,9 @@ struct PowerLossCalls {
     Handle& handle = of(file);
     File& state = *handle.file;
     if (handle.lock >= level) return SQLITE_OK;
-    const auto held_by_other = [&](const void* holder) { return holder != nullptr && holder != &handle; };
+    const auto held_by_other = [&](const void* holder) {
+      return holder != nullptr && holder != &handle;
+    };
     if (held_by_other(state.exclusive) || held_by_other(state.pending_lock)) return SQLITE_BUSY;
     if (level == SQLITE_LOCK_SHARED) ++state.readers;
     if (level >= SQLITE_LOCK_RESERVED) {
@@ -289,7 +296,8 @@ void PowerLossVfs::apply(const Change& change, Bytes& to) {
     to.resize(change.offset);
     return;
   }
-  if (to.size() < change.offset + change.bytes.size()) to.resize(change.offset + change.bytes.size());
+  if (to.size() < change.offset + change.bytes.size())
+    to.resize(change.offset + change.bytes.size());
   std::copy(change.bytes.begin(), change.bytes.end(),
             to.begin() + static_cast<std::ptrdiff_t>(change.offset));
 }

@@ -69,7 +69,8 @@ class PowerLossVfs {
     const void* pending_lock = nullptr;
     const void* exclusive = nullptr;
     std::vector<std::unique_ptr<Bytes>> shared_memory;
-    std::vector<const void*> shared_memory_users[8];  // holders of each lock; exclusive if the flag is set
+    std::vector<const void*>
+        shared_memory_users[8];  // holders of each lock; exclusive if the flag is set
     bool shared_memory_exclusive[8] = {};
   };
 
@@ -81,7 +82,8 @@ class PowerLossVfs {
   std::unique_ptr<sqlite3_vfs> vfs_;
   std::map<std::string, std::shared_ptr<File>> live_names_, durable_names_;
   std::uint64_t generation_ = 0;  // raised by each power loss: connections remember theirs
-  std::uint64_t operations_ = 0, syncs_ = 0, cut_at_ = ~std::uint64_t{0}, full_at_ = ~std::uint64_t{0};
+  std::uint64_t operations_ = 0, syncs_ = 0, cut_at_ = ~std::uint64_t{0},
+                full_at_ = ~std::uint64_t{0};
   bool cut_ = false, fail_sync_ = false;
 };
 

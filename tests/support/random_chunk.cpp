@@ -12,7 +12,8 @@ namespace {
 // The ids a chunk may use: 0 and `count - 1` others, small or spread over all of u16.
 class Palette {
  public:
-  Palette(SplitMix64& rng, unsigned count) : count_(count), spread_(count <= 256 && rng.below(4) == 0) {}
+  Palette(SplitMix64& rng, unsigned count)
+      : count_(count), spread_(count <= 256 && rng.below(4) == 0) {}
   Material pick(SplitMix64& rng) const { return id(rng.below(count_)); }
   Material id(std::uint32_t i) const {
     i %= count_;
@@ -67,7 +68,8 @@ bool in_ball(const Blob& b, int x, int y, int z) {
 }
 
 bool in_box(const Blob& b, int x, int y, int z) {
-  return x >= b.min[0] && x < b.max[0] && y >= b.min[1] && y < b.max[1] && z >= b.min[2] && z < b.max[2];
+  return x >= b.min[0] && x < b.max[0] && y >= b.min[1] && y < b.max[1] && z >= b.min[2] &&
+         z < b.max[2];
 }
 
 }  // namespace
@@ -89,7 +91,8 @@ Extent random_extent(SplitMix64& rng, unsigned side_max) {
 
 AxisOrder random_order(SplitMix64& rng) { return kAxisOrders[rng.below(kAxisOrderCount)]; }
 
-RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials, Shape shape) {
+RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials,
+                      Shape shape) {
   RUNSTONE_ASSERT(materials >= 1 && materials <= 65536);
   const Palette palette(rng, materials);
   switch (shape) {
@@ -100,9 +103,11 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
       for (std::size_t y = 0; y < layers.size(); ++y) {
         layers[y] = y > 0 && rng.below(3) != 0 ? layers[y - 1] : palette.pick(rng);
       }
-      return stream(extent, order, [&](int, int y, int) { return layers[static_cast<std::size_t>(y)]; });
+      return stream(extent, order,
+                    [&](int, int y, int) { return layers[static_cast<std::size_t>(y)]; });
     }
-    case Shape::columns: {  // a height map: ground of two materials, water up to a level, empty above
+    case Shape::
+        columns: {  // a height map: ground of two materials, water up to a level, empty above
       std::vector<int> heights(static_cast<std::size_t>(extent.x) * extent.z);
       int height = rng.between(0, extent.y);
       for (int& h : heights) {
@@ -132,15 +137,17 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
     case Shape::speckled: {  // mostly one material, ores in it
       const Material ground = palette.pick(rng);
       const std::uint32_t rarity = 2 + rng.below(200);
-      return stream(extent, order,
-                    [&](int, int, int) { return rng.below(rarity) == 0 ? palette.pick(rng) : ground; });
+      return stream(extent, order, [&](int, int, int) {
+        return rng.below(rarity) == 0 ? palette.pick(rng) : ground;
+      });
     }
     case Shape::noise:
       return stream(extent, order, [&](int, int, int) { return palette.pick(rng); });
     case Shape::checkerboard: {
       const std::uint32_t other = 1 + rng.below(materials);
-      return stream(extent, order,
-                    [&](int x, int y, int z) { return palette.id(((x + y + z) & 1) != 0 ? other : 0); });
+      return stream(extent, order, [&](int x, int y, int z) {
+        return palette.id(((x + y + z) & 1) != 0 ? other : 0);
+      });
     }
   }
   assertion_failed("a known shape", __FILE__, __LINE__);

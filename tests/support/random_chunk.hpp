@@ -17,7 +17,8 @@ inline constexpr int kShapeCount = 8;
 
 /// Materials are drawn from `materials` ids (0, the empty one, among them). Requires 1 <= materials <=
 /// 65,536.
-RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials, Shape shape);
+RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials,
+                      Shape shape);
 /// Any shape.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials);
 /// Any shape and order over sides 8 .. side_max.

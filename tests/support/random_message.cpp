@@ -48,21 +48,25 @@ Version any_version(SplitMix64& rng) {
 Digest any_digest(SplitMix64& rng) { return {{m61::reduce(rng.next()), m61::reduce(rng.next())}}; }
 
 WorldPos any_position(SplitMix64& rng) {
-  const auto c = [&rng] { return rng.between(-kWorldLimit, kWorldLimit) / 8.0 + rng.below(1000) / 1024.0; };
+  const auto c = [&rng] {
+    return rng.between(-kWorldLimit, kWorldLimit) / 8.0 + rng.below(1000) / 1024.0;
+  };
   return {c(), c(), c()};
 }
 
 Pose any_pose(SplitMix64& rng) {
-  return {any_position(rng), static_cast<std::uint16_t>(rng.next()), static_cast<std::int16_t>(rng.next())};
+  return {any_position(rng), static_cast<std::uint16_t>(rng.next()),
+          static_cast<std::int16_t>(rng.next())};
 }
 
 EditDescriptor any_edit(SplitMix64& rng) {
-  const VoxelPos at{rng.between(-1'000'000, 1'000'000), rng.between(-300, 300), rng.between(-1'000, 1'000)};
+  const VoxelPos at{rng.between(-1'000'000, 1'000'000), rng.between(-300, 300),
+                    rng.between(-1'000, 1'000)};
   EditDescriptor edit;
   switch (rng.below(5)) {
     case 3:
-      edit.shape =
-          Paste{at, random_clipboard(rng, 9, rng.below(2) == 0 ? 3 : 65536), random_orientation(rng)};
+      edit.shape = Paste{at, random_clipboard(rng, 9, rng.below(2) == 0 ? 3 : 65536),
+                         random_orientation(rng)};
       break;
     case 0:
       edit.shape = SetVoxel{at};
@@ -71,14 +75,15 @@ EditDescriptor any_edit(SplitMix64& rng) {
       edit.shape = random_stroke(rng, at);
       break;
     case 2:
-      edit.shape =
-          FillBox{{at, {at.x + rng.between(1, 60), at.y + rng.between(1, 60), at.z + rng.between(1, 60)}}};
+      edit.shape = FillBox{
+          {at, {at.x + rng.between(1, 60), at.y + rng.between(1, 60), at.z + rng.between(1, 60)}}};
       break;
     default:
       edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(40))};
   }
   edit.mask.kind = static_cast<MaskKind>(rng.below(4));
-  if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(rng.next());
+  if (edit.mask.kind == MaskKind::only_material)
+    edit.mask.material = static_cast<Material>(rng.next());
   if (!std::holds_alternative<Paste>(edit.shape)) edit.material = static_cast<Material>(rng.next());
   return edit;
 }
@@ -128,8 +133,8 @@ Welcome any_welcome(SplitMix64& rng) {
   return m;
 }
 
-Proof any_proof(SplitMix64& rng) {
-  Proof m;
+ClientAuth any_client_auth(SplitMix64& rng) {
+  ClientAuth m;
   draw(rng, m.signature);
   return m;
 }
@@ -158,19 +163,19 @@ ChunkUnavailable any_unavailable(SplitMix64& rng) {
   return m;
 }
 
-Travel any_travel(SplitMix64& rng) {
-  Travel m;
+HistoryRequest any_history_request(SplitMix64& rng) {
+  HistoryRequest m;
   m.request = 1 + rng.below(1'000'000);
-  m.to = static_cast<TravelTo>(rng.below(kTravelToMax + 1u));
-  if (m.to == TravelTo::sequence) m.seq = any64(rng) >> 1;
-  if (m.to == TravelTo::time) m.utc_us = any_time(rng);
+  m.to = static_cast<HistoryTarget>(rng.below(kHistoryTargetMax + 1u));
+  if (m.to == HistoryTarget::sequence) m.seq = any64(rng) >> 1;
+  if (m.to == HistoryTarget::time) m.utc_us = any_time(rng);
   return m;
 }
 
-Moment any_moment(SplitMix64& rng) {
-  Moment m;
+HistoryState any_history_state(SplitMix64& rng) {
+  HistoryState m;
   m.request = 1 + rng.below(1'000'000);
-  m.phase = static_cast<MomentPhase>(1 + rng.below(kMomentPhaseMax));
+  m.phase = static_cast<HistoryPhase>(1 + rng.below(kHistoryPhaseMax));
   m.past = rng.below(2) == 0;
   if (m.past) m.seq = any64(rng) >> 1;
   m.utc_us = any_time(rng);
@@ -189,16 +194,16 @@ std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
   return {keys.begin(), keys.end()};
 }
 
-Held any_held(SplitMix64& rng) {
-  Held m;
+CachedChunks any_cached_chunks(SplitMix64& rng) {
+  CachedChunks m;
   for (const ChunkKey& key : ascending_keys(rng, 100)) {
     m.chunks.push_back({key, any_version(rng), claim_digest(any_digest(rng))});
   }
   return m;
 }
 
-Same any_same(SplitMix64& rng) {
-  Same m;
+ChunksNotModified any_chunks_not_modified(SplitMix64& rng) {
+  ChunksNotModified m;
   for (const ChunkKey& key : ascending_keys(rng, kSameChunksMax))
     m.chunks.push_back({key, any_version(rng).seq});
   return m;
@@ -222,7 +227,8 @@ CommandOutput any_output(SplitMix64& rng) {
   CommandOutput m;
   m.id = rng.below(1000);
   m.lines.resize(rng.below(kCommandLinesMax + 1));
-  for (std::string& line : m.lines) line = any_text(rng, 0, rng.below(8) == 0 ? kCommandLineBytesMax : 40);
+  for (std::string& line : m.lines)
+    line = any_text(rng, 0, rng.below(8) == 0 ? kCommandLineBytesMax : 40);
   m.is_done = rng.below(2) == 0;
   m.is_ok = rng.below(2) == 0;
   return m;
@@ -271,7 +277,8 @@ Commit any_commit(SplitMix64& rng) {
     const Sequence seq = m.first + i;
     if (rng.below(2) == 0) e.subject = any64(rng) % seq;
     for (std::size_t c = touched_chunks(e.edit, kMessageEdge).size(); c > 0; --c) {
-      e.previous.push_back(rng.below(4) == 0 ? 0 : seq - std::min<std::uint64_t>(seq, 1 + any64(rng)));
+      e.previous.push_back(rng.below(4) == 0 ? 0
+                                             : seq - std::min<std::uint64_t>(seq, 1 + any64(rng)));
     }
   }
   return m;
@@ -282,14 +289,15 @@ Reject any_reject(SplitMix64& rng) {
   m.client_seq = 1 + (any64(rng) >> 1);
   m.reason = static_cast<RejectReason>(1 + rng.below(kRejectReasonMax));
   m.detail = any_text(rng, 0, kTextBytesMax);
-  if (m.reason == RejectReason::already_decided) m.seq = any64(rng);
+  if (m.reason == RejectReason::already_resolved) m.seq = any64(rng);
   return m;
 }
 
-Audit any_audit(SplitMix64& rng) {
-  Audit m;
+DigestCheck any_digest_check(SplitMix64& rng) {
+  DigestCheck m;
   m.entries.resize(rng.below(20));
-  for (AuditEntry& e : m.entries) e = {{0, any_coord(rng)}, any_version(rng), any_digest(rng)};
+  for (DigestCheckEntry& e : m.entries)
+    e = {{0, any_coord(rng)}, any_version(rng), any_digest(rng)};
   return m;
 }
 
@@ -300,8 +308,8 @@ PlayerPoses any_poses(SplitMix64& rng) {
   return m;
 }
 
-Roster any_roster(SplitMix64& rng) {
-  Roster m;
+PlayerList any_player_list(SplitMix64& rng) {
+  PlayerList m;
   m.players.resize(rng.below(20));
   for (PlayerName& p : m.players) p = {rng.below(1000), any_text(rng, 1, kPlayerNameBytesMax)};
   m.is_change = rng.below(2) == 0;
@@ -319,9 +327,9 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 1:
       return any_welcome(rng);
     case 2:
-      return any_proof(rng);
+      return any_client_auth(rng);
     case 3:
-      return Ready{static_cast<AuthorId>(any64(rng) >> 32), any64(rng)};
+      return SessionAccepted{static_cast<AuthorId>(any64(rng) >> 32), any64(rng)};
     case 4:
       return any_view(rng);
     case 5:
@@ -337,13 +345,13 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 10:
       return Durable{1 + rng.below(1000), any64(rng)};
     case 11:
-      return any_audit(rng);
+      return any_digest_check(rng);
     case 12:
       return Move{any_pose(rng)};
     case 13:
       return any_poses(rng);
     case 14:
-      return any_roster(rng);
+      return any_player_list(rng);
     case 15:
       return Ping{any_time(rng)};
     case 16:
@@ -354,21 +362,21 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 18:
       return any_unavailable(rng);
     case 19:
-      return any_travel(rng);
+      return any_history_request(rng);
     case 20:
-      return any_moment(rng);
+      return any_history_state(rng);
     case 21:
       return CommandRequest{rng.below(1000), any_text(rng, 1, kCommandBytesMax)};
     case 22:
       return any_output(rng);
     case 23:
-      return Received{1 + (any64(rng) >> 1)};
+      return ReceiveAck{1 + (any64(rng) >> 1)};
     case 24:
       return any_uniform(rng);
     case 25:
-      return any_held(rng);
+      return any_cached_chunks(rng);
     case 26:
-      return any_same(rng);
+      return any_chunks_not_modified(rng);
     default:
       RUNSTONE_ASSERT(kind == 27);
       return any_chunk_edits(rng);
@@ -377,12 +385,12 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
 
 Sender sender_of(const Message& message) {
   const bool client =
-      std::holds_alternative<Hello>(message) || std::holds_alternative<Proof>(message) ||
+      std::holds_alternative<Hello>(message) || std::holds_alternative<ClientAuth>(message) ||
       std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
       std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-      std::holds_alternative<Ping>(message) || std::holds_alternative<Travel>(message) ||
+      std::holds_alternative<Ping>(message) || std::holds_alternative<HistoryRequest>(message) ||
       std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message) ||
-      std::holds_alternative<Received>(message) || std::holds_alternative<Held>(message);
+      std::holds_alternative<ReceiveAck>(message) || std::holds_alternative<CachedChunks>(message);
   return client ? Sender::client : Sender::server;
 }
 

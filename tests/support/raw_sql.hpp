@@ -8,7 +8,8 @@ namespace runstone::test {
 
 /// Runs statements on a closed (or WAL-shared) database. Returns the first column of the last row as text;
 /// "ERROR: ..." when something went wrong.
-inline std::string raw_sql(const std::string& file, const std::string& sql, const char* vfs = nullptr) {
+inline std::string raw_sql(const std::string& file, const std::string& sql,
+                           const char* vfs = nullptr) {
   sqlite3* database = nullptr;
   std::string result;
   if (sqlite3_open_v2(file.c_str(), &database, SQLITE_OPEN_READWRITE, vfs) != SQLITE_OK) {

@@ -59,12 +59,13 @@ Bytes rlog_of(const RlogWorld& world, std::span<const RlogPlayer> players,
 }
 
 RlogSource source_of(const Bytes& file) {
-  return [&file](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
-    if (position >= file.size()) return 0;
-    const std::size_t count = std::min<std::size_t>(out.size(), file.size() - position);
-    std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(position), count, out.begin());
-    return count;
-  };
+  return
+      [&file](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
+        if (position >= file.size()) return 0;
+        const std::size_t count = std::min<std::size_t>(out.size(), file.size() - position);
+        std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(position), count, out.begin());
+        return count;
+      };
 }
 
 RlogContents read_rlog(const Bytes& file, const RlogFrom& from) {
@@ -102,7 +103,8 @@ void mend_rlog(Bytes& file) {
     const auto stored = static_cast<std::size_t>(little_endian(file, at + 4, 4));
     const std::size_t payload = at + kRlogHeaderBytes;
     put_u64(file, at + 40, at);
-    if (stored <= file.size() - payload) put_u64(file, at + 48, XXH3_64bits(file.data() + payload, stored));
+    if (stored <= file.size() - payload)
+      put_u64(file, at + 48, XXH3_64bits(file.data() + payload, stored));
     before = XXH3_64bits_withSeed(file.data() + at, kRlogHeaderBytes - 8, before);
     put_u64(file, at + 56, before);
     if (stored > file.size() - payload) return;

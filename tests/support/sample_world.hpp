@@ -20,7 +20,8 @@ inline constexpr std::uint16_t kSampleEdge = 16;
 
 inline WorldMeta sample_meta() {
   WorldMeta meta;
-  for (std::size_t i = 0; i < meta.world_id.size(); ++i) meta.world_id[i] = static_cast<std::uint8_t>(i + 1);
+  for (std::size_t i = 0; i < meta.world_id.size(); ++i)
+    meta.world_id[i] = static_cast<std::uint8_t>(i + 1);
   for (std::size_t i = 0; i < meta.server_key_seed.size(); ++i) {
     meta.server_key_seed[i] = static_cast<std::uint8_t>(200 - i);
   }
@@ -34,7 +35,8 @@ inline WorldMeta sample_meta() {
 
 inline PlayerRow sample_player(AuthorId author) {
   PlayerRow row{author, {}, "builder " + std::to_string(author)};
-  for (std::size_t i = 0; i < row.key.size(); ++i) row.key[i] = static_cast<std::uint8_t>(author * 31 + i);
+  for (std::size_t i = 0; i < row.key.size(); ++i)
+    row.key[i] = static_cast<std::uint8_t>(author * 31 + i);
   return row;
 }
 
@@ -51,7 +53,8 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
       edit.shape = Paste{at, random_clipboard(rng, 20, 5), random_orientation(rng)};
       break;
     case 1: {
-      const VoxelPos max{at.x + rng.between(1, 20), at.y + rng.between(1, 20), at.z + rng.between(1, 20)};
+      const VoxelPos max{at.x + rng.between(1, 20), at.y + rng.between(1, 20),
+                         at.z + rng.between(1, 20)};
       edit.shape = FillBox{{at, max}};
       break;
     }
@@ -63,8 +66,10 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
       break;
   }
   edit.mask.kind = static_cast<MaskKind>(rng.below(4));
-  if (edit.mask.kind == MaskKind::only_material) edit.mask.material = static_cast<Material>(1 + rng.below(4));
-  if (!std::holds_alternative<Paste>(edit.shape)) edit.material = static_cast<Material>(rng.below(5));
+  if (edit.mask.kind == MaskKind::only_material)
+    edit.mask.material = static_cast<Material>(1 + rng.below(4));
+  if (!std::holds_alternative<Paste>(edit.shape))
+    edit.material = static_cast<Material>(rng.below(5));
   return edit;
 }
 
@@ -77,7 +82,8 @@ inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   record.time_us = 1'700'000'000'000'000 + static_cast<TimeUs>(seq) * 1000;
   record.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
   record.edit = sample_edit(rng);
-  if (record.cause == Cause::rollback || record.cause == Cause::undo || record.cause == Cause::redo) {
+  if (record.cause == Cause::rollback || record.cause == Cause::undo ||
+      record.cause == Cause::redo) {
     record.subject = seq / 2;
   }
   return record;

@@ -37,12 +37,15 @@ DenseChunk scenario_dense(unsigned number, unsigned edge) {
   const auto solid = [&](int x, int y, int z) {  // the thesis' axes
     const auto half = [n](int c) { return c < n / 2; };
     const auto ball = [&](double radius) {
-      return std::sqrt(std::pow(x - n / 2, 2) + std::pow(y - n / 2, 2) + std::pow(z - n / 2, 2)) < radius;
+      return std::sqrt(std::pow(x - n / 2, 2) + std::pow(y - n / 2, 2) + std::pow(z - n / 2, 2)) <
+             radius;
     };
     const auto strips = [&](int kx, int ky, int kz) {
       return in_strip(x, n, kx) && in_strip(y, n, ky) && in_strip(z, n, kz);
     };
-    const auto waves = [&](double omega) { return wave(omega, x) + wave(omega, y) + wave(omega, z) > 0; };
+    const auto waves = [&](double omega) {
+      return wave(omega, x) + wave(omega, y) + wave(omega, z) > 0;
+    };
     const auto drawn = [&](float threshold) {
       return random[static_cast<std::size_t>((x * n + y) * n + z)] < threshold;
     };

@@ -7,16 +7,18 @@
 
 #include "common/generate/columns_world.hpp"
 #include "common/generate/scenarios/scenario_world.hpp"
+#include "common/runs/reorder.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/grid_rdm.hpp"
 #include "tests/reference/rle_rdm.hpp"
-#include "common/runs/reorder.hpp"
 #include "tests/support/thesis_table.hpp"
 
 namespace runstone::test {
 namespace {
 
-bool in_world(ChunkCoord c) { return std::min({c.x, c.y, c.z}) >= -1 && std::max({c.x, c.y, c.z}) <= 1; }
+bool in_world(ChunkCoord c) {
+  return std::min({c.x, c.y, c.z}) >= -1 && std::max({c.x, c.y, c.z}) <= 1;
+}
 
 RunChunk chunk_at(const Generator& world, ChunkCoord at, unsigned edge) {
   return in_cheapest_order(
@@ -54,7 +56,8 @@ MeshScene scenario_scene(const Generator& world, ChunkCoord at, unsigned edge, b
 reference::MaterialOctree scenario_octree(const Generator& world, unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   const auto bricks = static_cast<unsigned>(3 * side / reference::MaterialOctree::kBrickSide);
-  reference::MaterialOctree octree({-side, -side, -side}, static_cast<unsigned>(std::bit_width(bricks)));
+  reference::MaterialOctree octree({-side, -side, -side},
+                                   static_cast<unsigned>(std::bit_width(bricks)));
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {
       for (int x = -1; x <= 1; ++x)
@@ -86,7 +89,8 @@ ScenarioNumbers numbers_of(const MeshScene& scene) {
   return out;
 }
 
-std::size_t vertices_from_octree(const reference::MaterialOctree& octree, ChunkCoord at, unsigned edge) {
+std::size_t vertices_from_octree(const reference::MaterialOctree& octree, ChunkCoord at,
+                                 unsigned edge) {
   reference::DenseGrid grid;
   std::vector<Quad> quads;
   constexpr auto kNoTime = [] { return std::uint64_t{0}; };

@@ -34,7 +34,8 @@ struct ScenarioNumbers {
 ScenarioNumbers numbers_of(const MeshScene& scene);
 
 /// Vertices of the culled mesher over samples of an octree.
-std::size_t vertices_from_octree(const reference::MaterialOctree& octree, ChunkCoord at, unsigned edge);
+std::size_t vertices_from_octree(const reference::MaterialOctree& octree, ChunkCoord at,
+                                 unsigned edge);
 
 /// Bytes of run storage the thesis logs: 12 for each run its array has room for. The array starts with room
 /// for as many runs as the chunk has solid materials, and grows to m + floor(3 m / 8) + 16 when run m does

@@ -14,7 +14,8 @@ namespace runstone::test {
 class TempFolder {
  public:
   TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "runstone-test-XXXXXX").string();
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "runstone-test-XXXXXX").string();
     const char* made = ::mkdtemp(pattern.data());
     RUNSTONE_ASSERT(made != nullptr);
     path_ = pattern;

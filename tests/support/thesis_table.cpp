@@ -27,7 +27,8 @@ std::vector<std::string> fields_of(const std::string& line) {
 }  // namespace
 
 std::string thesis_text(const std::string& file) {
-  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/thesis/" + file, std::ios::binary);
+  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/thesis/" + file,
+                   std::ios::binary);
   RUNSTONE_ASSERT(in.good());
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }

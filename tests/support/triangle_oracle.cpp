@@ -21,8 +21,8 @@ struct Sheet {
 
 std::string text_of(const Sheet& sheet) {
   std::ostringstream out;
-  out << "direction " << "-+"[sheet.direction % 2] << "xyz"[sheet.direction / 2] << ", plane " << sheet.plane
-      << ", material " << sheet.material;
+  out << "direction " << "-+"[sheet.direction % 2] << "xyz"[sheet.direction / 2] << ", plane "
+      << sheet.plane << ", material " << sheet.material;
   return out.str();
 }
 
@@ -56,7 +56,8 @@ void add_face(const UnitFace& face, int times, std::vector<Piece>& pieces) {
   const Sheet sheet{direction, low[axis] + (positive ? 1 : 0), face.material};
   const int u = low[(axis + 1) % 3];
   const int v = low[(axis + 2) % 3];
-  std::array<std::array<int, 2>, 5> ring = {{{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}, {u, v}}};
+  std::array<std::array<int, 2>, 5> ring = {
+      {{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}, {u, v}}};
   if (!positive) std::reverse(ring.begin(), ring.end());
   for (std::size_t i = 0; i < 4; ++i) add_edge(sheet, ring[i], ring[i + 1], times, pieces);
 }
@@ -90,7 +91,9 @@ std::optional<std::string> triangles_difference(const reference::TriangleMesh& m
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const reference::MeshTriangle& triangle = mesh.triangles[i];
-    const auto wrong = [&](const std::string& why) { return "triangle " + std::to_string(i) + ' ' + why; };
+    const auto wrong = [&](const std::string& why) {
+      return "triangle " + std::to_string(i) + ' ' + why;
+    };
     const int direction = static_cast<int>(triangle.direction);
     if (direction >= static_cast<int>(kDirectionCount)) return wrong("looks in no direction");
     const auto axis = static_cast<std::size_t>(direction / 2);
@@ -101,7 +104,8 @@ std::optional<std::string> triangles_difference(const reference::TriangleMesh& m
     }
     std::array<Point, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) {
-      if (triangle.vertices[c] >= mesh.vertices.size()) return wrong("has a vertex that does not exist");
+      if (triangle.vertices[c] >= mesh.vertices.size())
+        return wrong("has a vertex that does not exist");
       corners[c] = point_of(mesh.vertices[triangle.vertices[c]]);
       for (std::size_t a = 0; a < 3; ++a) {
         if (corners[c][a] > sides[a]) return wrong("leaves the extent");
@@ -114,7 +118,8 @@ std::optional<std::string> triangles_difference(const reference::TriangleMesh& m
       used[vertex] = sheet;
     }
     std::array<std::array<int, 2>, 3> flat;  // u, v
-    for (std::size_t c = 0; c < 3; ++c) flat[c] = {corners[c][(axis + 1) % 3], corners[c][(axis + 2) % 3]};
+    for (std::size_t c = 0; c < 3; ++c)
+      flat[c] = {corners[c][(axis + 1) % 3], corners[c][(axis + 2) % 3]};
     const int area = (flat[1][0] - flat[0][0]) * (flat[2][1] - flat[0][1]) -
                      (flat[1][1] - flat[0][1]) * (flat[2][0] - flat[0][0]);
     if (area == 0) return wrong("has no area");

@@ -78,10 +78,10 @@ class Drawing {
     const float area = u.x * v.y - u.y * v.x;
     const auto [left, right] = std::minmax({corner.x, next.x, across.x, corner.x + v.x});
     const auto [top, bottom] = std::minmax({corner.y, next.y, across.y, corner.y + v.y});
-    for (int y = std::max(0, static_cast<int>(top)); y <= static_cast<int>(bottom) && y < panel_.height;
-         ++y) {
-      for (int x = std::max(0, static_cast<int>(left)); x <= static_cast<int>(right) && x < panel_.width;
-           ++x) {
+    for (int y = std::max(0, static_cast<int>(top));
+         y <= static_cast<int>(bottom) && y < panel_.height; ++y) {
+      for (int x = std::max(0, static_cast<int>(left));
+           x <= static_cast<int>(right) && x < panel_.width; ++x) {
         const float dx = static_cast<float>(x) + 0.5F - corner.x,
                     dy = static_cast<float>(y) + 0.5F - corner.y;
         const float a = (dx * v.y - dy * v.x) / area, b = (u.x * dy - u.y * dx) / area;
@@ -119,8 +119,9 @@ class Drawing {
                     static_cast<std::size_t>(x)];
   }
   void paint(int x, int y, const Colour& colour) {
-    const auto pixel = static_cast<std::size_t>(panel_.top + y) * static_cast<std::size_t>(image_.width) +
-                       static_cast<std::size_t>(panel_.left + x);
+    const auto pixel =
+        static_cast<std::size_t>(panel_.top + y) * static_cast<std::size_t>(image_.width) +
+        static_cast<std::size_t>(panel_.left + x);
     std::copy(colour.begin(), colour.end(),
               image_.rgb.begin() + static_cast<std::ptrdiff_t>(pixel * colour.size()));
   }
@@ -132,7 +133,9 @@ class Drawing {
 
 Colour colour_of(const QuadFields& quad) {
   Colour out = kTints[(quad.material + kTints.size() - 1) % kTints.size()];
-  const int percent = quad.direction == Direction::pos_y ? 112 : quad.direction == Direction::pos_x ? 96 : 82;
+  const int percent = quad.direction == Direction::pos_y   ? 112
+                      : quad.direction == Direction::pos_x ? 96
+                                                           : 82;
   for (std::uint8_t& channel : out)
     channel = static_cast<std::uint8_t>(std::min(255, channel * percent / 100));
   return out;
@@ -141,9 +144,9 @@ Colour colour_of(const QuadFields& quad) {
 }  // namespace
 
 Image blank(int width, int height) {
-  return {
-      width, height,
-      std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3, 255)};
+  return {width, height,
+          std::vector<std::uint8_t>(
+              static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3, 255)};
 }
 
 void draw(std::span<const Quad> quads, const Panel& panel, int line, Image& image) {
@@ -155,7 +158,8 @@ void draw(std::span<const Quad> quads, const Panel& panel, int line, Image& imag
     drawing.fill(side.corners[0], side.corners[1], side.corners[2], colour_of(side.fields));
   }
   for (const Side& side : sides) {
-    for (std::size_t i = 0; i < 4; ++i) drawing.line(side.corners[i], side.corners[(i + 1) % 4], line);
+    for (std::size_t i = 0; i < 4; ++i)
+      drawing.line(side.corners[i], side.corners[(i + 1) % 4], line);
   }
 }
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/reference/culled_mesher.hpp"
-#include "tests/reference/rle_rdm.hpp"
 #include "common/runs/reorder.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/rle_rdm.hpp"
 #include "tests/wireframe/wireframe.hpp"
 
 namespace {
@@ -49,11 +49,12 @@ int main(int argc, char** argv) {
   const RunChunk chunk = bench::chunk_of_world(world, {0, -16, 0}, kEdge);
   const std::vector<Named> meshes = meshes_of(chunk, *world.visibility);
   const int count = static_cast<int>(meshes.size());
-  Image image =
-      wireframe::blank((count * kSide + (count + 1) * kGap) * kFiner, (kHeight + 2 * kGap) * kFiner);
+  Image image = wireframe::blank((count * kSide + (count + 1) * kGap) * kFiner,
+                                 (kHeight + 2 * kGap) * kFiner);
   int left = kGap * kFiner;
   for (const Named& mesh : meshes) {
-    wireframe::draw(mesh.quads, {left, kGap * kFiner, kSide * kFiner, kHeight * kFiner}, kFiner, image);
+    wireframe::draw(mesh.quads, {left, kGap * kFiner, kSide * kFiner, kHeight * kFiner}, kFiner,
+                    image);
     left += (kSide + kGap) * kFiner;
     std::printf("%s: %zu quads\n", mesh.name, mesh.quads.size());
   }

@@ -12,8 +12,8 @@
 #include <cstdint>
 
 #include "common/core/ids.hpp"
-#include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/apply/layer_canvas.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone {
@@ -37,7 +37,8 @@ class Brush {
   /// Draws voxels [first, last) of a line of the canvas; nothing if last <= first. Reads and writes whole
   /// vectors around them.
   HWY_INLINE void stroke(Material* line, std::int32_t first, std::int32_t last) const {
-    for (std::int32_t at = first & -lanes(); at < last; at += lanes()) stroke_at(at, line, first, last);
+    for (std::int32_t at = first & -lanes(); at < last; at += lanes())
+      stroke_at(at, line, first, last);
   }
   /// The same where a line has at most lanes() voxels.
   HWY_INLINE void stroke_short(Material* line, std::int32_t first, std::int32_t last) const {
@@ -45,15 +46,19 @@ class Brush {
   }
 
  private:
-  HWY_INLINE void stroke_at(std::int32_t at, Material* line, std::int32_t first, std::int32_t last) const {
+  HWY_INLINE void stroke_at(std::int32_t at, Material* line, std::int32_t first,
+                            std::int32_t last) const {
     const Voxels voxels;
     const hn::RebindToSigned<Voxels> places;
     const auto place = hn::Iota(places, static_cast<std::int16_t>(at));
-    const auto inside = hn::And(hn::Gt(place, hn::Set(places, static_cast<std::int16_t>(first - 1))),
-                                hn::Lt(place, hn::Set(places, static_cast<std::int16_t>(last))));
+    const auto inside =
+        hn::And(hn::Gt(place, hn::Set(places, static_cast<std::int16_t>(first - 1))),
+                hn::Lt(place, hn::Set(places, static_cast<std::int16_t>(last))));
     const auto present = hn::Load(voxels, line + at);
-    const auto same = hn::Eq(hn::And(present, hn::Set(voxels, looked_at_)), hn::Set(voxels, wanted_));
-    const auto admitted = hn::Xor(same, hn::Eq(hn::Set(voxels, refused_), hn::Set(voxels, Material{1})));
+    const auto same =
+        hn::Eq(hn::And(present, hn::Set(voxels, looked_at_)), hn::Set(voxels, wanted_));
+    const auto admitted =
+        hn::Xor(same, hn::Eq(hn::Set(voxels, refused_), hn::Set(voxels, Material{1})));
     const auto written = hn::And(hn::RebindMask(voxels, inside), admitted);
     hn::Store(hn::IfThenElse(written, hn::Set(voxels, material_), present), voxels, line + at);
   }

@@ -16,12 +16,14 @@ struct AxisSums {
     for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (unsigned i = 0; i <= kSideMax; ++i) {
-          sums[lane][axis][i] = digest_axis_sum(static_cast<int>(lane), static_cast<Axis>(axis), 0, i);
+          sums[lane][axis][i] =
+              digest_axis_sum(static_cast<int>(lane), static_cast<Axis>(axis), 0, i);
         }
       }
     }
   }
-  std::uint64_t between(std::size_t lane, Axis axis, std::uint32_t first, std::uint32_t last) const {
+  std::uint64_t between(std::size_t lane, Axis axis, std::uint32_t first,
+                        std::uint32_t last) const {
     const PrefixSums& prefix = sums[lane][static_cast<std::size_t>(axis)];
     return m61::sub(prefix[last], prefix[first]);
   }
@@ -56,7 +58,8 @@ LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t co
 
 }  // namespace
 
-ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors)
+ChangeTally::ChangeTally(const RunChunk& shape, std::vector<Change>& changes,
+                         MaterialFactors& factors)
     : shape_(shape),
       sums_(axis_sums()),
       extent_(ordered(shape.extent, shape.order)),
@@ -81,7 +84,8 @@ void ChangeTally::close_line() {
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     const std::uint64_t across =
         m61::mul(sums_.between(lane, axes_[1], m, m + 1), sums_.between(lane, axes_[2], s, s + 1));
-    digest_.lane[lane] = m61::add(digest_.lane[lane], m61::mul(reduce_wide(line_sum_[lane]), across));
+    digest_.lane[lane] =
+        m61::add(digest_.lane[lane], m61::mul(reduce_wide(line_sum_[lane]), across));
     line_sum_[lane] = 0;
   }
   line_terms_ = 0;
@@ -89,12 +93,13 @@ void ChangeTally::close_line() {
   dirty_[2] = dirty_[2] | bits_between(s, s + 1);
 }
 
-void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material before, Material after) {
+void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material before,
+                          Material after) {
   const MaterialFactors::Lanes was = factors_.of(before);  // by value: both may share a slot
   const MaterialFactors::Lanes& is = factors_.of(after);
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
-    line_sum_[lane] +=
-        static_cast<Wide>(sums_.between(lane, axes_[0], first, last)) * m61::sub(is[lane], was[lane]);
+    line_sum_[lane] += static_cast<Wide>(sums_.between(lane, axes_[0], first, last)) *
+                       m61::sub(is[lane], was[lane]);
   }
   if (++line_terms_ % kTermsPerReduction == 0) {
     for (Wide& sum : line_sum_) sum = reduce_wide(sum);
@@ -125,7 +130,8 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
     changed = changed & ~bits_below(last);
     voxels_ += last - first;
     note(begin + first, begin + last, after[first]);
-    const MaterialFactors::Lanes was = factors_.of(before[first]);  // by value: both may share a slot
+    const MaterialFactors::Lanes was =
+        factors_.of(before[first]);  // by value: both may share a slot
     const MaterialFactors::Lanes& is = factors_.of(after[first]);
     for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
       // Two differences below 2^62, not reduced.
@@ -152,8 +158,8 @@ void ChangeTally::close_layer() {
 }
 
 void ChangeTally::across_lines(VoxelIndex first, VoxelIndex last, Material before, Material after) {
-  digest_ =
-      digest_ - digest_of_span(shape_, first, last, before) + digest_of_span(shape_, first, last, after);
+  digest_ = digest_ - digest_of_span(shape_, first, last, before) +
+            digest_of_span(shape_, first, last, after);
   const std::uint32_t f = first - line_begin_;
   dirty_[0] = dirty_[0] | layers_around(f, f + (last - first), extent_.f);
   const std::uint32_t line = first / extent_.f;
@@ -170,7 +176,8 @@ void ChangeTally::finish() {
 
 DirtyLayers ChangeTally::dirty() const {
   DirtyLayers out;
-  for (std::size_t i = 0; i < 3; ++i) out.layer[static_cast<std::size_t>(axes_[i])] = dirty_[i].to_bitset();
+  for (std::size_t i = 0; i < 3; ++i)
+    out.layer[static_cast<std::size_t>(axes_[i])] = dirty_[i].to_bitset();
   return out;
 }
 

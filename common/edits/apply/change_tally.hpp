@@ -35,8 +35,8 @@ class ChangeTally {
 
   /// The same for what differs in line m of layer s, told at once: changed voxels, and where a stretch of them must
   /// end since before or after differ from the voxel in front. Requires lines ascending. O(stretches).
-  void line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts, const Material* before,
-            const Material* after);
+  void line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts,
+            const Material* before, const Material* after);
 
   /// Call once, after the last stretch.
   void finish();

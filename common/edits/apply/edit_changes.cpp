@@ -9,7 +9,8 @@ void write_changes(RunChunk& chunk, std::span<const Change> changes, ApplyScratc
   scratch.runs.clear();
   scratch.areas.clear();
   plan_patch(chunk, changes, scratch.areas, scratch.runs);
-  write_patch(chunk, scratch.areas, scratch.runs, cheaper_write(chunk, scratch.areas), scratch.whole);
+  write_patch(chunk, scratch.areas, scratch.runs, cheaper_write(chunk, scratch.areas),
+              scratch.whole);
 }
 
 }  // namespace runstone

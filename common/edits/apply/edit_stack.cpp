@@ -20,26 +20,29 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
   for (const EditDescriptor& edit : edits) {
     RUNSTONE_DASSERT(validate(edit).has_value());
     const std::size_t before = stack.size();
-    for_each_part(edit, origin, chunk.extent, chunk.order, [&](const OrderedShape& shape, Material material) {
-      stack.push_back({shape, edit.mask, material});
-    });
+    for_each_part(edit, origin, chunk.extent, chunk.order,
+                  [&](const OrderedShape& shape, Material material) {
+                    stack.push_back({shape, edit.mask, material});
+                  });
     count += stack.size() != before ? 1 : 0;
   }
   return count;
 }
 
 // A layer that edits cover whole costs the sweep a look at its runs, however many voxels it has.
-ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk, std::span<const StackedEdit> stack) {
+ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
+                            std::span<const StackedEdit> stack) {
   if (edits == 1) return ChangeSearch::walk;
   const OrderedExtent extent = ordered(chunk.extent, chunk.order);
-  const bool whole = std::any_of(stack.begin(), stack.end(),
-                                 [&](const StackedEdit& part) { return part.shape.covers_layers(extent); });
+  const bool whole = std::any_of(stack.begin(), stack.end(), [&](const StackedEdit& part) {
+    return part.shape.covers_layers(extent);
+  });
   return whole ? ChangeSearch::sweep : ChangeSearch::paint;
 }
 
 // Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
-void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest, ApplyScratch& scratch,
-                    ApplyResult& result) {
+void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest,
+                    ApplyScratch& scratch, ApplyResult& result) {
   scratch.changes.clear();
   scratch.runs.clear();
   ChangeTally tally(chunk, scratch.changes, scratch.factors);
@@ -72,8 +75,9 @@ void reset(ApplyResult& result) {
 
 }  // namespace
 
-void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
-                 ApplyScratch& scratch, ApplyResult& result) {
+void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
+                 std::span<const EditDescriptor> edits, ApplyScratch& scratch,
+                 ApplyResult& result) {
   reset(result);
   const std::size_t count = stack_up(chunk, origin, edits, scratch.stack);
   if (count == 0) return;

@@ -21,7 +21,8 @@ namespace runstone {
 struct ApplyResult {
   bool changed = false;  // any voxel has another material than before
   DirtyLayers dirty;
-  std::vector<EditArea> areas;  // maximal groups of runs replaced, ascending; `first` counts in the new runs
+  std::vector<EditArea>
+      areas;  // maximal groups of runs replaced, ascending; `first` counts in the new runs
   std::uint64_t voxels_changed = 0;
 };
 
@@ -35,7 +36,7 @@ ApplyResult apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
                         std::span<const EditDescriptor> edits, ApplyScratch& scratch);
 
 /// The same, into a result that is reused: allocates nothing in a steady state.
-void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin, std::span<const EditDescriptor> edits,
-                 ApplyScratch& scratch, ApplyResult& result);
+void apply_stack(RunChunk& chunk, Digest& digest, VoxelPos origin,
+                 std::span<const EditDescriptor> edits, ApplyScratch& scratch, ApplyResult& result);
 
 }  // namespace runstone

@@ -7,7 +7,7 @@ namespace runstone {
 
 /// How the changes are found.
 enum class ChangeSearch : std::uint8_t {
-  walk,   // span by span; for stacks of which at most one edit touches the chunk, and taken for those
+  walk,  // span by span; for stacks of which at most one edit touches the chunk, and taken for those
   sweep,  // any stack; taken for several edits of which some cover whole layers
   paint,  // any stack; taken for all others
 };

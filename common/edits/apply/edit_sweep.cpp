@@ -33,7 +33,8 @@ void fill_loosely(Material* line, std::uint32_t first, std::uint32_t last, Mater
   }
 }
 
-void apply_to_line(const StackedEdit& edit, Material* line, std::uint32_t first, std::uint32_t last) {
+void apply_to_line(const StackedEdit& edit, Material* line, std::uint32_t first,
+                   std::uint32_t last) {
   const Material material = edit.material;
   const auto replace_if = [&](auto&& admits) {
     for (std::uint32_t i = first; i < last; ++i) line[i] = admits(line[i]) ? material : line[i];
@@ -239,8 +240,9 @@ class Sweep {
   ChangeTally& tally_;
   RunCursor<Runs> cursor_;
   std::uint32_t active_count_ = 0;
-  std::array<std::uint32_t, kSideMax> lines_{};  // heads of the chains of the layer at hand, entry number + 1
-  std::array<LineBits, kSideMax> covered_{};     // voxels of the layer that unmasked edits overwrite
+  std::array<std::uint32_t, kSideMax>
+      lines_{};  // heads of the chains of the layer at hand, entry number + 1
+  std::array<LineBits, kSideMax> covered_{};  // voxels of the layer that unmasked edits overwrite
   LineBuffer before_, after_;
 };
 

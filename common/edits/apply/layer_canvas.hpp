@@ -19,7 +19,8 @@ class LayerCanvas {
   /// Makes room for a layer of this shape; what lies in it is unspecified.
   void fit(OrderedExtent e) {
     line_blocks_ = (e.f + kBlock - 1) / kBlock;
-    const std::size_t blocks = std::size_t{2} + line_blocks_ * e.m;  // one to either side is touched as well
+    const std::size_t blocks =
+        std::size_t{2} + line_blocks_ * e.m;  // one to either side is touched as well
     if (blocks_.size() < blocks) blocks_.resize(blocks);
   }
   Material* line(std::uint32_t m) { return blocks_[1 + m * line_blocks_].voxels.data(); }

@@ -50,7 +50,8 @@ class Painter {
 
  private:
   void make_plan() {
-    std::array<std::uint32_t, LayerPlan::kBand + 1> parts{};  // how many more begin than end, by layer
+    std::array<std::uint32_t, LayerPlan::kBand + 1>
+        parts{};  // how many more begin than end, by layer
     for (const StackedEdit& part : stack_) {
       const auto [first, last] = layers_of(part.shape);
       if (first >= last) continue;
@@ -79,12 +80,13 @@ class Painter {
     const auto [first, last] = layers_of(shape);
     if (first >= last) return;
     if (shape.form != OrderedShape::Form::box) {
-      find_rows(shape, first, last, [&](std::uint32_t s, std::uint8_t m_first, std::uint8_t m_last) {
-        const std::uint32_t rows = row_count_;
-        plan_.pieces[plan_.end[s - band_first_]++] = {number, rows, m_first, m_last};
-        row_count_ += std::uint32_t{m_last} - m_first;
-        return room_for_rows(rows);
-      });
+      find_rows(shape, first, last,
+                [&](std::uint32_t s, std::uint8_t m_first, std::uint8_t m_last) {
+                  const std::uint32_t rows = row_count_;
+                  plan_.pieces[plan_.end[s - band_first_]++] = {number, rows, m_first, m_last};
+                  row_count_ += std::uint32_t{m_last} - m_first;
+                  return room_for_rows(rows);
+                });
       return;
     }
     const LayerPiece piece{number, 0, static_cast<std::uint8_t>(shape.first[1]),
@@ -113,7 +115,8 @@ class Painter {
     LineBits met;
     for (const LayerPiece& piece : pieces) met = met | bits_between(piece.m_first, piece.m_last);
     const VoxelIndex begin = s * extent_.layer();
-    for_each_line(met, [&](std::uint32_t m) { unpack(base_, begin + m * extent_.f, canvas_.line(m)); });
+    for_each_line(met,
+                  [&](std::uint32_t m) { unpack(base_, begin + m * extent_.f, canvas_.line(m)); });
     for (const LayerPiece& piece : pieces) paint(piece);
     for_each_line(met, [&](std::uint32_t m) { compare(m, s); });
   }

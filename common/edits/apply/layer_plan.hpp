@@ -21,10 +21,12 @@ struct LayerPlan {
   /// Layers planned at once: the rows of a part are found together, and take 8 KB at most.
   static constexpr std::uint32_t kBand = 32;
 
-  std::vector<LayerPiece> pieces;  // layer by layer, in each from the bottom of the stack to its top
+  std::vector<LayerPiece>
+      pieces;  // layer by layer, in each from the bottom of the stack to its top
   std::array<std::uint32_t, kBand> begin{};  // those of the band's layer i are [begin[i], end[i])
   std::array<std::uint32_t, kBand> end{};
-  std::vector<std::uint8_t> row_first, row_last;  // voxels [first, last) of a line; none if last <= first
+  std::vector<std::uint8_t> row_first,
+      row_last;  // voxels [first, last) of a line; none if last <= first
 };
 
 }  // namespace runstone

@@ -18,8 +18,12 @@ namespace runstone {
 struct LineBits {
   std::uint64_t low = 0, high = 0;
   friend bool operator==(const LineBits&, const LineBits&) = default;
-  friend constexpr LineBits operator&(LineBits a, LineBits b) { return {a.low & b.low, a.high & b.high}; }
-  friend constexpr LineBits operator|(LineBits a, LineBits b) { return {a.low | b.low, a.high | b.high}; }
+  friend constexpr LineBits operator&(LineBits a, LineBits b) {
+    return {a.low & b.low, a.high & b.high};
+  }
+  friend constexpr LineBits operator|(LineBits a, LineBits b) {
+    return {a.low | b.low, a.high | b.high};
+  }
   constexpr LineBits operator~() const { return {~low, ~high}; }
   constexpr bool any() const { return (low | high) != 0; }
   /// Position of the lowest bit; 128 if there is none.

@@ -17,7 +17,8 @@ class Planner {
     cursor_.seek(c.first);
     const std::size_t from = cursor_.run();
     // A kept neighbour of the new material would melt into the change, so it belongs to the area.
-    const bool melts = from > 0 && old_.end(from - 1) == c.first && old_.material(from - 1) == c.material;
+    const bool melts =
+        from > 0 && old_.end(from - 1) == c.first && old_.material(from - 1) == c.material;
     const std::size_t low = melts ? from - 1 : from;
     if (!open_ || low > last_) {
       close();
@@ -85,8 +86,8 @@ class Planner {
 
 }  // namespace
 
-void plan_patch(const RunChunk& chunk, std::span<const Change> changes, std::vector<EditArea>& areas,
-                std::vector<Run>& runs) {
+void plan_patch(const RunChunk& chunk, std::span<const Change> changes,
+                std::vector<EditArea>& areas, std::vector<Run>& runs) {
   chunk.runs.visit([&]<class Runs>(Runs old) {
     Planner<Runs> planner(old, areas, runs);
     for (const Change& c : changes) planner.change(c);
@@ -105,8 +106,8 @@ PatchWrite cheaper_write(const RunChunk& chunk, std::span<const EditArea> areas)
   return pieces < kSpliceCopies + tail ? PatchWrite::pieces : PatchWrite::whole;
 }
 
-void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<const Run> runs, PatchWrite how,
-                 std::vector<Run>& scratch) {
+void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<const Run> runs,
+                 PatchWrite how, std::vector<Run>& scratch) {
   if (areas.empty()) return;
   std::size_t used = 0;
   if (how == PatchWrite::pieces) {
@@ -118,7 +119,8 @@ void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<con
     return;
   }
   scratch.clear();
-  const std::size_t first = areas.front().first;  // the first area has the same index before and after
+  const std::size_t first =
+      areas.front().first;  // the first area has the same index before and after
   std::size_t old = first;
   chunk.runs.visit([&](const auto& from) {
     for (const EditArea& area : areas) {

@@ -15,8 +15,8 @@ namespace runstone {
 /// Appends the areas of `changes` (ascending, disjoint, not empty) to `areas`, and the runs that come in,
 /// area by area, to `runs`. `first` of an area counts in the new run list. O(changes * log(runs between) +
 /// runs replaced).
-void plan_patch(const RunChunk& chunk, std::span<const Change> changes, std::vector<EditArea>& areas,
-                std::vector<Run>& runs);
+void plan_patch(const RunChunk& chunk, std::span<const Change> changes,
+                std::vector<EditArea>& areas, std::vector<Run>& runs);
 
 /// Two ways to write a patch. Same result; the run counts decide which is cheaper.
 enum class PatchWrite : std::uint8_t {
@@ -27,7 +27,7 @@ enum class PatchWrite : std::uint8_t {
 PatchWrite cheaper_write(const RunChunk& chunk, std::span<const EditArea> areas);
 
 /// Replaces the areas of the chunk by `runs`. `scratch` is used by PatchWrite::whole.
-void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<const Run> runs, PatchWrite how,
-                 std::vector<Run>& scratch);
+void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<const Run> runs,
+                 PatchWrite how, std::vector<Run>& scratch);
 
 }  // namespace runstone

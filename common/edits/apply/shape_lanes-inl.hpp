@@ -23,8 +23,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "common/edits/descriptor/capsule_row.hpp"
 #include "common/edits/apply/layer_plan.hpp"
+#include "common/edits/descriptor/capsule_row.hpp"
 #include "common/edits/descriptor/ordered_shape.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -73,9 +73,12 @@ class RoundLanes {
     for (std::int32_t i = 0; i < at.count; i += static_cast<std::int32_t>(hn::Lanes(d))) {
       const auto q = hn::Iota(d, at.q_first + i - frame_.centre_q);
       const auto rest = hn::Sub(hn::Set(d, reach), hn::Mul(q, q));
-      const auto root = hn::ConvertTo(d, hn::Sqrt(hn::ConvertTo(floats, hn::Max(rest, hn::Zero(d)))));
-      const auto half = hn::IfThenElse(hn::Lt(rest, hn::Zero(d)), hn::Set(d, -1), root);  // -1: none
-      const auto first = hn::Sub(centre, half), last = hn::Add(hn::Add(centre, half), hn::Set(d, 1));
+      const auto root =
+          hn::ConvertTo(d, hn::Sqrt(hn::ConvertTo(floats, hn::Max(rest, hn::Zero(d)))));
+      const auto half =
+          hn::IfThenElse(hn::Lt(rest, hn::Zero(d)), hn::Set(d, -1), root);  // -1: none
+      const auto first = hn::Sub(centre, half),
+                 last = hn::Add(hn::Add(centre, half), hn::Set(d, 1));
       hn::StoreU(hn::DemoteTo(bytes, hn::Min(hn::Max(first, low), high)), bytes, out.first + i);
       hn::StoreU(hn::DemoteTo(bytes, hn::Min(hn::Max(last, low), high)), bytes, out.last + i);
     }
@@ -98,7 +101,8 @@ class CapsuleLines {
 
   void find(std::int64_t c0, std::int64_t n0, const Places& at, const Ends& out) const {
     const auto clipped = [this](std::int64_t v) {
-      return static_cast<std::uint8_t>(std::clamp<std::int64_t>(v + frame_.centre, frame_.low, frame_.high));
+      return static_cast<std::uint8_t>(
+          std::clamp<std::int64_t>(v + frame_.centre, frame_.low, frame_.high));
     };
     for (std::int32_t i = 0; i < at.count; ++i) {
       const std::int64_t p = at.q_first + i - frame_.centre_q;
@@ -123,7 +127,9 @@ class CapsuleLanes {
   static HWY_INLINE V whole(std::int64_t v) { return hn::Set(D(), static_cast<double>(v)); }
   static HWY_INLINE V whole_root(V v) { return hn::Floor(hn::Sqrt(hn::Max(v, hn::Zero(D())))); }
   /// floor(x / a) from 1 / a.
-  static HWY_INLINE V floor_of(V x, V inverse) { return hn::Floor(hn::Mul(hn::Add(x, set(0.5)), inverse)); }
+  static HWY_INLINE V floor_of(V x, V inverse) {
+    return hn::Floor(hn::Mul(hn::Add(x, set(0.5)), inverse));
+  }
   static constexpr double kFar = 1 << 20;
 
  public:
@@ -225,13 +231,14 @@ class LayerLines {
 };
 
 template <class F>
-HWY_INLINE void find_round_rows(const OrderedShape& shape, std::uint32_t s_first, std::uint32_t s_last,
-                                F&& room) {
+HWY_INLINE void find_round_rows(const OrderedShape& shape, std::uint32_t s_first,
+                                std::uint32_t s_last, F&& room) {
   const auto bound = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
   LayerLines lines;
   RoundLanes({shape.centre[1], shape.centre[2], bound(shape.first[1]), bound(shape.last[1])})
       .find(shape.reach, {bound(s_first), bound(s_last - s_first)}, lines.ends());
-  const RoundLanes rows({shape.centre[0], shape.centre[1], bound(shape.first[0]), bound(shape.last[0])});
+  const RoundLanes rows(
+      {shape.centre[0], shape.centre[1], bound(shape.first[0]), bound(shape.last[0])});
   lines.for_each(s_first, s_last, [&](std::uint32_t s, std::uint8_t m_first, std::uint8_t m_last) {
     const std::int32_t p = bound(s) - shape.centre[2];
     rows.find(shape.reach - p * p, {m_first, m_last - m_first}, room(s, m_first, m_last));
@@ -239,8 +246,8 @@ HWY_INLINE void find_round_rows(const OrderedShape& shape, std::uint32_t s_first
 }
 
 template <class Lanes, class F>
-HWY_INLINE void find_capsule_rows(const OrderedShape& shape, std::uint32_t s_first, std::uint32_t s_last,
-                                  F&& room) {
+HWY_INLINE void find_capsule_rows(const OrderedShape& shape, std::uint32_t s_first,
+                                  std::uint32_t s_last, F&& room) {
   const auto bound = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
   const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
   LayerLines lines;

@@ -32,7 +32,8 @@ class StackDepths {
     for (std::size_t i = 0; i < kBuckets; ++i) {
       if (counts_[i] == 0) continue;
       if (!out.empty()) out += ' ';
-      out += i + 1 == kBuckets ? std::to_string(depth_max(i - 1) + 1) + '+' : std::to_string(depth_max(i));
+      out += i + 1 == kBuckets ? std::to_string(depth_max(i - 1) + 1) + '+'
+                               : std::to_string(depth_max(i));
       out += ':' + std::to_string(counts_[i]);
     }
     return out.empty() ? "none" : out;

@@ -33,7 +33,8 @@ Result<void> check_palette(const std::vector<Material>& palette) {
 
 // Number of touched cells.
 Result<std::uint32_t> check_cells(const RunChunk& cells, std::size_t palette_size) {
-  if (!cells.extent.valid_part()) return fail(ErrorCode::bad_value, "clipboard side outside 1..128");
+  if (!cells.extent.valid_part())
+    return fail(ErrorCode::bad_value, "clipboard side outside 1..128");
   if (auto runs = validate_runs(cells); !runs) return Unexpected<Error>{runs.error()};
   std::vector<bool> used(palette_size + 1, false);
   std::uint32_t touched = 0, begin = 0;
@@ -75,8 +76,10 @@ CellBox box_of_touched(const RunChunk& cells) {
 
 }  // namespace
 
-Result<std::shared_ptr<const Clipboard>> Clipboard::of(std::vector<Material> palette, RunChunk cells) {
-  if (const auto checked = check_palette(palette); !checked) return Unexpected<Error>{checked.error()};
+Result<std::shared_ptr<const Clipboard>> Clipboard::of(std::vector<Material> palette,
+                                                       RunChunk cells) {
+  if (const auto checked = check_palette(palette); !checked)
+    return Unexpected<Error>{checked.error()};
   const auto touched = check_cells(cells, palette.size());
   if (!touched) return Unexpected<Error>{touched.error()};
   std::shared_ptr<Clipboard> made(new Clipboard(std::move(palette), std::move(cells)));
@@ -85,7 +88,8 @@ Result<std::shared_ptr<const Clipboard>> Clipboard::of(std::vector<Material> pal
   Bytes bytes;
   ByteWriter w(bytes);
   write_clipboard(w, *made);
-  if (bytes.size() > kClipboardBytesMax) return fail(ErrorCode::limit_exceeded, "clipboard is too long");
+  if (bytes.size() > kClipboardBytesMax)
+    return fail(ErrorCode::limit_exceeded, "clipboard is too long");
   made->byte_size_ = bytes.size();
   return std::shared_ptr<const Clipboard>(std::move(made));
 }
@@ -109,7 +113,8 @@ void write_clipboard(ByteWriter& w, const Clipboard& clipboard) {
   cells.runs.visit([&](const auto& runs) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::uint64_t numbers = i == 0 ? palette.size() + 1 : palette.size();
-      const std::uint64_t number = i == 0 ? runs.material(i) : told_number(runs.material(i), before);
+      const std::uint64_t number =
+          i == 0 ? runs.material(i) : told_number(runs.material(i), before);
       w.varint((runs.end(i) - begin - 1) * numbers + number);
       begin = runs.end(i);
       before = runs.material(i);
@@ -136,8 +141,8 @@ std::shared_ptr<const Clipboard> read_clipboard(ByteReader& r) {
     if (least > 0xffff) {
       r.reject(ErrorCode::bad_value, "material id exceeds 16 bits");
     } else {
-      palette.push_back(
-          static_cast<Material>(least + r.varint_max(0xffff - least, "material id exceeds 16 bits")));
+      palette.push_back(static_cast<Material>(
+          least + r.varint_max(0xffff - least, "material id exceeds 16 bits")));
     }
   }
   RunChunk cells{{sides[0], sides[1], sides[2]}, static_cast<AxisOrder>(order), RunList{}};

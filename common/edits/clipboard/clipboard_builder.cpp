@@ -9,7 +9,8 @@
 
 namespace runstone {
 
-ClipboardBuilder::ClipboardBuilder(Extent extent, AxisOrder order) : extent_(extent), order_(order) {
+ClipboardBuilder::ClipboardBuilder(Extent extent, AxisOrder order)
+    : extent_(extent), order_(order) {
   RUNSTONE_ASSERT(extent.valid_part());
 }
 

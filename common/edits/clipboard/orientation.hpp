@@ -13,15 +13,19 @@ namespace runstone {
 
 struct Orientation {
   AxisOrder axes =
-      AxisOrder::xyz;      // named clipboard axes, in the order in which they run along world x, y, z
+      AxisOrder::xyz;  // named clipboard axes, in the order in which they run along world x, y, z
   std::uint8_t flips = 0;  // bit 0, 1, 2: that axis runs backwards along world x, y, z
   friend bool operator==(const Orientation&, const Orientation&) = default;
 
-  constexpr bool valid() const { return static_cast<std::uint8_t>(axes) < kAxisOrderCount && flips < 8; }
+  constexpr bool valid() const {
+    return static_cast<std::uint8_t>(axes) < kAxisOrderCount && flips < 8;
+  }
 
   /// The clipboard axis along world axis `axis`.
   constexpr Axis along(Axis axis) const { return axes_of(axes)[static_cast<std::size_t>(axis)]; }
-  constexpr bool flipped(Axis axis) const { return (flips >> static_cast<unsigned>(axis) & 1U) != 0; }
+  constexpr bool flipped(Axis axis) const {
+    return (flips >> static_cast<unsigned>(axis) & 1U) != 0;
+  }
 
   /// Sides in the world of a clipboard with these sides.
   constexpr Extent rotated(Extent clipboard) const {
@@ -54,8 +58,9 @@ inline constexpr int kOrientationCount = kAxisOrderCount * 8;
 
 constexpr Orientation Orientation::rotated_about_y(int quarters) const {
   // x and z swapped, by order number: xyz-zyx, xzy-yzx and yxz-zxy.
-  constexpr std::array<AxisOrder, kAxisOrderCount> kSwapped = {
-      AxisOrder::zyx, AxisOrder::yzx, AxisOrder::zxy, AxisOrder::xzy, AxisOrder::yxz, AxisOrder::xyz};
+  constexpr std::array<AxisOrder, kAxisOrderCount> kSwapped = {AxisOrder::zyx, AxisOrder::yzx,
+                                                               AxisOrder::zxy, AxisOrder::xzy,
+                                                               AxisOrder::yxz, AxisOrder::xyz};
   Orientation out = *this;
   for (int i = (quarters % 4 + 4) % 4; i > 0; --i) {
     // Along x now what was along z; along z what was along x, backwards.

@@ -73,7 +73,8 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   if (e < 0) return {};
   const std::int64_t root = isqrt_wide(length * e);
   CapsuleRow body{detail::ceil_of(df * c - root, across), detail::floor_of(df * c + root, across)};
-  if (body.empty()) return {};  // no voxel within reach of the endless line, and so none of the segment
+  if (body.empty())
+    return {};  // no voxel within reach of the endless line, and so none of the segment
   if (body.first * df + c >= 0 && body.last * df + c <= length) return body;
   if (df == 0) {
     if (c < 0 || c > length) body = {};

@@ -32,7 +32,8 @@ Result<void> validate_shape(const FillBox& shape) {
 }
 
 Result<void> validate_shape(const FillSphere& shape) {
-  if (shape.radius > kEditRadiusMax) return fail(ErrorCode::limit_exceeded, "sphere radius too large");
+  if (shape.radius > kEditRadiusMax)
+    return fail(ErrorCode::limit_exceeded, "sphere radius too large");
   for (const std::int64_t c : {shape.centre.x, shape.centre.y, shape.centre.z}) {
     if (!inside_world(c - shape.radius) || !inside_world(c + shape.radius)) {
       return fail(ErrorCode::bad_value, "sphere reaches outside the world");
@@ -42,12 +43,14 @@ Result<void> validate_shape(const FillSphere& shape) {
 }
 
 Result<void> validate_shape(const FillStroke& shape) {
-  if (shape.points.size() < 2) return fail(ErrorCode::bad_value, "stroke has fewer than two points");
+  if (shape.points.size() < 2)
+    return fail(ErrorCode::bad_value, "stroke has fewer than two points");
   if (shape.points.size() > kStrokePointsMax) {
     return fail(ErrorCode::limit_exceeded, "stroke has too many points");
   }
   if (shape.radius == 0) return fail(ErrorCode::bad_value, "stroke radius is 0");
-  if (shape.radius > kEditRadiusMax) return fail(ErrorCode::limit_exceeded, "stroke radius too large");
+  if (shape.radius > kEditRadiusMax)
+    return fail(ErrorCode::limit_exceeded, "stroke radius too large");
   const VoxelPos* before = nullptr;
   for (const VoxelPos& p : shape.points) {
     for (const std::int64_t c : {p.x, p.y, p.z}) {
@@ -57,8 +60,8 @@ Result<void> validate_shape(const FillStroke& shape) {
     }
     if (before != nullptr) {
       if (p == *before) return fail(ErrorCode::bad_value, "stroke repeats a point");
-      const auto step =
-          std::max({std::abs(p.x - before->x), std::abs(p.y - before->y), std::abs(p.z - before->z)});
+      const auto step = std::max(
+          {std::abs(p.x - before->x), std::abs(p.y - before->y), std::abs(p.z - before->z)});
       if (step > kStrokeStepMax) return fail(ErrorCode::limit_exceeded, "stroke step too long");
     }
     before = &p;
@@ -70,7 +73,8 @@ Result<void> validate_shape(const Paste& shape) {
   if (shape.clipboard == nullptr) return fail(ErrorCode::bad_value, "paste without a clipboard");
   if (!shape.orientation.valid()) return fail(ErrorCode::bad_value, "unknown orientation");
   // First where it lies, so that what reaches from there can be added up.
-  if (!validate_shape(SetVoxel{shape.at})) return fail(ErrorCode::bad_value, "paste lies outside the world");
+  if (!validate_shape(SetVoxel{shape.at}))
+    return fail(ErrorCode::bad_value, "paste lies outside the world");
   const VoxelBox box = box_of(shape);
   const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
   if (!validate_shape(SetVoxel{box.min}) || !validate_shape(SetVoxel{last})) {
@@ -134,12 +138,14 @@ std::int32_t read_side(ByteReader& r) {
 }
 
 std::int32_t read_step(ByteReader& r) {
-  return static_cast<std::int32_t>(r.svarint_in(-kStrokeStepMax, kStrokeStepMax, "stroke step too long"));
+  return static_cast<std::int32_t>(
+      r.svarint_in(-kStrokeStepMax, kStrokeStepMax, "stroke step too long"));
 }
 
 FillStroke read_stroke(ByteReader& r) {
   FillStroke shape;
-  shape.radius = static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "stroke radius too large"));
+  shape.radius =
+      static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "stroke radius too large"));
   const std::uint64_t count = 2 + r.varint_max(kStrokePointsMax - 2, "stroke has too many points");
   VoxelPos at = read_position(r);
   if (!r.ok()) return shape;
@@ -198,7 +204,8 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
     case EditKind::fill_sphere: {
       FillSphere shape;
       shape.centre = read_position(r);
-      shape.radius = static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "sphere radius too large"));
+      shape.radius =
+          static_cast<std::uint16_t>(r.varint_max(kEditRadiusMax, "sphere radius too large"));
       return shape;
     }
     case EditKind::fill_stroke:
@@ -213,12 +220,14 @@ EditShape read_shape(ByteReader& r, std::uint8_t tag) {
 
 EditKind kind_of(const EditDescriptor& edit) {
   constexpr std::array<EditKind, std::variant_size_v<EditShape>> kKinds = {
-      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke, EditKind::paste};
+      EditKind::set_voxel, EditKind::fill_box, EditKind::fill_sphere, EditKind::fill_stroke,
+      EditKind::paste};
   return kKinds[edit.shape.index()];
 }
 
 Result<void> validate(const EditDescriptor& edit) {
-  if (static_cast<std::uint8_t>(edit.mask.kind) > static_cast<std::uint8_t>(MaskKind::only_material)) {
+  if (static_cast<std::uint8_t>(edit.mask.kind) >
+      static_cast<std::uint8_t>(MaskKind::only_material)) {
     return fail(ErrorCode::bad_value, "unknown mask kind");
   }
   if (edit.mask.kind != MaskKind::only_material && edit.mask.material != kEmpty) {

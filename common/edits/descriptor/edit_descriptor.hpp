@@ -27,7 +27,12 @@ enum class EditKind : std::uint8_t {
 };
 
 /// Which voxels of the geometry an edit may write. Stored.
-enum class MaskKind : std::uint8_t { everything = 0, only_empty = 1, only_solid = 2, only_material = 3 };
+enum class MaskKind : std::uint8_t {
+  everything = 0,
+  only_empty = 1,
+  only_solid = 2,
+  only_material = 3
+};
 
 struct Mask {
   MaskKind kind = MaskKind::everything;
@@ -75,17 +80,20 @@ struct FillStroke {
 
 /// The touched cells of a clipboard, each with its own material.
 struct Paste {
-  VoxelPos at;  // smallest corner in the world of the whole clipboard as it is turned, touched there or not
+  VoxelPos
+      at;  // smallest corner in the world of the whole clipboard as it is turned, touched there or not
   std::shared_ptr<const Clipboard> clipboard;
   Orientation orientation;
   friend bool operator==(const Paste& a, const Paste& b) {
-    const bool same = a.clipboard == b.clipboard ||
-                      (a.clipboard != nullptr && b.clipboard != nullptr && *a.clipboard == *b.clipboard);
+    const bool same =
+        a.clipboard == b.clipboard ||
+        (a.clipboard != nullptr && b.clipboard != nullptr && *a.clipboard == *b.clipboard);
     return same && a.at == b.at && a.orientation == b.orientation;
   }
 };
 
-using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;  // order follows EditKind
+using EditShape =
+    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;  // order follows EditKind
 
 struct EditDescriptor {
   EditShape shape;

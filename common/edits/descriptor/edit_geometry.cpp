@@ -33,7 +33,8 @@ VoxelBox box_of_shape(const FillStroke& shape) {
 VoxelBox box_of_shape(const Paste& shape) { return box_of(shape); }
 
 std::uint64_t volume_of(const VoxelBox& b) {
-  return static_cast<std::uint64_t>(b.max.x - b.min.x) * static_cast<std::uint64_t>(b.max.y - b.min.y) *
+  return static_cast<std::uint64_t>(b.max.x - b.min.x) *
+         static_cast<std::uint64_t>(b.max.y - b.min.y) *
          static_cast<std::uint64_t>(b.max.z - b.min.z);
 }
 
@@ -123,7 +124,8 @@ VoxelBox segment_box(const FillStroke& stroke, std::size_t i) {
 }
 
 std::uint64_t counted_voxels(const EditDescriptor& edit) {
-  if (const auto* sphere = std::get_if<FillSphere>(&edit.shape)) return sphere_voxels(sphere->radius);
+  if (const auto* sphere = std::get_if<FillSphere>(&edit.shape))
+    return sphere_voxels(sphere->radius);
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) count += counted_segment(*stroke, i);
@@ -146,9 +148,10 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box) {
   if (sphere == nullptr) return !intersect(bounding_box(edit), box).empty();
   // The voxel of the box nearest to the centre decides: distances are taken between voxel positions.
   const std::int64_t r = sphere->radius;
-  const std::array<std::array<std::int64_t, 3>, 3> axes = {{{sphere->centre.x, box.min.x, box.max.x},
-                                                            {sphere->centre.y, box.min.y, box.max.y},
-                                                            {sphere->centre.z, box.min.z, box.max.z}}};
+  const std::array<std::array<std::int64_t, 3>, 3> axes = {
+      {{sphere->centre.x, box.min.x, box.max.x},
+       {sphere->centre.y, box.min.y, box.max.y},
+       {sphere->centre.z, box.min.z, box.max.z}}};
   std::int64_t squared = 0;
   for (const auto& [centre, min, max] : axes) {
     const std::int64_t d = std::clamp(centre, min, max - 1) - centre;
@@ -194,7 +197,8 @@ std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {
       count += chunks_of(chunk_range(segment_box(*stroke, i), edge));
     }
-    return std::min(count, chunks_of(chunk_range(bounding_box(edit), edge)));  // segments share chunks
+    return std::min(count,
+                    chunks_of(chunk_range(bounding_box(edit), edge)));  // segments share chunks
   }
   return chunks_of(chunk_range(bounding_box(edit), edge));
 }

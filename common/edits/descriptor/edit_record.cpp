@@ -12,7 +12,8 @@ Result<void> validate_numbers(const EditRecord& record) {
   const Sequence seq = record.version.seq;
   if (seq == 0) return fail(ErrorCode::bad_value, "sequence 0 is the base, not an edit");
   if (seq > kSequenceMax) return fail(ErrorCode::bad_value, "sequence exceeds 63 bits");
-  if (record.op.seq > kSequenceMax) return fail(ErrorCode::bad_value, "client sequence exceeds 63 bits");
+  if (record.op.seq > kSequenceMax)
+    return fail(ErrorCode::bad_value, "client sequence exceeds 63 bits");
   if (record.subject >= seq) return fail(ErrorCode::bad_value, "subject is not an earlier edit");
   return {};
 }
@@ -67,7 +68,8 @@ Result<EditRecord> decode_record(ByteView in) {
     }
   }
   const auto coordinate = [&r] {
-    return static_cast<std::int32_t>(r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
+    return static_cast<std::int32_t>(
+        r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
   };
   // How long a side may be belongs to the kind. Below, the box must be the descriptor's.
   const auto side = [&r] {

@@ -9,7 +9,8 @@ using Axes3 = std::array<std::int32_t, 3>;
 
 // Whether some point of the segment may be within r + 1/2 of a voxel of the box low .. high (both included):
 // of the segment, what lies beside the box along its longest axis must lie beside it along the others too.
-bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes3& low, const Axes3& high) {
+bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes3& low,
+              const Axes3& high) {
   std::size_t k = 0;
   for (std::size_t i = 1; i < 3; ++i) {
     if (std::abs(along[i]) > std::abs(along[k])) k = i;
@@ -51,16 +52,20 @@ std::optional<OrderedShape> voxel_of(VoxelPos at, VoxelPos origin, Extent extent
 
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order) {
-  if (const auto* one = std::get_if<SetVoxel>(&edit.shape)) return voxel_of(one->at, origin, extent, order);
+  if (const auto* one = std::get_if<SetVoxel>(&edit.shape))
+    return voxel_of(one->at, origin, extent, order);
   const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
   const VoxelBox box = intersect(bounding_box(edit), chunk);
   if (box.empty()) return std::nullopt;
-  const std::array<std::int32_t, 3> low = {box.min.x - origin.x, box.min.y - origin.y, box.min.z - origin.z};
-  const std::array<std::int32_t, 3> high = {box.max.x - origin.x, box.max.y - origin.y, box.max.z - origin.z};
+  const std::array<std::int32_t, 3> low = {box.min.x - origin.x, box.min.y - origin.y,
+                                           box.min.z - origin.z};
+  const std::array<std::int32_t, 3> high = {box.max.x - origin.x, box.max.y - origin.y,
+                                            box.max.z - origin.z};
   std::array<std::int32_t, 3> centre{};
   OrderedShape out;
   if (const auto* sphere = std::get_if<FillSphere>(&edit.shape)) {
-    centre = {sphere->centre.x - origin.x, sphere->centre.y - origin.y, sphere->centre.z - origin.z};
+    centre = {sphere->centre.x - origin.x, sphere->centre.y - origin.y,
+              sphere->centre.z - origin.z};
     out.form = OrderedShape::Form::sphere;
     out.reach = sphere->radius * (sphere->radius + 1);
   }
@@ -74,13 +79,14 @@ std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Ex
   return out;
 }
 
-std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i, const VoxelBox& box,
-                                         AxisOrder order) {
+std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i,
+                                         const VoxelBox& box, AxisOrder order) {
   const VoxelBox inside = intersect(segment_box(stroke, i), box);
   if (inside.empty()) return std::nullopt;
   const VoxelPos &a = stroke.points[i], &b = stroke.points[i + 1], &origin = box.min;
   const Axes3 low = {inside.min.x - origin.x, inside.min.y - origin.y, inside.min.z - origin.z};
-  const Axes3 high = {inside.max.x - origin.x - 1, inside.max.y - origin.y - 1, inside.max.z - origin.z - 1};
+  const Axes3 high = {inside.max.x - origin.x - 1, inside.max.y - origin.y - 1,
+                      inside.max.z - origin.z - 1};
   const Axes3 start = {a.x - origin.x, a.y - origin.y, a.z - origin.z};
   const Axes3 along = {b.x - a.x, b.y - a.y, b.z - a.z};
   if (!may_meet(start, along, stroke.radius, low, high)) return std::nullopt;
@@ -108,7 +114,8 @@ bool has_voxel(const OrderedShape& capsule) {
 
 void unite_spans(std::vector<IndexSpan>& spans, std::size_t start) {
   const auto begin = spans.begin() + static_cast<std::ptrdiff_t>(start);
-  std::sort(begin, spans.end(), [](const IndexSpan& a, const IndexSpan& b) { return a.first < b.first; });
+  std::sort(begin, spans.end(),
+            [](const IndexSpan& a, const IndexSpan& b) { return a.first < b.first; });
   std::size_t kept = start;
   for (std::size_t i = start; i < spans.size(); ++i) {
     if (kept > start && spans[i].first <= spans[kept - 1].last) {

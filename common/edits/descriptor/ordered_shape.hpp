@@ -33,25 +33,32 @@ constexpr std::uint32_t isqrt(std::uint32_t v) {
 
 struct OrderedShape {
   enum class Form : std::uint8_t { box, sphere, capsule };
-  std::array<std::uint32_t, 3> first{}, last{};  // clipped bounding box along f, m, s; half-open, never empty
-  std::array<std::int32_t, 3> centre{};  // of a sphere, of a capsule's start; relative to the first voxel
-  std::array<std::int32_t, 3> along{};   // from a capsule's start to its end
-  std::int32_t reach = 0;                // r * r + r: the largest squared distance inside
+  std::array<std::uint32_t, 3> first{},
+      last{};  // clipped bounding box along f, m, s; half-open, never empty
+  std::array<std::int32_t, 3>
+      centre{};  // of a sphere, of a capsule's start; relative to the first voxel
+  std::array<std::int32_t, 3> along{};  // from a capsule's start to its end
+  std::int32_t reach = 0;               // r * r + r: the largest squared distance inside
   Form form = Form::box;
 
-  bool covers_layers(OrderedExtent e) const { return covers_lines(e) && first[1] == 0 && last[1] == e.m; }
-  bool covers_lines(OrderedExtent e) const { return form == Form::box && first[0] == 0 && last[0] == e.f; }
+  bool covers_layers(OrderedExtent e) const {
+    return covers_lines(e) && first[1] == 0 && last[1] == e.m;
+  }
+  bool covers_lines(OrderedExtent e) const {
+    return form == Form::box && first[0] == 0 && last[0] == e.f;
+  }
 };
 
 /// Nothing when the bounding box misses the chunk. O(1). A sphere may still have no voxel inside. Not for
 /// strokes and pastes: their parts are clipped one by one.
-std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order);
+std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
+                                 AxisOrder order);
 
 /// The segment from point `i` of the stroke to the next one, clipped to a box of voxels, relative to the
 /// box's first voxel. Nothing when it passes by; a few that pass by closely are told by their rows alone.
 /// O(1).
-std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i, const VoxelBox& box,
-                                         AxisOrder order);
+std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i,
+                                         const VoxelBox& box, AxisOrder order);
 
 /// Whether the capsule has a voxel inside its clipped box. Exact. O(lines it meets until one is found).
 bool has_voxel(const OrderedShape& capsule);
@@ -64,21 +71,24 @@ void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder or
   if (!placed) return;
   const VoxelPos& low = placed->box.min;
   const auto axes = axes_of(order);
-  const std::array<std::int32_t, 3> offset = {low.x - chunk.min.x, low.y - chunk.min.y, low.z - chunk.min.z};
+  const std::array<std::int32_t, 3> offset = {low.x - chunk.min.x, low.y - chunk.min.y,
+                                              low.z - chunk.min.z};
   placed->cells.runs.visit([&](const auto& runs) {
     std::uint32_t begin = 0;
     for (std::size_t i = 0; i < runs.size(); begin = runs.end(i++)) {
       if (runs.material(i) == 0) continue;
       const Material material = paste.clipboard->material(runs.material(i));
-      for_each_box(ordered(placed->cells.extent, order), begin, runs.end(i), [&](const OrderedBox& box) {
-        OrderedShape shape;
-        for (std::size_t rank = 0; rank < 3; ++rank) {
-          const auto by = static_cast<std::uint32_t>(offset[static_cast<std::size_t>(axes[rank])]);
-          shape.first[rank] = box.first[rank] + by;
-          shape.last[rank] = box.last[rank] + by;
-        }
-        part(shape, material);
-      });
+      for_each_box(ordered(placed->cells.extent, order), begin, runs.end(i),
+                   [&](const OrderedBox& box) {
+                     OrderedShape shape;
+                     for (std::size_t rank = 0; rank < 3; ++rank) {
+                       const auto by =
+                           static_cast<std::uint32_t>(offset[static_cast<std::size_t>(axes[rank])]);
+                       shape.first[rank] = box.first[rank] + by;
+                       shape.last[rank] = box.last[rank] + by;
+                     }
+                     part(shape, material);
+                   });
     }
   });
 }
@@ -86,7 +96,8 @@ void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder or
 /// Calls part(shape, material) for each shape of the edit that may have a voxel in the chunk: one, or one per
 /// segment of a stroke or box of a paste.
 template <class F>
-void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order, F&& part) {
+void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order,
+                   F&& part) {
   const VoxelBox chunk = {origin, {origin.x + extent.x, origin.y + extent.y, origin.z + extent.z}};
   if (const auto* stroke = std::get_if<FillStroke>(&edit.shape)) {
     for (std::size_t i = 0; i + 1 < stroke->points.size(); ++i) {
@@ -114,14 +125,18 @@ bool visit_capsule_rows(const OrderedShape& shape, std::uint32_t s, F&& row) {
   const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
   // The lines that the capsule meets at all are the row of its shadow on the plane across them.
   const CapsuleRow lines = capsule_row(dm, ds * ds, qs * ds, qs * qs, shape.reach);
-  const std::int64_t m_first = std::max<std::int64_t>(shape.first[1], lines.first + shape.centre[1]);
-  const std::int64_t m_last = std::min<std::int64_t>(shape.last[1], lines.last + shape.centre[1] + 1);
+  const std::int64_t m_first =
+      std::max<std::int64_t>(shape.first[1], lines.first + shape.centre[1]);
+  const std::int64_t m_last =
+      std::min<std::int64_t>(shape.last[1], lines.last + shape.centre[1] + 1);
   for (std::int64_t m = m_first; m < m_last; ++m) {
     const std::int64_t qm = m - shape.centre[1];
     const CapsuleRow inside =
         capsule_row(df, dm * dm + ds * ds, qm * dm + qs * ds, qm * qm + qs * qs, shape.reach);
-    const std::int64_t f_first = std::max<std::int64_t>(shape.first[0], inside.first + shape.centre[0]);
-    const std::int64_t f_last = std::min<std::int64_t>(shape.last[0], inside.last + shape.centre[0] + 1);
+    const std::int64_t f_first =
+        std::max<std::int64_t>(shape.first[0], inside.first + shape.centre[0]);
+    const std::int64_t f_last =
+        std::min<std::int64_t>(shape.last[0], inside.last + shape.centre[0] + 1);
     if (f_first >= f_last) continue;
     if (!row(static_cast<std::uint32_t>(m), static_cast<std::uint32_t>(f_first),
              static_cast<std::uint32_t>(f_last))) {
@@ -143,15 +158,18 @@ void for_each_row(const OrderedShape& shape, std::uint32_t s, F&& row) {
     return;
   }
   if (shape.form == OrderedShape::Form::box) {
-    for (std::uint32_t m = shape.first[1]; m < shape.last[1]; ++m) row(m, shape.first[0], shape.last[0]);
+    for (std::uint32_t m = shape.first[1]; m < shape.last[1]; ++m)
+      row(m, shape.first[0], shape.last[0]);
     return;
   }
   const std::int32_t ds = static_cast<std::int32_t>(s) - shape.centre[2];
   const std::int32_t in_layer = shape.reach - ds * ds;
   if (in_layer < 0) return;
   const auto m_reach = static_cast<std::int32_t>(isqrt(static_cast<std::uint32_t>(in_layer)));
-  const auto m_first = std::max(static_cast<std::int32_t>(shape.first[1]), shape.centre[1] - m_reach);
-  const auto m_last = std::min(static_cast<std::int32_t>(shape.last[1]), shape.centre[1] + m_reach + 1);
+  const auto m_first =
+      std::max(static_cast<std::int32_t>(shape.first[1]), shape.centre[1] - m_reach);
+  const auto m_last =
+      std::min(static_cast<std::int32_t>(shape.last[1]), shape.centre[1] + m_reach + 1);
   if (m_first >= m_last) return;
   const auto left_over = [&](std::int32_t m) {
     return in_layer - (m - shape.centre[1]) * (m - shape.centre[1]);
@@ -162,8 +180,10 @@ void for_each_row(const OrderedShape& shape, std::uint32_t s, F&& row) {
     const std::int32_t rest = left_over(m);
     while ((half + 1) * (half + 1) <= rest) ++half;
     while (half * half > rest) --half;
-    const auto f_first = std::max(static_cast<std::int32_t>(shape.first[0]), shape.centre[0] - half);
-    const auto f_last = std::min(static_cast<std::int32_t>(shape.last[0]), shape.centre[0] + half + 1);
+    const auto f_first =
+        std::max(static_cast<std::int32_t>(shape.first[0]), shape.centre[0] - half);
+    const auto f_last =
+        std::min(static_cast<std::int32_t>(shape.last[0]), shape.centre[0] + half + 1);
     if (f_first < f_last) {
       row(static_cast<std::uint32_t>(m), static_cast<std::uint32_t>(f_first),
           static_cast<std::uint32_t>(f_last));

@@ -18,7 +18,8 @@ Ints3 of_position(VoxelPos p) { return {p.x, p.y, p.z}; }
 constexpr std::array<Axis, 3> kAxes = {Axis::x, Axis::y, Axis::z};
 
 LocalPos local(const Ints3& c) {
-  return {static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]), static_cast<std::uint8_t>(c[2])};
+  return {static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]),
+          static_cast<std::uint8_t>(c[2])};
 }
 
 /// The cells that lie in a box of the world. Requires a box inside the paste's and not empty.
@@ -120,7 +121,8 @@ std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge) {
   const std::size_t y_side = side(low.y, high.y), z_side = side(low.z, high.z);
   std::vector<bool> marked(side(low.x, high.x) * y_side * z_side, false);
   const auto place = [&](ChunkCoord c) {
-    return (side(low.x, c.x) - 1) * y_side * z_side + (side(low.y, c.y) - 1) * z_side + side(low.z, c.z) - 1;
+    return (side(low.x, c.x) - 1) * y_side * z_side + (side(low.y, c.y) - 1) * z_side +
+           side(low.z, c.z) - 1;
   };
   const auto mark = [&](const VoxelBox& box) {
     const ChunkCoord first = chunk_of(box.min, edge), last = last_chunk(box);
@@ -136,7 +138,8 @@ std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge) {
     std::uint32_t begin = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs.material(i) != 0) {
-        for_each_box(e, begin, runs.end(i), [&](const OrderedBox& box) { mark(in_world(paste, box)); });
+        for_each_box(e, begin, runs.end(i),
+                     [&](const OrderedBox& box) { mark(in_world(paste, box)); });
       }
       begin = runs.end(i);
     }
@@ -156,7 +159,8 @@ std::optional<PlacedCells> placed_cells(const Paste& paste, const VoxelBox& box,
   const VoxelBox inside = intersect(box_of(paste), box);
   if (inside.empty()) return std::nullopt;
   const CellBox part = cells_in(paste, inside);
-  RunChunk cells = cut(paste.clipboard->cells(), part.first, part.extent, backward_axes(paste.orientation));
+  RunChunk cells =
+      cut(paste.clipboard->cells(), part.first, part.extent, backward_axes(paste.orientation));
   cells = reorder(cells, order_in_clipboard(paste.orientation, order));
   // The same runs, under the names that the axes have in the world.
   cells.extent = paste.orientation.rotated(cells.extent);

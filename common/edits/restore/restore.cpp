@@ -5,11 +5,12 @@
 
 #include "common/core/assert.hpp"
 #include "common/edits/apply/edit_changes.hpp"
-#include "common/edits/apply/followed_chunk.hpp"
+#include "common/edits/apply/replayed_chunk.hpp"
 
 namespace runstone {
 
-void append_differences(const RunChunk& now, const RunChunk& restored, std::vector<Difference>& out) {
+void append_differences(const RunChunk& now, const RunChunk& restored,
+                        std::vector<Difference>& out) {
   RUNSTONE_ASSERT(now.extent == restored.extent && now.order == restored.order);
   const std::size_t start = out.size();
   std::size_t i = 0, j = 0;
@@ -18,8 +19,8 @@ void append_differences(const RunChunk& now, const RunChunk& restored, std::vect
     const Run b = restored.runs[j];
     const VoxelIndex end = std::min(a.end, b.end);
     if (a.material != b.material) {
-      const bool joins = out.size() > start && out.back().last == at && out.back().now == a.material &&
-                         out.back().restored == b.material;
+      const bool joins = out.size() > start && out.back().last == at &&
+                         out.back().now == a.material && out.back().restored == b.material;
       if (joins) {
         out.back().last = end;
       } else {
@@ -32,7 +33,8 @@ void append_differences(const RunChunk& now, const RunChunk& restored, std::vect
   }
 }
 
-ChunkRestore::ChunkRestore(RunChunk before, VoxelPos origin) : origin_(origin), now_(std::move(before)) {}
+ChunkRestore::ChunkRestore(RunChunk before, VoxelPos origin)
+    : origin_(origin), now_(std::move(before)) {}
 
 void ChunkRestore::add(const EditDescriptor& edit, bool is_selected, ApplyScratch& scratch) {
   // Once the chunks differ, two edits of others may not be swept together: the second might take back what
@@ -50,7 +52,8 @@ void ChunkRestore::settle(ApplyScratch& scratch) {
   pending_.clear();
 }
 
-void ChunkRestore::apply(std::span<const EditDescriptor> edits, bool is_selected, ApplyScratch& scratch) {
+void ChunkRestore::apply(std::span<const EditDescriptor> edits, bool is_selected,
+                         ApplyScratch& scratch) {
   if (is_selected && !is_split_) restored_ = now_;
   apply_stack(now_, digest_, origin_, edits, scratch, result_);
   if (!result_.changed) return;

@@ -27,7 +27,8 @@ struct Difference {
 
 /// Appends where the two chunks differ: ascending, disjoint, each of one material before and after. Requires
 /// one extent and axis order. O(runs of both).
-void append_differences(const RunChunk& now, const RunChunk& restored, std::vector<Difference>& out);
+void append_differences(const RunChunk& now, const RunChunk& restored,
+                        std::vector<Difference>& out);
 
 /// One chunk on its way through the log. One thread.
 class ChunkRestore {

@@ -164,7 +164,8 @@ struct ColumnOf {
 
 }  // namespace
 
-ScenarioModel::ScenarioModel(const Formula& formula, unsigned edge) : formula_(formula), edge_(edge) {
+ScenarioModel::ScenarioModel(const Formula& formula, unsigned edge)
+    : formula_(formula), edge_(edge) {
   RUNSTONE_ASSERT(scenario_edge_valid(edge));
   if (const auto* strips = std::get_if<Strips>(&formula)) {
     solid_ = {strips_along(strips->x_gaps, edge), strips_along(strips->y_gaps, edge),

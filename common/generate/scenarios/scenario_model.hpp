@@ -50,8 +50,8 @@ struct Random {
 
 class ScenarioModel {
  public:
-  using Formula = std::variant<scenario::Fraction, scenario::Sphere, scenario::Strips, scenario::Waves,
-                               scenario::Chessboard, scenario::Random>;
+  using Formula = std::variant<scenario::Fraction, scenario::Sphere, scenario::Strips,
+                               scenario::Waves, scenario::Chessboard, scenario::Random>;
 
   /// Requires an edge that scenario_edge_valid() allows.
   ScenarioModel(const Formula& formula, unsigned edge);

@@ -21,7 +21,8 @@ unsigned stretch_end(const ColumnBits& bits, unsigned at, unsigned edge) {
 }
 
 /// Appends voxels [from, to) of a column of a model. Requires to <= edge.
-void append(const ColumnBits& bits, unsigned from, unsigned to, Material material, RunBuilder& out) {
+void append(const ColumnBits& bits, unsigned from, unsigned to, Material material,
+            RunBuilder& out) {
   while (from < to) {
     const unsigned end = stretch_end(bits, from, to);
     const bool solid = (bits[from / 64] >> (from % 64) & 1) != 0;
@@ -43,8 +44,8 @@ RunChunk scenario_chunk(const ScenarioModel& model, Material material) {
 
 Result<std::unique_ptr<Generator>> ScenarioWorld::make(const ScenarioParameters& parameters,
                                                        const MaterialTable& materials) {
-  const auto model =
-      scenario_model(static_cast<unsigned>(parameters.number), static_cast<unsigned>(parameters.edge));
+  const auto model = scenario_model(static_cast<unsigned>(parameters.number),
+                                    static_cast<unsigned>(parameters.edge));
   if (!model) return Unexpected<Error>{model.error()};
   const auto material = materials.find(parameters.material);
   if (!material) return fail(ErrorCode::not_found, "the scenario's material is none of the table");
@@ -74,7 +75,8 @@ RunChunk ScenarioWorld::generate(VoxelPos origin, Extent extent) const {
       for (std::int32_t y = solid.min.y; y < solid.max.y;) {  // model upon model
         const std::int32_t foot = floor_div(y, edge()) * edge();
         const std::int32_t end = std::min(foot + edge(), solid.max.y);
-        append(bits, static_cast<unsigned>(y - foot), static_cast<unsigned>(end - foot), material_, out);
+        append(bits, static_cast<unsigned>(y - foot), static_cast<unsigned>(end - foot), material_,
+               out);
         y = end;
       }
       out.append(static_cast<std::uint32_t>(asked.max.y - solid.max.y), kEmpty);

@@ -20,7 +20,8 @@ class ScenarioWorld final : public Generator {
   /// Fails as scenario_model() does, and with not_found if the material is none of the table.
   static Result<std::unique_ptr<Generator>> make(const ScenarioParameters& parameters,
                                                  const MaterialTable& materials);
-  ScenarioWorld(const ScenarioModel& model, Material material) : model_(model), material_(material) {}
+  ScenarioWorld(const ScenarioModel& model, Material material)
+      : model_(model), material_(material) {}
 
   /// Any place and extent, not only whole models. Order yzx.
   RunChunk generate(VoxelPos origin, Extent extent) const override;
@@ -28,7 +29,9 @@ class ScenarioWorld final : public Generator {
   std::int32_t y_max() const override { return 2 * edge(); }
   std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;
 
-  VoxelBox bounds() const { return {{-edge(), -edge(), -edge()}, {2 * edge(), 2 * edge(), 2 * edge()}}; }
+  VoxelBox bounds() const {
+    return {{-edge(), -edge(), -edge()}, {2 * edge(), 2 * edge(), 2 * edge()}};
+  }
 
  private:
   std::int32_t edge() const { return static_cast<std::int32_t>(model_.edge()); }

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-#include "common/runs/bit_row.hpp"
+#include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/divider.hpp"
-#include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
+#include "common/runs/bit_row.hpp"
 #include "common/runs/layer_walk.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "common/runs/run_cursor.hpp"
@@ -32,7 +32,8 @@ class LayerReader {
   using Rows = std::array<Row, kRowBits<Row>>;
 
   /// All planes are replaced. Requires codes below 2^kPlanes and sides up to kRowBits<Row>.
-  LayerReader(const RunChunk& chunk, LayerPlace place, std::array<Rows, kPlanes>& planes, CodeOf code_of)
+  LayerReader(const RunChunk& chunk, LayerPlace place, std::array<Rows, kPlanes>& planes,
+              CodeOf code_of)
       : e_(ordered(chunk.extent, chunk.order)), planes_(planes), code_of_(code_of) {
     for (Rows& rows : planes_) rows.fill(0);
     const int rank = rank_of(place.axis, chunk.order);
@@ -50,7 +51,7 @@ class LayerReader {
   }
 
  private:
-  void mark(std::uint32_t row, unsigned bit, Code change) {
+  void mark(std::uint32_t row, unsigned bit, PaletteIndex change) {
     for (unsigned k = 0; k < kPlanes; ++k) planes_[k][row] ^= Row{change >> k & 1} << bit;
   }
   /// Marks of change become bits: along each row, and on into the next if `carried`.
@@ -72,12 +73,12 @@ class LayerReader {
     const std::uint32_t begin = at * e_.layer();
     RunCursor cursor(runs);
     cursor.seek(begin);
-    Code code = code_of_(cursor.material());
+    PaletteIndex code = code_of_(cursor.material());
     mark(0, 0, code);
     for (; cursor.end() < begin + e_.layer();) {
       const std::uint32_t voxel = cursor.end() - begin;
       cursor.next();
-      const Code next = code_of_(cursor.material());
+      const PaletteIndex next = code_of_(cursor.material());
       const std::uint32_t row = line_of(voxel);
       mark(row, voxel - row * e_.f, code ^ next);
       code = next;
@@ -87,18 +88,19 @@ class LayerReader {
 
   template <class Runs>
   void read_middle(const Runs& runs, std::uint32_t at) {
-    constexpr std::size_t kBlock = 8;  // a layer holds some dozens of runs: too few for a search to pay
+    constexpr std::size_t kBlock =
+        8;  // a layer holds some dozens of runs: too few for a search to pay
     const std::size_t size = runs.size();
     std::size_t i = 0;
-    Code carried = 0;  // of the last voxel of the row before
+    PaletteIndex carried = 0;  // of the last voxel of the row before
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       const std::uint32_t begin = s * e_.layer() + at * e_.f;
       while (i + kBlock < size && runs.end(i + kBlock - 1) <= begin) i += kBlock;
       while (runs.end(i) <= begin) ++i;
-      Code code = code_of_(runs.material(i));
+      PaletteIndex code = code_of_(runs.material(i));
       if (code != carried) mark(s, 0, code ^ carried);
       for (; runs.end(i) < begin + e_.f; ++i) {
-        const Code next = code_of_(runs.material(i + 1));
+        const PaletteIndex next = code_of_(runs.material(i + 1));
         mark(s, runs.end(i) - begin, code ^ next);
         code = next;
       }
@@ -112,20 +114,22 @@ class LayerReader {
     // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
     using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
     std::array<Marks, kPlanes> marks;
-    for (unsigned k = 0; k < kPlanes; ++k) std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
+    for (unsigned k = 0; k < kPlanes; ++k)
+      std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
     const Divider line_of(e_.f);
     const std::uint32_t ahead = e_.f - 1 - at;
     const CodeOf code_of = code_of_;
     const std::size_t last = runs.size() - 1;
-    Code code = code_of(runs.material(0));
+    PaletteIndex code = code_of(runs.material(0));
     for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = code >> k & 1;
     for (std::size_t i = 0; i < last; ++i) {
-      const Code next = code_of(runs.material(i + 1));
+      const PaletteIndex next = code_of(runs.material(i + 1));
       if (next == code) continue;  // most runs of a world lie between two materials that hide alike
       const std::uint32_t line = line_of(runs.end(i) + ahead);
-      const Code change = code ^ next;
+      const PaletteIndex change = code ^ next;
       code = next;
-      for (unsigned k = 0; k < kPlanes; ++k) marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
+      for (unsigned k = 0; k < kPlanes; ++k)
+        marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
     }
     for (unsigned k = 0; k < kPlanes; ++k) cut_rows(marks[k].data(), planes_[k]);
   }
@@ -162,11 +166,12 @@ void read_layer_rows(const RunChunk& chunk, LayerPlace place,
     LayerReader<kPlanes, Row, CodeOf>(chunk, place, planes, code_of);
     return;
   }
-  const Code code = code_of(chunk.runs.material(0));
+  const PaletteIndex code = code_of(chunk.runs.material(0));
   const Row row = bits_below<Row>(side_of(chunk, place.bit_axis));
   for (unsigned k = 0; k < kPlanes; ++k) {
     planes[k].fill(0);
-    std::fill_n(planes[k].begin(), side_of(chunk, place.row_axis()), (code >> k & 1) != 0 ? row : Row{0});
+    std::fill_n(planes[k].begin(), side_of(chunk, place.row_axis()),
+                (code >> k & 1) != 0 ? row : Row{0});
   }
 }
 

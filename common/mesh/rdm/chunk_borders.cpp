@@ -48,10 +48,10 @@ void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visi
       const Direction side = rdm::direction_of(axes.layer, positive);
       const std::uint32_t layer = positive ? rdm::side_of(chunk, axes.layer) - 1 : 0;
       rdm::read_layer_rows(chunk, {axes.layer, axes.bit, layer}, planes,
-                           [of = visibility.data()](Material material) -> rdm::Code {
+                           [of = visibility.data()](Material material) -> rdm::PaletteIndex {
                              static_assert(static_cast<int>(Visibility::opaque) == 1 &&
                                            static_cast<int>(Visibility::transparent) == 2);
-                             return static_cast<rdm::Code>(of[material]);
+                             return static_cast<rdm::PaletteIndex>(of[material]);
                            });
       transparent_[static_cast<std::size_t>(side)] =
           std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });

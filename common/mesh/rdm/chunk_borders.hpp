@@ -32,7 +32,9 @@ class ChunkBorders {
     return !empty() && extent_ == chunk.extent && order_ == chunk.order;
   }
   /// Whether a side has transparent voxels.
-  bool has_transparent(Direction side) const { return transparent_[static_cast<std::size_t>(side)]; }
+  bool has_transparent(Direction side) const {
+    return transparent_[static_cast<std::size_t>(side)];
+  }
   /// The axis along the bits of a side's rows.
   Axis bit_axis(Direction side) const { return bit_axis_[static_cast<std::size_t>(side)]; }
   /// Opaque voxels of a side, in rows of row_words() words, lowest bits first.

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/runs/bit_row.hpp"
-#include "common/mesh/rdm/material_codes.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
@@ -103,7 +103,8 @@ struct VectorCodes {
    public:
     static HWY_INLINE Line at(const C* codes) {
       Line line;
-      for (unsigned i = 0; i < kParts; ++i) line.part_[i] = hn::LoadU(D<C>(), codes + i * kBehind<C>);
+      for (unsigned i = 0; i < kParts; ++i)
+        line.part_[i] = hn::LoadU(D<C>(), codes + i * kBehind<C>);
       return line;
     }
     HWY_INLINE Row solid() const {
@@ -111,8 +112,9 @@ struct VectorCodes {
     }
     HWY_INLINE Row transparent() const {
       const hn::RebindToSigned<D<C>> s;
-      return gather(
-          [&](unsigned i) { return hn::RebindMask(D<C>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s))); });
+      return gather([&](unsigned i) {
+        return hn::RebindMask(D<C>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s)));
+      });
     }
     friend HWY_INLINE Row differing(const Line& a, const Line& b) {
       return gather([&](unsigned i) { return hn::Ne(a.part_[i], b.part_[i]); });

@@ -9,7 +9,8 @@ namespace runstone::rdm {
 class Divider {
  public:
   /// Requires 0 < divisor < 256.
-  explicit constexpr Divider(std::uint32_t divisor) : reciprocal_(((1ULL << 32) + divisor - 1) / divisor) {}
+  explicit constexpr Divider(std::uint32_t divisor)
+      : reciprocal_(((1ULL << 32) + divisor - 1) / divisor) {}
   /// Quotient, rounded down. Requires index < 2^22.
   constexpr std::uint32_t operator()(std::uint32_t index) const {
     return static_cast<std::uint32_t>((index * reciprocal_) >> 32);

@@ -14,16 +14,16 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/runs/bit_row.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/sweep_input.hpp"
 #include "common/mesh/rdm/sweep_state.hpp"
+#include "common/runs/bit_row.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Form: a SweepForm.
+/// Form: a SweepTraits.
 template <class Form>
 class LayerBuilder {
   using Lanes = typename Form::Lanes;
@@ -66,15 +66,15 @@ class LayerBuilder {
   }
 
   /// Makes the codes and the rows of layer s, gone to, from the runs that lie in it.
-  void build(std::uint32_t s, Rings rings) {
-    decode(s, codes_[rings.here].data());
-    const C* line = codes_[rings.here].data();
-    const C* line_there = codes_[rings.there].data();
-    Row* const solid = st_.solid[rings.here].data();
-    Row* const hiding = st_.hiding[rings.here].data();
+  void build(std::uint32_t s, LayerPair layers) {
+    decode(s, codes_[layers.current].data());
+    const C* line = codes_[layers.current].data();
+    const C* line_there = codes_[layers.previous].data();
+    Row* const solid = st_.solid[layers.current].data();
+    Row* const hiding = st_.hiding[layers.current].data();
     Row* const transparent = st_.transparent.data();
-    Row* const fast = st_.cut_fast[rings.here].data();
-    Row* const mid = st_.cut_mid[rings.here].data();
+    Row* const fast = st_.cut_fast[layers.current].data();
+    Row* const mid = st_.cut_mid[layers.current].data();
     Row* const slow = st_.cut_slow.data();
     const std::uint32_t count = e_.m;
     Line above = Line::at(line - e_.f);
@@ -99,8 +99,9 @@ class LayerBuilder {
       mid[0] = mid[count] = ~Row{0};
       if (s == 0) std::fill_n(slow, count, ~Row{0});
     }
-    hiding[-1] = hide_middle(Side::mid_neg, s, codes_[rings.here].data());
-    hiding[count] = hide_middle(Side::mid_pos, s, codes_[rings.here].data() + (count - 1) * e_.f);
+    hiding[-1] = hide_middle(Side::mid_neg, s, codes_[layers.current].data());
+    hiding[count] =
+        hide_middle(Side::mid_pos, s, codes_[layers.current].data() + (count - 1) * e_.f);
   }
 
   /// Puts what lies beyond a slow side into the hiding rows of `ring`, as if it were a layer; `own` is the
@@ -111,7 +112,8 @@ class LayerBuilder {
     if constexpr (kNumbered) {
       if (!borders_.meets[at(side)]) return;
       const C* line = codes_[own].data();
-      for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f) hiding[m] |= same_beyond_line(side, m, line);
+      for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f)
+        hiding[m] |= same_beyond_line(side, m, line);
     }
   }
 
@@ -123,7 +125,8 @@ class LayerBuilder {
         const unsigned bit = side == Side::fast_neg ? 0 : e_.f - 1;
         const Row ours = column_of<Lanes, Row>(st_.transparent.data(), e_.m, Row{1} << bit);
         const C* const column = codes_[own].data() + bit;
-        hide |= same_beyond(side, s, e_.m, ours, [column, f = e_.f](unsigned m) { return column[m * f]; });
+        hide |= same_beyond(side, s, e_.m, ours,
+                            [column, f = e_.f](unsigned m) { return column[m * f]; });
       }
     }
     return hide;
@@ -159,12 +162,14 @@ class LayerBuilder {
   /// Where transparent voxels of ours meet their own kind beyond a border, in its row `row` of `bits` voxels:
   /// `ours` are the transparent ones of our row there, and `code_at(bit)` their codes.
   template <class CodeAt>
-  Row same_beyond(Side side, std::uint32_t row, std::uint32_t bits, Row ours, CodeAt&& code_at) const {
+  Row same_beyond(Side side, std::uint32_t row, std::uint32_t bits, Row ours,
+                  CodeAt&& code_at) const {
     Row same = ours & borders_.transparent[at(side)][row];
     if (const auto& theirs = borders_.codes[at(side)]; !theirs.empty()) {
       for (Row left = same; left != 0; left &= left - 1) {
         const unsigned bit = lowest_bit(left);
-        if (whole_code(code_at(bit)) != theirs[std::size_t{row} * bits + bit]) same ^= Row{1} << bit;
+        if (whole_code(code_at(bit)) != theirs[std::size_t{row} * bits + bit])
+          same ^= Row{1} << bit;
       }
     }
     return same;

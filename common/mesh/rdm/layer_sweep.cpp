@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/core/assert.hpp"
-#include "common/mesh/rdm/sweep_form.hpp"
+#include "common/mesh/rdm/sweep_traits.hpp"
 
 // The rest of this file is compiled once per instruction set; Highway picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -14,9 +14,9 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
+#include "common/mesh/rdm/chunk_sides-inl.hpp"
 #include "common/mesh/rdm/code_lanes-inl.hpp"
 #include "common/mesh/rdm/layer_builder-inl.hpp"
-#include "common/mesh/rdm/own_sides-inl.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/strip_tracer-inl.hpp"
 
@@ -24,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// One call of sweep_layers(). Form: a SweepForm.
+/// One call of sweep_layers(). Form: a SweepTraits.
 template <class Form>
 class Sweep {
   using Lanes = typename Form::Lanes;
@@ -39,9 +39,9 @@ class Sweep {
   Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
       : st_(state),
         e_(input.extent),
-        wants_own_sides_(input.own_sides),
+        wants_chunk_sides_(input.chunk_sides),
         builder_(input, borders, state),
-        own_sides_(input, state),
+        chunk_sides_(input, state),
         tracer_(input, state) {}
 
   void run() {
@@ -49,14 +49,14 @@ class Sweep {
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       builder_.go_to(s);
       if (s != 0 && builder_.repeats(s)) {
-        if (wants_own_sides_) own_sides_.repeat(s, rings_.there);
+        if (wants_chunk_sides_) chunk_sides_.repeat(s, layers_.previous);
         continue;
       }
-      builder_.build(s, rings_);
-      if (wants_own_sides_) own_sides_.find(s, rings_.here);
-      if (s == 0) builder_.hide_slow(Side::slow_neg, rings_.there, rings_.here);
+      builder_.build(s, layers_);
+      if (wants_chunk_sides_) chunk_sides_.find(s, layers_.current);
+      if (s == 0) builder_.hide_slow(Side::slow_neg, layers_.previous, layers_.current);
       trace(find_faces(s), s);
-      std::swap(rings_.here, rings_.there);
+      std::swap(layers_.current, layers_.previous);
     }
     trace(end_faces(), e_.s);
   }
@@ -67,15 +67,17 @@ class Sweep {
 
   /// As if a layer without faces lay before the first.
   void start() {
-    const auto clear = [this](Rows& rows) { std::fill_n(rows.data(), e_.m + Rows::kBehind, Row{0}); };
-    clear(st_.solid[rings_.there]);
+    const auto clear = [this](Rows& rows) {
+      std::fill_n(rows.data(), e_.m + Rows::kBehind, Row{0});
+    };
+    clear(st_.solid[layers_.previous]);
     for (const Side side : kLayerSides) {
-      clear(st_.face[at(side)][rings_.there]);
-      clear(st_.face[at(side)][rings_.here]);
+      clear(st_.face[at(side)][layers_.previous]);
+      clear(st_.face[at(side)][layers_.current]);
     }
     if constexpr (kNumbered) {
-      clear(st_.cut_fast[rings_.there]);
-      clear(st_.cut_mid[rings_.there]);
+      clear(st_.cut_fast[layers_.previous]);
+      clear(st_.cut_mid[layers_.previous]);
     }
   }
 
@@ -83,28 +85,28 @@ class Sweep {
   /// before it. Returns the rows that differ from the row before.
   SideRows find_faces(std::uint32_t s) {
     const std::uint32_t count = e_.m;
-    const Row* const solid = st_.solid[rings_.here].data();
-    const Row* const hiding = st_.hiding[rings_.here].data();
-    const Row* const solid_there = st_.solid[rings_.there].data();
-    const Row* const hiding_there = st_.hiding[rings_.there].data();
-    const Row* const cut_fast = st_.cut_fast[rings_.here].data();
-    const Row* const cut_fast_there = st_.cut_fast[rings_.there].data();
-    const Row* const cut_mid = st_.cut_mid[rings_.here].data();
-    const Row* const cut_mid_there = st_.cut_mid[rings_.there].data();
+    const Row* const solid = st_.solid[layers_.current].data();
+    const Row* const hiding = st_.hiding[layers_.current].data();
+    const Row* const solid_there = st_.solid[layers_.previous].data();
+    const Row* const hiding_there = st_.hiding[layers_.previous].data();
+    const Row* const cut_fast = st_.cut_fast[layers_.current].data();
+    const Row* const cut_fast_there = st_.cut_fast[layers_.previous].data();
+    const Row* const cut_mid = st_.cut_mid[layers_.current].data();
+    const Row* const cut_mid_there = st_.cut_mid[layers_.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
     const auto face = [this](Side side, unsigned ring) { return st_.face[at(side)][ring].data(); };
     Row* const slow_neg = face(Side::slow_neg, 0);
     Row* const slow_pos = face(Side::slow_pos, 0);
-    Row* const mid_neg = face(Side::mid_neg, rings_.here);
-    Row* const mid_pos = face(Side::mid_pos, rings_.here);
-    Row* const fast_neg = face(Side::fast_neg, rings_.here);
-    Row* const fast_pos = face(Side::fast_pos, rings_.here);
-    const Row* const mid_neg_there = face(Side::mid_neg, rings_.there);
-    const Row* const mid_pos_there = face(Side::mid_pos, rings_.there);
-    const Row* const fast_neg_there = face(Side::fast_neg, rings_.there);
-    const Row* const fast_pos_there = face(Side::fast_pos, rings_.there);
-    const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, rings_.here);
-    const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, rings_.here);
+    Row* const mid_neg = face(Side::mid_neg, layers_.current);
+    Row* const mid_pos = face(Side::mid_pos, layers_.current);
+    Row* const fast_neg = face(Side::fast_neg, layers_.current);
+    Row* const fast_pos = face(Side::fast_pos, layers_.current);
+    const Row* const mid_neg_there = face(Side::mid_neg, layers_.previous);
+    const Row* const mid_pos_there = face(Side::mid_pos, layers_.previous);
+    const Row* const fast_neg_there = face(Side::fast_neg, layers_.previous);
+    const Row* const fast_pos_there = face(Side::fast_pos, layers_.previous);
+    const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, layers_.current);
+    const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, layers_.current);
     const Row last = Row{1} << (e_.f - 1);
     SideRows rows{};
     for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) {
@@ -112,10 +114,10 @@ class Sweep {
       const V hide = Lanes::load(hiding + m);
       V f_mid_neg = Lanes::without(own, Lanes::load(hiding + m - 1));
       V f_mid_pos = Lanes::without(own, Lanes::load(hiding + m + 1));
-      V f_fast_neg =
-          Lanes::without(own, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
-      V f_fast_pos =
-          Lanes::without(own, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
+      V f_fast_neg = Lanes::without(
+          own, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
+      V f_fast_pos = Lanes::without(
+          own, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
       V f_slow_neg = Lanes::without(own, Lanes::load(hiding_there + m));
       V f_slow_pos = Lanes::without(Lanes::load(solid_there + m), hide);
       // The same faces a row before, for the slow sides.
@@ -141,8 +143,8 @@ class Sweep {
         g_slow_pos = Lanes::both(g_slow_pos, slow_before);
         along = Lanes::either(between, Lanes::differing(fast, fast_there));
         along_neg = Lanes::either(mid, Lanes::differing(fast, Lanes::load(cut_fast + m - 1)));
-        along_pos =
-            Lanes::either(mid_there, Lanes::differing(fast_there, Lanes::load(cut_fast_there + m - 1)));
+        along_pos = Lanes::either(
+            mid_there, Lanes::differing(fast_there, Lanes::load(cut_fast_there + m - 1)));
       }
       Lanes::store(f_slow_neg, slow_neg + m);
       Lanes::store(f_slow_pos, slow_pos + m);
@@ -152,10 +154,14 @@ class Sweep {
       Lanes::store(f_fast_pos, fast_pos + m);
       add_rows(rows[at(Side::slow_neg)], differ(f_slow_neg, g_slow_neg, along_neg), m);
       add_rows(rows[at(Side::slow_pos)], differ(f_slow_pos, g_slow_pos, along_pos), m);
-      add_rows(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_there + m), along), m);
-      add_rows(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_there + m), along), m);
-      add_rows(rows[at(Side::fast_neg)], differ(f_fast_neg, Lanes::load(fast_neg_there + m), between), m);
-      add_rows(rows[at(Side::fast_pos)], differ(f_fast_pos, Lanes::load(fast_pos_there + m), between), m);
+      add_rows(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_there + m), along),
+               m);
+      add_rows(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_there + m), along),
+               m);
+      add_rows(rows[at(Side::fast_neg)],
+               differ(f_fast_neg, Lanes::load(fast_neg_there + m), between), m);
+      add_rows(rows[at(Side::fast_pos)],
+               differ(f_fast_pos, Lanes::load(fast_pos_there + m), between), m);
     }
     // Rows behind the last one have no faces, so the first of them closes what is open, if it was met.
     const Row valid = bits_below<Row>(count);
@@ -177,18 +183,18 @@ class Sweep {
 
   /// Behind the last layer: as if one without faces followed it. The last one is in ring `there`.
   SideRows end_faces() {
-    builder_.hide_slow(Side::slow_pos, rings_.here, rings_.there);
+    builder_.hide_slow(Side::slow_pos, layers_.current, layers_.previous);
     Row* const slow_pos = st_.face[at(Side::slow_pos)][0].data();
-    const Row* const solid = st_.solid[rings_.there].data();
-    const Row* const hiding = st_.hiding[rings_.here].data();
+    const Row* const solid = st_.solid[layers_.previous].data();
+    const Row* const hiding = st_.hiding[layers_.current].data();
     for (std::uint32_t m = 0; m < e_.m; ++m) slow_pos[m] = solid[m] & ~hiding[m];
     SideRows rows{};
     for (std::uint32_t m = 0; m < e_.m; ++m) {
       rows[at(Side::slow_pos)] |= Row{slow_pos[m] != 0 || (m != 0 && slow_pos[m - 1] != 0)} << m;
     }
     for (const Side side : kLayerSides) {
-      const Row* const before = st_.face[at(side)][rings_.there].data();
-      Row* const none = st_.face[at(side)][rings_.here].data();
+      const Row* const before = st_.face[at(side)][layers_.previous].data();
+      Row* const none = st_.face[at(side)][layers_.current].data();
       for (std::uint32_t m = 0; m < e_.m; ++m) {
         rows[at(side)] |= Row{before[m] != 0} << m;
         none[m] = 0;
@@ -199,20 +205,23 @@ class Sweep {
 
   /// Follows the strips of layer s, or those that end behind the last one, in the rows given.
   void trace(const SideRows& rows, std::uint32_t s) {
-    if (s != e_.s) tracer_.template trace_slow<Side::slow_neg>(rows[at(Side::slow_neg)], s, rings_.here);
-    if (s != 0) tracer_.template trace_slow<Side::slow_pos>(rows[at(Side::slow_pos)], s - 1, rings_.there);
-    tracer_.template trace_middle<Side::mid_neg>(rows[at(Side::mid_neg)], s, rings_);
-    tracer_.template trace_middle<Side::mid_pos>(rows[at(Side::mid_pos)], s, rings_);
-    tracer_.template trace_fast<Side::fast_neg>(rows[at(Side::fast_neg)], s, rings_);
-    tracer_.template trace_fast<Side::fast_pos>(rows[at(Side::fast_pos)], s, rings_);
+    if (s != e_.s)
+      tracer_.template trace_slow<Side::slow_neg>(rows[at(Side::slow_neg)], s, layers_.current);
+    if (s != 0)
+      tracer_.template trace_slow<Side::slow_pos>(rows[at(Side::slow_pos)], s - 1,
+                                                  layers_.previous);
+    tracer_.template trace_middle<Side::mid_neg>(rows[at(Side::mid_neg)], s, layers_);
+    tracer_.template trace_middle<Side::mid_pos>(rows[at(Side::mid_pos)], s, layers_);
+    tracer_.template trace_fast<Side::fast_neg>(rows[at(Side::fast_neg)], s, layers_);
+    tracer_.template trace_fast<Side::fast_pos>(rows[at(Side::fast_pos)], s, layers_);
   }
 
   SweepState<Row>& st_;
   const OrderedExtent e_;
-  const bool wants_own_sides_;
-  Rings rings_;
+  const bool wants_chunk_sides_;
+  LayerPair layers_;
   LayerBuilder<Form> builder_;
-  OwnSides<Form> own_sides_;
+  ChunkSides<Form> chunk_sides_;
   Tracer tracer_;
 };
 
@@ -220,11 +229,11 @@ template <class Lanes, class CodeLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
            SweepState<typename Lanes::Row>& state) {
   if (input.codes->solid_count() == 1) {
-    Sweep<SweepForm<Lanes, CodeLanes, ByteCode, false>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, CodeLanes, BytePaletteIndex, false>>(input, borders, state).run();
   } else if (input.codes->fit_bytes()) {
-    Sweep<SweepForm<Lanes, CodeLanes, ByteCode, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, CodeLanes, BytePaletteIndex, true>>(input, borders, state).run();
   } else {
-    Sweep<SweepForm<Lanes, CodeLanes, Code, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, CodeLanes, PaletteIndex, true>>(input, borders, state).run();
   }
 }
 
@@ -234,10 +243,12 @@ void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState
 void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
   sweep<OneRow<Row128>, VectorCodes>(input, borders, state);
 }
-void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
+void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders,
+                    SweepState<Row64>& state) {
   sweep<OneRow<Row64>, PlainCodes>(input, borders, state);
 }
-void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders,
+                     SweepState<Row128>& state) {
   sweep<OneRow<Row128>, PlainCodes>(input, borders, state);
 }
 
@@ -265,19 +276,23 @@ void check(const SweepInput& input) {
 
 }  // namespace
 
-void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
+void sweep_layers(const SweepInput& input, const Borders<Row64>& borders,
+                  SweepState<Row64>& state) {
   check<Row64>(input);
   HWY_DYNAMIC_DISPATCH(sweep_64)(input, borders, state);
 }
-void sweep_layers(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
+                  SweepState<Row128>& state) {
   check<Row128>(input);
   HWY_DYNAMIC_DISPATCH(sweep_128)(input, borders, state);
 }
-void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
+void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
+                        SweepState<Row64>& state) {
   check<Row64>(input);
   HWY_DYNAMIC_DISPATCH(sweep_plain_64)(input, borders, state);
 }
-void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
+void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,
+                        SweepState<Row128>& state) {
   check<Row128>(input);
   HWY_DYNAMIC_DISPATCH(sweep_plain_128)(input, borders, state);
 }

@@ -3,7 +3,7 @@
 // voxel). Internal to rdm; docs/meshing.md draws it. The rooms of the sweep, in the order in which a layer
 // goes through them:
 //   layer_builder-inl.hpp   codes and rows of a layer, from the runs and the borders
-//   own_sides-inl.hpp       the chunk's own six sides, for the meshes around it
+//   chunk_sides-inl.hpp       the chunk's own six sides, for the meshes around it
 //   layer_sweep.cpp         the loop over the layers, faces of six sides, and which rows of them differ
 //   strip_tracer-inl.hpp    strips that end and begin in those rows (strip_lanes-inl.hpp, row_strips.hpp)
 //   quad_outlet-inl.hpp     strips as quads, in the bucket of their layer
@@ -16,10 +16,13 @@ namespace runstone::rdm {
 /// Puts the quads of the chunk into the buckets. Requires sides up to kRowBits<Row>, runs that tile the
 /// extent and at least one material that is not empty. By the best instructions the machine has.
 void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
-void sweep_layers(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state);
+void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
+                  SweepState<Row128>& state);
 
 /// The same, a row and a code at a time: the plain path that the others must agree with.
-void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state);
-void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state);
+void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
+                        SweepState<Row64>& state);
+void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,
+                        SweepState<Row128>& state);
 
 }  // namespace runstone::rdm

@@ -25,7 +25,9 @@ class QuadBuckets {
   };
 
   /// The buckets of one direction, by layer.
-  Bucket* of(Direction direction) { return buckets_.data() + static_cast<std::size_t>(direction) * kSideMax; }
+  Bucket* of(Direction direction) {
+    return buckets_.data() + static_cast<std::size_t>(direction) * kSideMax;
+  }
   static void put(Bucket& bucket, Quad quad) {
     if (bucket.count == bucket.room) grow(bucket);
     bucket.quads[bucket.count++] = quad;
@@ -41,7 +43,8 @@ class QuadBuckets {
   void finish(const std::array<std::uint8_t, 3>& sides, QuadLayers& out) {
     std::size_t total = 0;
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
-      for (std::size_t i = d * kSideMax; i < d * kSideMax + sides[d / 2]; ++i) total += buckets_[i].count;
+      for (std::size_t i = d * kSideMax; i < d * kSideMax + sides[d / 2]; ++i)
+        total += buckets_[i].count;
     }
     out.quads.resize(total + kStep);  // room for whole steps; the vector keeps it
     Quad* to = out.quads.data();

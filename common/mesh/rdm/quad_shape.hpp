@@ -29,9 +29,9 @@ class QuadShape {
 
   /// The quad of a strip whose last row is not known yet; close() adds it.
   constexpr Quad open(const Strip& s, Material material) const {
-    return {(base_ | std::uint64_t{s.layer} << layer_shift_ | std::uint64_t{s.begin} << strip_shift_ |
-             std::uint64_t{s.row} << row_shift_ | std::uint64_t{s.length - 1} << length_shift_ |
-             std::uint64_t{material} << 38) -
+    return {(base_ | std::uint64_t{s.layer} << layer_shift_ |
+             std::uint64_t{s.begin} << strip_shift_ | std::uint64_t{s.row} << row_shift_ |
+             std::uint64_t{s.length - 1} << length_shift_ | std::uint64_t{material} << 38) -
             (std::uint64_t{s.row + 1} << rows_shift_)};
   }
   /// The same strip in all rows before `row_end`.
@@ -40,10 +40,14 @@ class QuadShape {
   }
 
   /// A closed quad with one row more.
-  constexpr Quad with_row_more(Quad q) const { return {q.bits + (std::uint64_t{1} << rows_shift_)}; }
+  constexpr Quad with_row_more(Quad q) const {
+    return {q.bits + (std::uint64_t{1} << rows_shift_)};
+  }
 
   /// First row and number of rows of a closed quad.
-  constexpr std::uint32_t row(Quad q) const { return static_cast<std::uint32_t>(q.bits >> row_shift_ & 127); }
+  constexpr std::uint32_t row(Quad q) const {
+    return static_cast<std::uint32_t>(q.bits >> row_shift_ & 127);
+  }
   constexpr std::uint32_t rows(Quad q) const {
     return static_cast<std::uint32_t>(q.bits >> rows_shift_ & 127) + 1;
   }
@@ -56,7 +60,8 @@ class QuadShape {
   constexpr std::uint64_t strip(Quad q) const { return q.bits & strip_bits_; }
   /// Last face along the strip.
   constexpr std::uint32_t last(Quad q) const {
-    return static_cast<std::uint32_t>((q.bits >> strip_shift_ & 127) + (q.bits >> length_shift_ & 127));
+    return static_cast<std::uint32_t>((q.bits >> strip_shift_ & 127) +
+                                      (q.bits >> length_shift_ & 127));
   }
 
  private:

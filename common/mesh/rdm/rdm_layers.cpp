@@ -26,7 +26,8 @@ void for_each(const LayerSet& set, F&& visit) {
   static_assert(kSideMax == 128);
   for (const unsigned first : {0u, 64u}) {
     std::uint64_t bits = ((set >> first) & kLow).to_ullong();
-    for (; bits != 0; bits &= bits - 1) visit(first + static_cast<unsigned>(std::countr_zero(bits)));
+    for (; bits != 0; bits &= bits - 1)
+      visit(first + static_cast<unsigned>(std::countr_zero(bits)));
   }
 }
 
@@ -107,9 +108,10 @@ struct LayerQuads {
 
 class Remesher {
  public:
-  Remesher(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-           const DirtyLayers& dirty, const std::array<DirtyLayers, kDirectionCount>& beyond,
-           RdmScratch::State& scratch, ChunkMesh& mesh)
+  Remesher(const RunChunk& chunk, const MeshNeighbours& neighbours,
+           const VisibilityTable& visibility, const DirtyLayers& dirty,
+           const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch::State& scratch,
+           ChunkMesh& mesh)
       : chunk_(chunk),
         neighbours_(neighbours),
         visibility_(visibility),
@@ -126,7 +128,8 @@ class Remesher {
       }
       const bool border =
           neighbour != nullptr &&
-          beyond[d].layer[axis][is_positive(direction) ? 0 : side_of(*neighbour, axis_of(direction)) - 1];
+          beyond[d].layer[axis]
+                         [is_positive(direction) ? 0 : side_of(*neighbour, axis_of(direction)) - 1];
       touched_[d] = faces_touched(dirty.layer[axis], is_positive(direction), border, side);
       rows_[d] = dirty;
       if (border) rows_[d] |= beyond[d];
@@ -150,9 +153,11 @@ class Remesher {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       if (d % 2 == 0) scratch_.row_known.reset();  // another axis
       const rdm::StripAxes a = axes(d);
-      for_each(touched_[d], [&](unsigned layer) { mesh_layer(static_cast<Direction>(d), layer, a); });
+      for_each(touched_[d],
+               [&](unsigned layer) { mesh_layer(static_cast<Direction>(d), layer, a); });
     }
-    for (std::size_t pass = 0; pass < passes_.size(); ++pass) splice(scratch_.patch[pass], *passes_[pass]);
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass)
+      splice(scratch_.patch[pass], *passes_[pass]);
   }
 
  private:
@@ -169,7 +174,8 @@ class Remesher {
       scratch_.layer[pass].assign(quads.begin(), quads.end());
       in_order[pass] = quads.size();
     }
-    std::array<LayerQuads, 2> quads = {{{scratch_.layer[0], in_order[0]}, {scratch_.layer[1], in_order[1]}}};
+    std::array<LayerQuads, 2> quads = {
+        {{scratch_.layer[0], in_order[0]}, {scratch_.layer[1], in_order[1]}}};
     const LayerSet& rows = rows_[d].layer[static_cast<std::size_t>(a.row)];
     for_each(rows, [&](unsigned row) { mesh_row(direction, layer, row, a, shape, quads); });
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
@@ -185,12 +191,13 @@ class Remesher {
       if (std::equal(now.begin(), now.end(), before.begin(), before.end())) continue;
       LayerPatch& patch = scratch_.patch[pass];
       patch.quads.insert(patch.quads.end(), now.begin(), now.end());
-      patch.layers.push_back({d * kSideMax + layer, static_cast<std::uint32_t>(patch.quads.size())});
+      patch.layers.push_back(
+          {d * kSideMax + layer, static_cast<std::uint32_t>(patch.quads.size())});
     }
   }
 
-  void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a,
-                const QuadShape& shape, std::array<LayerQuads, 2>& quads) {
+  void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row,
+                const rdm::StripAxes& a, const QuadShape& shape, std::array<LayerQuads, 2>& quads) {
     const RowRuns& own = own_row(layer, row, a);
     const RowRuns* beyond = &scratch_.row_beyond;
     if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
@@ -228,7 +235,8 @@ class Remesher {
     }
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       if (count[pass] == 0 && scratch_.layer[pass].empty()) continue;
-      quads[pass].replace_row(shape, row, std::span(strips[pass]).first(count[pass]), scratch_.beside);
+      quads[pass].replace_row(shape, row, std::span(strips[pass]).first(count[pass]),
+                              scratch_.beside);
     }
   }
 
@@ -264,7 +272,8 @@ class Remesher {
     std::vector<Quad>& merged = patch.merged;
     merged.resize(out.quads.size() + patch.quads.size());
     Quad* to = merged.data();
-    const auto append = [&to](const std::vector<Quad>& from, std::uint32_t begin, std::uint32_t end) {
+    const auto append = [&to](const std::vector<Quad>& from, std::uint32_t begin,
+                              std::uint32_t end) {
       to = std::copy(from.data() + begin, from.data() + end, to);
     };
     std::uint32_t kept = 0;   // old quads before this are in `merged`, or replaced

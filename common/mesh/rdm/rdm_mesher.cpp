@@ -8,8 +8,8 @@
 
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/border_rows.hpp"
+#include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/layer_sweep.hpp"
-#include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/mesh/rdm/scratch_state.hpp"
 #include "common/mesh/rdm/side_axes.hpp"
@@ -25,8 +25,8 @@ void RdmScratch::use_plain_path(bool plain) { state_->plain = plain; }
 
 namespace {
 
-using rdm::Code;
 using rdm::direction_of;
+using rdm::PaletteIndex;
 using rdm::RowScratch;
 using rdm::Side;
 using rdm::side_axes;
@@ -39,9 +39,10 @@ void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch
   scratch.codes.clear();
   scratch.runs.resize(chunk.runs.size());
   chunk.runs.visit([&, out = scratch.runs.data()](const auto& runs) {
-    rdm::MaterialCodes& codes = scratch.codes;
+    rdm::ChunkPalette& codes = scratch.codes;
     const std::size_t size = runs.size();
-    for (std::size_t i = 0; i < size; ++i) out[i] = {runs.end(i), codes.number(runs.material(i), visibility)};
+    for (std::size_t i = 0; i < size; ++i)
+      out[i] = {runs.end(i), codes.number(runs.material(i), visibility)};
   });
   // A single transparent material is meshed as a single opaque one would be.
   if (scratch.codes.solid_count() == 1 && scratch.codes.has_transparent()) {
@@ -51,7 +52,8 @@ void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch
 
 /// Rows of bits from those that a neighbour's holder keeps, in the chunk's own orientation.
 template <class Rows>
-void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis, Rows& out) {
+void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis,
+                 Rows& out) {
   using Row = typename Rows::value_type;
   RUNSTONE_ASSERT(borders.fits(of));
   const std::uint32_t* from = borders.rows(side);
@@ -79,9 +81,11 @@ template <class Row>
 void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
                        const VisibilityTable& visibility, Scratch& scratch, std::size_t at,
                        rdm::Borders<Row>& borders) {
-  const rdm::MaterialCodes& codes = scratch.codes;
-  const auto class_of = [&codes, &visibility](Material material) -> Code {
-    return codes.transparent_code(material) != 0 ? 2 : visibility[material] == Visibility::opaque ? 1 : 0;
+  const rdm::ChunkPalette& codes = scratch.codes;
+  const auto class_of = [&codes, &visibility](Material material) -> PaletteIndex {
+    return codes.transparent_code(material) != 0        ? 2
+           : visibility[material] == Visibility::opaque ? 1
+                                                        : 0;
   };
   const std::uint32_t rows = side_of(neighbour, place.row_axis());
   const std::uint32_t bits = side_of(neighbour, place.bit_axis);
@@ -99,7 +103,7 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
     for (auto& plane : planes) plane.fill(0);
     for (std::uint32_t r = 0; r < rows; ++r) {
       for (std::uint32_t bit = 0; bit < bits; ++bit, ++voxel) {
-        const Code of = class_of(*voxel);
+        const PaletteIndex of = class_of(*voxel);
         planes[0][r] |= Row{of & 1} << bit;
         planes[1][r] |= Row{of >> 1} << bit;
       }
@@ -109,7 +113,8 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
   }
   borders.hiding[at] = planes[0];
   borders.transparent[at] = planes[1];
-  borders.meets[at] = std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
+  borders.meets[at] =
+      std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
   if (!borders.meets[at] || codes.transparent_count() == 1) return;
   if (!dense) read_voxels();
   std::transform(voxels.begin(), voxels.end(), std::back_inserter(borders.codes[at]),
@@ -121,7 +126,7 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
                  const ChunkBorders* kept, const SideAxes& axes, const VisibilityTable& visibility,
                  Scratch& scratch, Side side, rdm::Borders<Row>& borders) {
   const std::size_t at = rdm::at(side);
-  const rdm::MaterialCodes& codes = scratch.codes;
+  const rdm::ChunkPalette& codes = scratch.codes;
   auto& hiding = borders.hiding[at];
   borders.meets[at] = false;
   borders.codes[at].clear();
@@ -138,17 +143,19 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   const bool told = kept != nullptr && !neighbour->is_uniform();
   if (!codes.has_transparent() || (told && !kept->has_transparent(touching))) {
     if (told) return copy_border(*kept, *neighbour, touching, axes.bit, hiding);
-    rdm::read_layer_rows(*neighbour, place, plane, [table = visibility.data()](Material material) -> Code {
-      return table[material] == Visibility::opaque ? 1 : 0;
-    });
+    rdm::read_layer_rows(*neighbour, place, plane,
+                         [table = visibility.data()](Material material) -> PaletteIndex {
+                           return table[material] == Visibility::opaque ? 1 : 0;
+                         });
     hiding = plane[0];
     return;
   }
   if (codes.solid_count() == 1) {
-    rdm::read_layer_rows(*neighbour, place, plane,
-                         [table = visibility.data(), own = codes.single()](Material material) -> Code {
-                           return table[material] == Visibility::opaque || material == own ? 1 : 0;
-                         });
+    rdm::read_layer_rows(
+        *neighbour, place, plane,
+        [table = visibility.data(), own = codes.single()](Material material) -> PaletteIndex {
+          return table[material] == Visibility::opaque || material == own ? 1 : 0;
+        });
     hiding = plane[0];
     return;
   }
@@ -168,28 +175,28 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   input.codes = &scratch.codes;
   input.opaque = &scratch.opaque;
   input.transparent = &scratch.transparent;
-  input.own_sides = own != nullptr;
+  input.chunk_sides = own != nullptr;
   for (std::size_t side = 0; side < kDirectionCount; ++side) {
     const SideAxes& a = axes[side / 2];
     const Direction direction = direction_of(a.layer, side % 2 != 0);
     input.direction[side] = direction;
     input.shape[side] = rdm::QuadShape(direction, strips[side / 2].strip, strips[side / 2].row);
     const auto d = static_cast<std::size_t>(direction);
-    read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch, static_cast<Side>(side),
-                rows->borders);
+    read_border(chunk, direction, neighbours[d], borders[d], a, visibility, scratch,
+                static_cast<Side>(side), rows->borders);
   }
   if (scratch.plain) {
     rdm::sweep_layers_plain(input, rows->borders, rows->sweep);
   } else {
     rdm::sweep_layers(input, rows->borders, rows->sweep);
   }
-  if (own != nullptr) own->keep(chunk, rows->sweep.own_sides, rows->sweep.own_transparent);
+  if (own != nullptr) own->keep(chunk, rows->sweep.chunk_sides, rows->sweep.own_transparent);
 }
 
 /// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
 /// nothing. Returns false, with nothing done, if a neighbour is of several.
-bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-                  ChunkMesh& out) {
+bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours,
+                  const VisibilityTable& visibility, ChunkMesh& out) {
   if (!std::all_of(neighbours.begin(), neighbours.end(),
                    [](const RunChunk* n) { return n == nullptr || n->is_uniform(); })) {
     return false;
@@ -206,21 +213,22 @@ bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours, const
     const rdm::QuadShape shape(direction, a.strip, a.row);
     const Quad strip = shape.open({layer, 0, side_of(chunk, a.strip), 0}, material);
     pass.quads.push_back(shape.close(strip, side_of(chunk, a.row)));
-    std::fill(pass.first.begin() + static_cast<std::ptrdiff_t>(d * kSideMax + layer + 1), pass.first.end(),
-              static_cast<std::uint32_t>(pass.quads.size()));
+    std::fill(pass.first.begin() + static_cast<std::ptrdiff_t>(d * kSideMax + layer + 1),
+              pass.first.end(), static_cast<std::uint32_t>(pass.quads.size()));
   }
   return true;
 }
 
 }  // namespace
 
-void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-              RdmScratch& scratch, ChunkMesh& out) {
+void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out) {
   mesh_rdm(chunk, neighbours, MeshBorders{}, visibility, scratch, out);
 }
 
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
-              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out, ChunkBorders* own) {
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
+              ChunkBorders* own) {
   Scratch& state = scratch.state();
   if (chunk.is_uniform()) {
     if (own != nullptr) own->read(chunk, visibility);

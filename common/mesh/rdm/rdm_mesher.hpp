@@ -44,8 +44,8 @@ class RdmScratch {
 /// direction. Cost: O(runs + quads of the chunk + runs of the neighbours), a pass over each layer that is not
 /// like the one before it, 64 voxels at a time, and a layer for each neighbour whose border has to be
 /// transposed; a uniform chunk among uniform ones is O(1). Any thread, one scratch each.
-void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const VisibilityTable& visibility,
-              RdmScratch& scratch, ChunkMesh& out);
+void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
+              const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
 /// The same mesh with the borders of neighbours that are kept, which must be those of `neighbours` as they
 /// are now: their runs are read only where transparent voxels may meet. If `own` is there, it becomes what

@@ -40,7 +40,8 @@ struct RowPlace {
 /// O(length + log runs + runs between the first voxel and the last) a row; where the layers lie along the
 /// fastest axis, O(length * log runs) for all together.
 template <class Runs>
-void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, unsigned count, RowRuns* out) {
+void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, unsigned count,
+               RowRuns* out) {
   std::uint32_t voxel = 0;
   std::uint32_t step = 0;
   std::uint32_t across = 0;

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/layer_sweep.hpp"
-#include "common/mesh/rdm/material_codes.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/mesh/rdm/row_runs.hpp"
@@ -37,7 +37,7 @@ struct LayerPatch {
 namespace runstone {
 
 struct RdmScratch::State {
-  rdm::MaterialCodes codes;
+  rdm::ChunkPalette codes;
   std::vector<rdm::CodedRun> runs;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
@@ -50,7 +50,8 @@ struct RdmScratch::State {
   std::vector<Quad> beside;                          // quads above and below that row
   std::array<std::vector<Quad>, 2> layer;            // quads of the layer at hand, by pass
   std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
-  std::unique_ptr<rdm::RowScratch<rdm::Row128>> wide;  // made for the first chunk with a side above 64
+  std::unique_ptr<rdm::RowScratch<rdm::Row128>>
+      wide;  // made for the first chunk with a side above 64
   bool plain = false;
 };
 

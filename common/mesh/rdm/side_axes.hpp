@@ -42,7 +42,8 @@ constexpr std::array<StripAxes, 3> strip_axes(AxisOrder order) {
 /// Of the sides across one axis.
 constexpr StripAxes strip_axes(AxisOrder order, Axis layer) {
   const auto all = strip_axes(order);
-  return *std::find_if(all.begin(), all.end(), [layer](const StripAxes& s) { return s.layer == layer; });
+  return *std::find_if(all.begin(), all.end(),
+                       [layer](const StripAxes& s) { return s.layer == layer; });
 }
 
 }  // namespace runstone::rdm

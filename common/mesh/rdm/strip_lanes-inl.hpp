@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// The faces of some rows, and the first and last of each strip. Form: a SweepForm.
+/// The faces of some rows, and the first and last of each strip. Form: a SweepTraits.
 template <class Form>
 struct StripLanes {
   using Lanes = typename Form::Lanes;
@@ -36,9 +36,9 @@ struct StripLanes {
   /// changed(): `cut` is the first of the rows.
   static HWY_INLINE V changed(const StripLanes& now, const StripLanes& before,
                               [[maybe_unused]] const Row* cut) {
-    V x = Lanes::either(
-        Lanes::differing(now.face, before.face),
-        Lanes::either(Lanes::differing(now.start, before.start), Lanes::differing(now.end, before.end)));
+    V x = Lanes::either(Lanes::differing(now.face, before.face),
+                        Lanes::either(Lanes::differing(now.start, before.start),
+                                      Lanes::differing(now.end, before.end)));
     if constexpr (Form::kNumbered) {
       x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
     }

@@ -13,18 +13,18 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/runs/bit_row.hpp"
-#include "common/mesh/rdm/quad_outlet-inl.hpp"
+#include "common/mesh/rdm/quad_emitter-inl.hpp"
 #include "common/mesh/rdm/row_strips.hpp"
 #include "common/mesh/rdm/strip_lanes-inl.hpp"
 #include "common/mesh/rdm/sweep_input.hpp"
 #include "common/mesh/rdm/sweep_state.hpp"
+#include "common/runs/bit_row.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// Form: a SweepForm.
+/// Form: a SweepTraits.
 template <class Form>
 class StripTracer {
   using Lanes = typename Form::Lanes;
@@ -32,7 +32,7 @@ class StripTracer {
   using Row = typename Form::Row;
   using C = typename Form::C;
   using Strips = RowStrips<Row>;
-  using Outlet = QuadOutlet<Form>;
+  using Outlet = QuadEmitter<Form>;
   static constexpr bool kNumbered = Form::kNumbered;
 
  public:
@@ -68,7 +68,8 @@ class StripTracer {
     for (; rows != 0; rows &= rows - 1) {
       const std::uint32_t m = lowest_bit(rows);
       const Strips now = strips_along<Row>(face[m], cut_at(cut_fast + m));
-      const Strips before = m == 0 ? Strips{} : strips_along<Row>(face[m - 1], cut_at(cut_fast + m - 1));
+      const Strips before =
+          m == 0 ? Strips{} : strips_along<Row>(face[m - 1], cut_at(cut_fast + m - 1));
       const Row x = changed<Row>(now, before, cut_at(cut_mid + m));
       out.close_strips(ends_with(before, x), open, layer, m);
       out.open_strips(ends_with(now, x), now.start, open, layer, m);
@@ -80,14 +81,14 @@ class StripTracer {
   /// Faces across the middle axis in layer s. Strips lie along a line, and the next row is the same line of the
   /// next layer.
   template <Side kSide>
-  void trace_middle(RowSet rows, std::uint32_t s, Rings rings) {
+  void trace_middle(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
-    const Row* const face = st_.face[at(kSide)][rings.here].data();
-    const Row* const face_before = st_.face[at(kSide)][rings.there].data();
-    const Row* const cut_fast = st_.cut_fast[rings.here].data();
-    const Row* const cut_fast_before = st_.cut_fast[rings.there].data();
+    const Row* const face = st_.face[at(kSide)][layers.current].data();
+    const Row* const face_before = st_.face[at(kSide)][layers.previous].data();
+    const Row* const cut_fast = st_.cut_fast[layers.current].data();
+    const Row* const cut_fast_before = st_.cut_fast[layers.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const Outlet out(in_, kSide, codes_[rings.here].data());
+    const Outlet out(in_, kSide, codes_[layers.current].data());
     Quad* const open = st_.open[at(kSide)].data();
     Row* const closing = st_.closing.data();
     Row* const opening = st_.opening.data();
@@ -126,15 +127,15 @@ class StripTracer {
   /// axis, one a bit: a face that appears begins one, a face that disappears ends one. Those that end side by
   /// side in neighbouring rows are one quad if they began together and are of one material.
   template <Side kSide>
-  void trace_fast(RowSet rows, std::uint32_t s, Rings rings) {
+  void trace_fast(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
-    const Row* const face = st_.face[at(kSide)][rings.here].data();
-    const Row* const face_before = st_.face[at(kSide)][rings.there].data();
-    const Row* const cut_mid_before = st_.cut_mid[rings.there].data();
+    const Row* const face = st_.face[at(kSide)][layers.current].data();
+    const Row* const face_before = st_.face[at(kSide)][layers.previous].data();
+    const Row* const cut_mid_before = st_.cut_mid[layers.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const Outlet out(in_, kSide, codes_[rings.there].data());
-    std::uint8_t* const born = st_.born[at(kSide) - at(Side::fast_neg)].data();
-    Row* const beside = st_.beside.data();
+    const Outlet out(in_, kSide, codes_[layers.previous].data());
+    std::uint8_t* const start_layer = st_.start_layer[at(kSide) - at(Side::fast_neg)].data();
+    Row* const joins_previous = st_.joins_previous.data();
     Place* const closed = st_.closed.data();
     Place* closed_end = closed;
     Row above = 0;
@@ -142,7 +143,7 @@ class StripTracer {
     for (RowSet left = rows; left != 0; left &= left - 1) {
       const std::uint32_t m = lowest_bit(left);
       const Row closing = face_before[m] & (~face[m] | cut_at(cut_slow + m));
-      beside[m] = m == next ? above & ~cut_at(cut_mid_before + m) : Row{0};
+      joins_previous[m] = m == next ? above & ~cut_at(cut_mid_before + m) : Row{0};
       closed_end = write_places(closing, m, closed_end);
       above = closing;
       next = m + 1;
@@ -150,16 +151,17 @@ class StripTracer {
     for (const Place* place = closed; place != closed_end; ++place) {
       const std::uint32_t m = *place / kRowBits<Row>;
       const unsigned bit = *place % kRowBits<Row>;
-      const std::uint32_t first = born[*place];
+      const std::uint32_t first = start_layer[*place];
       // Row 0 has nothing beside it; it may read any byte.
-      const bool joins = (beside[m] >> bit & 1) != 0 && born[*place - (m == 0 ? 0 : kRowBits<Row>)] == first;
+      const bool joins = (joins_previous[m] >> bit & 1) != 0 &&
+                         start_layer[*place - (m == 0 ? 0 : kRowBits<Row>)] == first;
       out.close_or_join(out.open({bit, first, s - first, m}, m, bit), bit, m + 1, joins);
     }
     for (RowSet left = rows; left != 0; left &= left - 1) {
       const std::uint32_t m = lowest_bit(left);
       const Row opening = face[m] & (~face_before[m] | cut_at(cut_slow + m));
       CodeLanes::template put<Row>(opening, static_cast<std::uint8_t>(s),
-                                   born + std::size_t{m} * kRowBits<Row>);
+                                   start_layer + std::size_t{m} * kRowBits<Row>);
     }
   }
 

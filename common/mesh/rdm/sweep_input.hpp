@@ -7,18 +7,18 @@
 #include <span>
 #include <vector>
 
-#include "common/runs/bit_row.hpp"
-#include "common/mesh/rdm/material_codes.hpp"
+#include "common/mesh/rdm/chunk_palette.hpp"
 #include "common/mesh/rdm/quad_buckets.hpp"
 #include "common/mesh/rdm/quad_shape.hpp"
 #include "common/runs/axis_order.hpp"
+#include "common/runs/bit_row.hpp"
 
 namespace runstone::rdm {
 
 /// Covers [end of the run before it, end) of the flattened chunk.
 struct CodedRun {
   std::uint32_t end = 0;
-  Code code = 0;
+  PaletteIndex code = 0;
 };
 
 /// A side of the chunk by the rank of its axis: slow, middle, fast; negative before positive.
@@ -49,18 +49,18 @@ struct Borders {
   /// Whether a side has such voxels; never in a chunk of one material.
   std::array<bool, 6> meets{};
   /// Their codes, a row behind the other; only if the chunk has more than one transparent material.
-  std::array<std::vector<Code>, 6> codes;
+  std::array<std::vector<PaletteIndex>, 6> codes;
 };
 
 struct SweepInput {
   std::span<const CodedRun> runs;
   OrderedExtent extent{};
-  const MaterialCodes* codes = nullptr;
+  const ChunkPalette* codes = nullptr;
   std::array<Direction, 6> direction{};  // by Side
   std::array<QuadShape, 6> shape;        // by Side
   QuadBuckets* opaque = nullptr;
   QuadBuckets* transparent = nullptr;
-  bool own_sides = false;  // whether SweepState::own_sides is wanted
+  bool chunk_sides = false;  // whether SweepState::chunk_sides is wanted
 };
 
 }  // namespace runstone::rdm

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/worlds/lit_chunk.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kSmallLuanti = RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small";
 
 std::set<std::string> meshers() {
-  const auto names = contestant_names();
+  const auto names = mesher_case_names();
   return {names.begin(), names.end()};
 }
 
@@ -22,10 +22,12 @@ std::set<std::string> meshers() {
 ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::ostream& out,
                                        std::ostream& err) {
   BenchOptions options;
-  options.luanti = options.net.luanti = options.frames.luanti = options.report.luanti = kSmallLuanti;
+  options.luanti = options.net.luanti = options.frames.luanti = options.report.luanti =
+      kSmallLuanti;
   bool quick = false;
   CLI::App app(
-      "Measures meshing, storage, edits, the log, the network, frames, and prints tables of Markdown, or "
+      "Measures meshing, storage, edits, the log, the network, frames, and prints tables of "
+      "Markdown, or "
       "makes "
       "a page of them all.",
       "runstone-bench");
@@ -65,14 +67,16 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
   mesh->add_option("--min-runs", options.repetitions, "repetitions of each mesher in each cell")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  mesh->add_flag("--quick", quick, "three repetitions, edge 16 and best orders, unless said otherwise");
+  mesh->add_flag("--quick", quick,
+                 "three repetitions, edge 16 and best orders, unless said otherwise");
 
-  CLI::App* chunk_edge = app.add_subcommand("chunk-edge", "what the edge of world chunks costs and saves");
+  CLI::App* chunk_edge =
+      app.add_subcommand("chunk-edge", "what the edge of world chunks costs and saves");
   common(chunk_edge, landscape_names());
   files(chunk_edge);
 
-  CLI::App* edits =
-      app.add_subcommand("edits", "what edits cost: stacks, spheres, strokes, and the replay of a log");
+  CLI::App* edits = app.add_subcommand(
+      "edits", "what edits cost: stacks, spheres, strokes, and the replay of a log");
   files(edits);
   edits->add_option("--min-runs", options.repetitions, "repetitions; a tenth of them of the replay")
       ->capture_default_str()
@@ -92,7 +96,8 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->check(CLI::Range(1, 1000));
   log->add_option("--json", options.json, "write all figures to this file");
 
-  CLI::App* bytes = app.add_subcommand("bytes", "forms to send a chunk in: bytes, and time both ways");
+  CLI::App* bytes =
+      app.add_subcommand("bytes", "forms to send a chunk in: bytes, and time both ways");
   unsigned bytes_repetitions = 9;
   const auto byte_worlds = byte_world_names();
   worlds_of(bytes, {byte_worlds.begin(), byte_worlds.end()});
@@ -101,7 +106,8 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
 
-  CLI::App* storage = app.add_subcommand("storage", "ways to keep voxels: bytes, reads, walks, edits");
+  CLI::App* storage =
+      app.add_subcommand("storage", "ways to keep voxels: bytes, reads, walks, edits");
   common(storage, measured_world_names());
   files(storage);
   unsigned storage_repetitions = 15;
@@ -109,7 +115,8 @@ ParsedBenchOptions parse_bench_options(int argc, const char* const* argv, std::o
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
 
-  CLI::App* mesh_once = app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
+  CLI::App* mesh_once =
+      app.add_subcommand("mesh-once", "one mesher, not timed: for tools that count");
   common(mesh_once, measured_world_names());
   unsigned times = 1;
   std::string mesher = "rdm";

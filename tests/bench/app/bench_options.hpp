@@ -13,11 +13,22 @@
 namespace runstone::bench {
 
 struct BenchOptions {
-  enum class Command { mesh, chunk_edge, mesh_once, edits, log, net, bytes, frames, storage, report };
+  enum class Command {
+    mesh,
+    chunk_edge,
+    mesh_once,
+    edits,
+    log,
+    net,
+    bytes,
+    frames,
+    storage,
+    report
+  };
   Command command = Command::mesh;
   std::vector<std::string> worlds;   // empty: all
   std::vector<std::string> parts;    // volumes by name; empty: all
-  std::vector<std::string> meshers;  // contestants; empty: all
+  std::vector<std::string> meshers;  // mesher_cases; empty: all
   std::vector<unsigned> edges;
   std::vector<std::string> orders = {"best", "worst"};  // or "all"
   std::string luanti;                                   // folder of a world

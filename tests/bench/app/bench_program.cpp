@@ -6,22 +6,23 @@
 #include <functional>
 
 #include "tests/bench/app/bench_options.hpp"
-#include "tests/bench/wire/bytes_bench.hpp"
-#include "tests/bench/meshing/chunk_edge.hpp"
 #include "tests/bench/edits/edit_bench.hpp"
-#include "tests/bench/frames/frames_bench.hpp"
 #include "tests/bench/edits/log_bench.hpp"
+#include "tests/bench/frames/frames_bench.hpp"
+#include "tests/bench/meshing/chunk_edge.hpp"
 #include "tests/bench/meshing/mesh_bench.hpp"
 #include "tests/bench/meshing/mesh_once.hpp"
 #include "tests/bench/network/net_bench.hpp"
 #include "tests/bench/report/report.hpp"
 #include "tests/bench/storage/storage_bench.hpp"
+#include "tests/bench/wire/bytes_bench.hpp"
 
 namespace runstone::bench {
 namespace {
 
 /// Nothing if `file` is empty. Returns whether all went well.
-bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write, std::ostream& err) {
+bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write,
+                std::ostream& err) {
   if (file.empty()) return true;
   std::ofstream out(file);
   write(out);
@@ -34,7 +35,8 @@ bool write_file(const std::string& file, const std::function<void(std::ostream&)
 /// Prints a result and writes its CSV, where it has one, and its JSON, to the files that the options name; or says
 /// why there is none. Returns the exit code.
 template <class T, class Options, class Print>
-int finish(const Result<T, std::string>& result, const Options& options, std::ostream& err, Print&& print) {
+int finish(const Result<T, std::string>& result, const Options& options, std::ostream& err,
+           Print&& print) {
   if (!result) {
     fmt::print(err, "runstone-bench: {}\n", result.error());
     return 1;
@@ -44,7 +46,11 @@ int finish(const Result<T, std::string>& result, const Options& options, std::os
   if constexpr (requires(std::ostream& to) { write_csv(*result, to); }) {
     done = write_file(options.csv, [&](std::ostream& to) { write_csv(*result, to); }, err);
   }
-  return write_file(options.json, [&](std::ostream& to) { write_json(*result, to); }, err) && done ? 0 : 1;
+  return write_file(
+             options.json, [&](std::ostream& to) { write_json(*result, to); }, err) &&
+                 done
+             ? 0
+             : 1;
 }
 
 int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
@@ -56,7 +62,7 @@ int mesh(const BenchOptions& options, std::ostream& out, std::ostream& err) {
     fmt::print(out, "\n\n");
     write_overview(result, out);
     fmt::print(out, "\n");
-    write_bars(result.bars, out);
+    write_targets(result.targets, out);
   });
 }
 

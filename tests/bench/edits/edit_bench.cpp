@@ -13,17 +13,18 @@
 namespace runstone::bench {
 namespace {
 
-EditRow row_of(std::string what, std::size_t chunks, std::size_t edits, const std::vector<double>& us) {
+EditRow row_of(std::string what, std::size_t chunks, std::size_t edits,
+               const std::vector<double>& us) {
   return {std::move(what), chunks, edits, median(us), quantile(us, 0.9)};
 }
 
-Bar at_most(std::string what, double us, double bar_us) {
+Target at_most(std::string what, double us, double bar_us) {
   return {std::move(what), fmt::format("{:.0f} µs", bar_us), fmt::format("{:.1f} µs", us),
           us <= bar_us ? Verdict::met : Verdict::missed};
 }
-Bar at_least(std::string what, double rate, double bar) {
-  return {std::move(what), fmt::format("{:.0f}/s", bar), fmt::format("{:.0f}/s", rate),
-          rate >= bar ? Verdict::met : Verdict::missed};
+Target at_least(std::string what, double rate, double target) {
+  return {std::move(what), fmt::format("{:.0f}/s", target), fmt::format("{:.0f}/s", rate),
+          rate >= target ? Verdict::met : Verdict::missed};
 }
 
 void measure_stacks(EditBenchResult& result, unsigned repetitions) {
@@ -38,10 +39,12 @@ void measure_stacks(EditBenchResult& result, unsigned repetitions) {
           row_of(fmt::format("mixed edits {} one by one", name), 1, edits, timing.one_by_one_us));
       if (edits != 1'000) continue;
       const double stacked = median(timing.stacked_us);
-      Bar bar =
-          at_most(fmt::format("1,000 mixed edits {} on one chunk of terrain as a stack", name), stacked, 100);
-      bar.measured += fmt::format(", {:.1f}x as fast as one by one", median(timing.one_by_one_us) / stacked);
-      result.bars.push_back(std::move(bar));
+      Target target =
+          at_most(fmt::format("1,000 mixed edits {} on one chunk of terrain as a stack", name),
+                  stacked, 100);
+      target.measured +=
+          fmt::format(", {:.1f}x as fast as one by one", median(timing.one_by_one_us) / stacked);
+      result.targets.push_back(std::move(target));
     }
   }
 }
@@ -58,7 +61,7 @@ void measure_spreads(EditBenchResult& result, unsigned repetitions) {
     return timing;
   };
   const SpreadTiming sphere = measure("sphere of radius 50 emptied", dig);
-  result.bars.push_back(
+  result.targets.push_back(
       at_most(fmt::format("sphere of radius 50 over terrain, {} chunks: apply", sphere.chunks),
               median(sphere.us), 1'000));
   measure("sphere of radius 50 filled where empty", fill);
@@ -66,7 +69,8 @@ void measure_spreads(EditBenchResult& result, unsigned repetitions) {
   measure("stroke of radius 8 over 150 voxels emptied", tunnel);
 }
 
-Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t edits, unsigned repetitions) {
+Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t edits,
+                                         unsigned repetitions) {
   const test::TempFolder folder;
   const auto timing = time_replay(edits, repetitions, folder.path());
   if (!timing) return Unexpected<std::string>{timing.error()};
@@ -75,20 +79,23 @@ Result<void, std::string> measure_replay(EditBenchResult& result, std::size_t ed
     for (const double rate : rates) us.push_back(static_cast<double>(edits) / rate * 1e6);
     result.rows.push_back(row_of(what, timing->chunks, edits, us));
   };
-  row("replay of single voxels: log read and verified and applied and digests compared", timing->from_log);
+  row("replay of single voxels: log read and verified and applied and digests compared",
+      timing->from_log);
   row("single voxels one after another: applied", timing->apply);
   row("single voxels one after another: applied and dirty layers meshed", timing->remesh);
-  result.bars.push_back(at_least("replay of single voxels from the log, edge 32, all of it",
-                                 median(timing->from_log), 500'000));
-  result.bars.push_back(at_least("the same from memory, apply only", median(timing->apply), 500'000));
-  result.bars.push_back(
-      at_least("the same with remeshing of dirty layers after each edit", median(timing->remesh), 100'000));
+  result.targets.push_back(at_least("replay of single voxels from the log, edge 32, all of it",
+                                    median(timing->from_log), 500'000));
+  result.targets.push_back(
+      at_least("the same from memory, apply only", median(timing->apply), 500'000));
+  result.targets.push_back(at_least("the same with remeshing of dirty layers after each edit",
+                                    median(timing->remesh), 100'000));
   return {};
 }
 
 }  // namespace
 
-Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options, std::ostream& progress) {
+Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
+                                                    std::ostream& progress) {
   EditBenchResult result;
   result.machine = this_machine();
   measure_stacks(result, options.repetitions);
@@ -104,19 +111,23 @@ Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
 }
 
 void write_table(const EditBenchResult& result, std::ostream& out) {
-  fmt::print(out, "\n| case | chunks | edits | median µs | p90 | µs an edit |\n|---|---|---|---|---|---|\n");
+  fmt::print(
+      out,
+      "\n| case | chunks | edits | median µs | p90 | µs an edit |\n|---|---|---|---|---|---|\n");
   for (const EditRow& row : result.rows) {
-    fmt::print(out, "| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} |\n", row.what, row.chunks, row.edits,
-               row.median_us, row.p90_us, row.median_us / static_cast<double>(row.edits));
+    fmt::print(out, "| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} |\n", row.what, row.chunks,
+               row.edits, row.median_us, row.p90_us,
+               row.median_us / static_cast<double>(row.edits));
   }
   fmt::print(out, "\n");
-  write_bars(result.bars, out);
+  write_targets(result.targets, out);
 }
 
 void write_csv(const EditBenchResult& result, std::ostream& out) {
   fmt::print(out, "case,chunks,edits,median_us,p90_us\n");
   for (const EditRow& row : result.rows) {
-    fmt::print(out, "{},{},{},{:.3f},{:.3f}\n", row.what, row.chunks, row.edits, row.median_us, row.p90_us);
+    fmt::print(out, "{},{},{},{:.3f},{:.3f}\n", row.what, row.chunks, row.edits, row.median_us,
+               row.p90_us);
   }
 }
 
@@ -133,11 +144,11 @@ void write_json(const EditBenchResult& result, std::ostream& out) {
                             {"median_us", row.median_us},
                             {"p90_us", row.p90_us}});
   }
-  for (const Bar& bar : result.bars) {
-    json["bars"].push_back({{"case", bar.what},
-                            {"bar", bar.wanted},
-                            {"measured", bar.measured},
-                            {"verdict", name_of(bar.verdict)}});
+  for (const Target& target : result.targets) {
+    json["bars"].push_back({{"case", target.what},
+                            {"bar", target.wanted},
+                            {"measured", target.measured},
+                            {"verdict", name_of(target.verdict)}});
   }
   out << json.dump(1) << '\n';
 }

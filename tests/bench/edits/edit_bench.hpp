@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/harness/bar.hpp"
 #include "tests/bench/app/bench_options.hpp"
 #include "tests/bench/harness/machine.hpp"
+#include "tests/bench/harness/target.hpp"
 
 namespace runstone::bench {
 
@@ -23,11 +23,12 @@ struct EditRow {
 struct EditBenchResult {
   Machine machine;
   std::vector<EditRow> rows;
-  std::vector<Bar> bars;
+  std::vector<Target> targets;
 };
 
 /// Fails if the temporary world of the replay cannot be written.
-Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options, std::ostream& progress);
+Result<EditBenchResult, std::string> run_edit_bench(const BenchOptions& options,
+                                                    std::ostream& progress);
 
 void write_table(const EditBenchResult& result, std::ostream& out);
 void write_csv(const EditBenchResult& result, std::ostream& out);

@@ -7,8 +7,8 @@
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -25,7 +25,9 @@ class MeshedChunk {
 
   const ChunkMesh& mesh() const { return mesh_; }
 
-  void mesh_all(const RunChunk& chunk) { mesh_rdm(chunk, neighbours_, visibility_, scratch_, mesh_); }
+  void mesh_all(const RunChunk& chunk) {
+    mesh_rdm(chunk, neighbours_, visibility_, scratch_, mesh_);
+  }
   void remesh(const RunChunk& chunk, const DirtyLayers& dirty,
               const std::array<DirtyLayers, kDirectionCount>& beyond) {
     mesh_rdm_layers(chunk, neighbours_, visibility_, dirty, beyond, scratch_, mesh_);
@@ -88,8 +90,10 @@ class EditedChunk {
  private:
   /// A neighbour, cut with its own neighbours when an edit first touches it.
   struct Beside {
-    Beside(const VoxelWorld& world, VoxelPos origin, unsigned edge, Direction back, const RunChunk& edited)
-        : volume(cut_volume(world, origin, edge)), meshed(pointers(back, edited), *world.visibility) {
+    Beside(const VoxelWorld& world, VoxelPos origin, unsigned edge, Direction back,
+           const RunChunk& edited)
+        : volume(cut_volume(world, origin, edge)),
+          meshed(pointers(back, edited), *world.visibility) {
       meshed.mesh_all(volume.scene.chunk);
     }
     MeshNeighbours pointers(Direction back, const RunChunk& edited) const {
@@ -117,8 +121,8 @@ class EditedChunk {
       if (beside_[i]) continue;
       const VoxelPos& low = volume_.origin;
       beside_[i] = std::make_unique<Beside>(
-          world_, VoxelPos{low.x + step.x * side, low.y + step.y * side, low.z + step.z * side}, volume_.edge,
-          opposite(d), chunk_);
+          world_, VoxelPos{low.x + step.x * side, low.y + step.y * side, low.z + step.z * side},
+          volume_.edge, opposite(d), chunk_);
     }
     return out;
   }
@@ -141,7 +145,8 @@ struct Shown {
 Shown pick(const ChunkMesh& mesh, SplitMix64& rng) {
   const std::size_t opaque = mesh.opaque.quads.size();
   const std::size_t i = rng.below(static_cast<std::uint32_t>(mesh.quad_count()));
-  const QuadFields q = unpack(i < opaque ? mesh.opaque.quads[i] : mesh.transparent.quads[i - opaque]);
+  const QuadFields q =
+      unpack(i < opaque ? mesh.opaque.quads[i] : mesh.transparent.quads[i - opaque]);
   std::array<std::int32_t, 3> at = {q.x, q.y, q.z};
   const Axis axis = axis_of(q.direction);
   at[static_cast<std::size_t>(u_axis_of(axis))] += static_cast<std::int32_t>(rng.below(q.width));
@@ -151,18 +156,21 @@ Shown pick(const ChunkMesh& mesh, SplitMix64& rng) {
 
 }  // namespace
 
-EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes, unsigned per_volume,
-                         std::uint64_t seed) {
+EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes,
+                         unsigned per_volume, std::uint64_t seed) {
   SplitMix64 rng(seed);
   Samples samples;
   for (const Volume& volume : volumes) {
     EditedChunk edited(world, volume);
     if (edited.mesh().empty()) continue;
     const VoxelBox inside = box_of({}, static_cast<std::int32_t>(volume.edge));
-    Samples left_out;  // the first edit of a chunk, and what takes an edit back: its way is known by heart
+    Samples
+        left_out;  // the first edit of a chunk, and what takes an edit back: its way is known by heart
     for (unsigned i = 0; i <= per_volume; ++i) {
       const Shown shown = pick(edited.mesh(), rng);
-      const auto local = [&](VoxelPos at) { return local_of(at, static_cast<std::int32_t>(volume.edge)); };
+      const auto local = [&](VoxelPos at) {
+        return local_of(at, static_cast<std::int32_t>(volume.edge));
+      };
       const Material solid = material_at(edited.chunk(), local(shown.at));
       const ChunkCoord step = neighbour({}, shown.direction);
       const VoxelPos before = {shown.at.x + step.x, shown.at.y + step.y, shown.at.z + step.z};

@@ -24,7 +24,7 @@ struct EditTiming {
 
 /// Edits each volume that shows anything `per_volume` times, and takes every edit back, which is not among the
 /// timed ones: a processor that has just gone that way is faster than one that follows a builder. Volumes are of `world`; what lies around their neighbours is cut from it. Seeded.
-EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes, unsigned per_volume,
-                         std::uint64_t seed);
+EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes,
+                         unsigned per_volume, std::uint64_t seed);
 
 }  // namespace runstone::bench

@@ -51,7 +51,8 @@ struct Sampled {
   std::vector<EditRecord> records;  // spread evenly over the log
 };
 
-Result<Sampled, std::string> fill(Store& store, std::uint64_t edits, unsigned samples, double& append_us) {
+Result<Sampled, std::string> fill(Store& store, std::uint64_t edits, unsigned samples,
+                                  double& append_us) {
   if (auto raised = store.raise_epoch(); !raised) return failure(raised.error());
   test::BuilderSession session(7);
   Sampled sampled;
@@ -59,7 +60,8 @@ Result<Sampled, std::string> fill(Store& store, std::uint64_t edits, unsigned sa
   const auto start = Clock::now();
   for (std::uint64_t i = 0; i < edits; ++i) {
     batch.push_back(session.next());
-    if (i % std::max<std::uint64_t>(1, edits / samples) == 0) sampled.records.push_back(batch.back());
+    if (i % std::max<std::uint64_t>(1, edits / samples) == 0)
+      sampled.records.push_back(batch.back());
     if (batch.size() < 64 && i + 1 < edits) continue;
     if (auto appended = store.append({}, batch); !appended) return failure(appended.error());
     batch.clear();
@@ -73,7 +75,8 @@ VoxelBox around(const EditRecord& record, std::int32_t reach) {
   return {{at.x - reach, at.y - reach, at.z - reach}, {at.x + reach, at.y + reach, at.z + reach}};
 }
 
-Result<std::vector<LogQuestion>, std::string> ask(Store& store, const std::vector<EditRecord>& sampled) {
+Result<std::vector<LogQuestion>, std::string> ask(Store& store,
+                                                  const std::vector<EditRecord>& sampled) {
   const std::vector<std::pair<std::string, std::function<LogQuery(const EditRecord&)>>> sorts = {
       {"one minute of the log",
        [](const EditRecord& r) {
@@ -132,14 +135,14 @@ Result<std::vector<LogQuestion>, std::string> ask(Store& store, const std::vecto
       times.push_back(ms_since(start));
       all += found.size();
     }
-    questions.push_back({name, static_cast<double>(all) / static_cast<double>(times.size()), median(times),
-                         quantile(times, 1)});
+    questions.push_back({name, static_cast<double>(all) / static_cast<double>(times.size()),
+                         median(times), quantile(times, 1)});
   }
   return questions;
 }
 
-Result<LogMoments, std::string> visit(const std::string& folder, const Generator& generator, unsigned moments,
-                                      std::uint64_t edits) {
+Result<LogMoments, std::string> visit(const std::string& folder, const Generator& generator,
+                                      unsigned moments, std::uint64_t edits) {
   LogMoments result;
   SplitMix64 rng(11);
   std::vector<double> open_ms, view_ms, all_ms;
@@ -244,7 +247,8 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
   auto store = *std::move(created);
   const auto sampled = fill(*store, options.edits, options.repetitions, bench.append_us);
   if (!sampled) return Unexpected<std::string>{sampled.error()};
-  if (auto opened = reopen(store, folder.path()); !opened) return Unexpected<std::string>{opened.error()};
+  if (auto opened = reopen(store, folder.path()); !opened)
+    return Unexpected<std::string>{opened.error()};
   const double plain = bytes_of(folder.path());
   bench.bytes = plain / static_cast<double>(options.edits);
   fmt::print(progress, "the log is there\n");
@@ -263,48 +267,57 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
 
   KeyframeMaker maker(*store, **generator, {});
   const auto start = Clock::now();
-  const auto made =
-      maker.make_due([&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>& keyframe) {
+  const auto made = maker.make_due(
+      [&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>& keyframe) {
         bench.keyframe_chunks += chunks.size();
         return store->save_keyframe(chunks, keyframe);
       });
   if (!made) return failure(made.error());
   bench.keyframes_seconds = ms_since(start) / 1000;
-  if (auto opened = reopen(store, folder.path()); !opened) return Unexpected<std::string>{opened.error()};
+  if (auto opened = reopen(store, folder.path()); !opened)
+    return Unexpected<std::string>{opened.error()};
   bench.keyframe_bytes = (bytes_of(folder.path()) - plain) / static_cast<double>(options.edits);
   if (auto visited = visit_moments(); !visited) return Unexpected<std::string>{visited.error()};
   fmt::print(progress, "moments with keyframes are done\n");
-  const auto previewed = preview(*store, **generator, sampled->records.back().op.author, options.repetitions);
+  const auto previewed =
+      preview(*store, **generator, sampled->records.back().op.author, options.repetitions);
   if (!previewed) return Unexpected<std::string>{previewed.error()};
   bench.preview = *previewed;
   return bench;
 }
 
 void write_table(const LogBench& bench, std::ostream& out) {
-  fmt::print(out,
-             "{} edits, {:.1f} bytes each, appended in {:.2f} us each; keyframes add {:.1f} bytes an edit "
-             "({} chunks, made in "
-             "{:.1f} s)\n\n",
-             bench.edits, bench.bytes, bench.append_us, bench.keyframe_bytes, bench.keyframe_chunks,
-             bench.keyframes_seconds);
+  fmt::print(
+      out,
+      "{} edits, {:.1f} bytes each, appended in {:.2f} us each; keyframes add {:.1f} bytes an edit "
+      "({} chunks, made in "
+      "{:.1f} s)\n\n",
+      bench.edits, bench.bytes, bench.append_us, bench.keyframe_bytes, bench.keyframe_chunks,
+      bench.keyframes_seconds);
   fmt::print(out, "| question | edits found, mean | median ms | slowest ms |\n|---|---|---|---|\n");
   for (const LogQuestion& q : bench.questions) {
-    fmt::print(out, "| {} | {:.1f} | {:.2f} | {:.1f} |\n", q.name, q.found, q.median_ms, q.slowest_ms);
+    fmt::print(out, "| {} | {:.1f} | {:.2f} | {:.1f} |\n", q.name, q.found, q.median_ms,
+               q.slowest_ms);
   }
   fmt::print(out,
-             "\n| keyframes | moments | edits read, mean | chunks edited, mean | opened, median ms | slowest "
+             "\n| keyframes | moments | edits read, mean | chunks edited, mean | opened, median ms "
+             "| slowest "
              "| view | slowest | "
              "all edited chunks | slowest |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const LogMoments& m : bench.moments) {
-    fmt::print(out, "| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n",
-               m.keyframes, m.moments, m.edits_read, m.chunks, m.open_ms, m.open_slowest_ms, m.view_ms,
-               m.view_slowest_ms, m.all_ms, m.all_slowest_ms);
+    fmt::print(
+        out,
+        "| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n",
+        m.keyframes, m.moments, m.edits_read, m.chunks, m.open_ms, m.open_slowest_ms, m.view_ms,
+        m.view_slowest_ms, m.all_ms, m.all_slowest_ms);
   }
   const LogPreview& p = bench.preview;
   fmt::print(out,
-             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; selected in {:.1f} ms "
+             "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; selected in "
+             "{:.1f} ms "
              "(slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
-             p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms, p.plan_slowest_ms);
+             p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms,
+             p.plan_slowest_ms);
 }
 
 void write_json(const LogBench& bench, std::ostream& out) {
@@ -315,8 +328,10 @@ void write_json(const LogBench& bench, std::ostream& out) {
                                  {"keyframe_chunks", bench.keyframe_chunks},
                                  {"keyframes_seconds", bench.keyframes_seconds}};
   for (const LogQuestion& q : bench.questions) {
-    json["questions"].push_back(
-        {{"name", q.name}, {"found", q.found}, {"median_ms", q.median_ms}, {"slowest_ms", q.slowest_ms}});
+    json["questions"].push_back({{"name", q.name},
+                                 {"found", q.found},
+                                 {"median_ms", q.median_ms},
+                                 {"slowest_ms", q.slowest_ms}});
   }
   for (const LogMoments& m : bench.moments) {
     json["moments"].push_back({{"keyframes", m.keyframes},

@@ -21,8 +21,9 @@ struct LogMoments {
   std::size_t keyframes = 0, moments = 0;
   double edits_read = 0, chunks = 0;  // mean, of a moment: read since its keyframe; edited up to it
   double open_ms = 0, open_slowest_ms = 0;
-  double view_ms = 0, view_slowest_ms = 0;  // opening, and the chunks around the last edit, radius 8
-  double all_ms = 0, all_slowest_ms = 0;    // opening, and all edited chunks
+  double view_ms = 0,
+         view_slowest_ms = 0;             // opening, and the chunks around the last edit, radius 8
+  double all_ms = 0, all_slowest_ms = 0;  // opening, and all edited chunks
 };
 
 /// Of the preview of a rollback: one author's last hour, planned with the keyframes there are, without a picture.

@@ -7,15 +7,15 @@
 #include <span>
 
 #include "common/core/assert.hpp"
-#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/edits/apply/edit_stack.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
 #include "common/generate/generator.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/chunk.hpp"
 #include "common/runs/reorder.hpp"
 #include "server/replay/replay.hpp"
 #include "server/store/sqlite_store.hpp"
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/support/builder_session.hpp"
 
 namespace runstone::bench {
@@ -49,8 +49,8 @@ class Land {
   void apply(const EditDescriptor& edit, VoxelPos at) {
     const ChunkCoord own = chunk_of(at, kEdge);
     Held& held = *chunks_.find(own)->second;
-    apply_stack(held.chunk.voxels, held.chunk.digest, origin_of(own, kEdge), std::span(&edit, 1), scratch_,
-                result_);
+    apply_stack(held.chunk.voxels, held.chunk.digest, origin_of(own, kEdge), std::span(&edit, 1),
+                scratch_, result_);
   }
   /// The layers that the last edit made dirty.
   void remesh(VoxelPos at) {
@@ -79,9 +79,9 @@ class Land {
     bool is_meshed = false;
   };
 
-  static constexpr std::array<Direction, kDirectionCount> kDirections = {Direction::neg_x, Direction::pos_x,
-                                                                         Direction::neg_y, Direction::pos_y,
-                                                                         Direction::neg_z, Direction::pos_z};
+  static constexpr std::array<Direction, kDirectionCount> kDirections = {
+      Direction::neg_x, Direction::pos_x, Direction::neg_y,
+      Direction::pos_y, Direction::neg_z, Direction::pos_z};
 
   /// Whether a voxel lies in the layer that touches the chunk.
   static bool sees(ChunkCoord beside, VoxelPos at) {
@@ -94,7 +94,8 @@ class Land {
     auto& held = chunks_[at];
     if (held) return *held;
     held = std::make_unique<Held>();
-    held->chunk.voxels = in_cheapest_order(generator_.generate(origin_of(at, kEdge), Extent::cube(kEdge)));
+    held->chunk.voxels =
+        in_cheapest_order(generator_.generate(origin_of(at, kEdge), Extent::cube(kEdge)));
     held->chunk.digest = digest_of(held->chunk.voxels);
     return *held;
   }
@@ -109,7 +110,8 @@ class Land {
   }
   void remesh_layers(Held& held, const DirtyLayers& dirty,
                      const std::array<DirtyLayers, kDirectionCount>& beyond) {
-    mesh_rdm_layers(held.chunk.voxels, held.neighbours, visibility_, dirty, beyond, rdm_, held.mesh);
+    mesh_rdm_layers(held.chunk.voxels, held.neighbours, visibility_, dirty, beyond, rdm_,
+                    held.mesh);
   }
 
   const Generator& generator_;
@@ -120,7 +122,8 @@ class Land {
   RdmScratch rdm_;
 };
 
-Result<std::unique_ptr<Store>, std::string> write_world(const std::string& folder, const WorldMeta& meta,
+Result<std::unique_ptr<Store>, std::string> write_world(const std::string& folder,
+                                                        const WorldMeta& meta,
                                                         const std::vector<EditRecord>& records) {
   auto store = create_sqlite_world(folder, meta, {"", false});
   if (!store) return Unexpected<std::string>{store.error().message()};
@@ -154,7 +157,9 @@ Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repeti
 
   ReplayTiming timing;
   timing.edits = edits;
-  const auto at_of = [](const EditRecord& record) { return std::get<SetVoxel>(record.edit.shape).at; };
+  const auto at_of = [](const EditRecord& record) {
+    return std::get<SetVoxel>(record.edit.shape).at;
+  };
   for (unsigned i = 0; i < repetitions; ++i) {
     Replayer replayer(**store, **generator);
     const std::uint64_t start = now_ns();

@@ -9,7 +9,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"
 
 namespace runstone::bench {
@@ -47,8 +47,8 @@ EditShape draw_by_hand(SplitMix64& rng) {
       return FillSphere{draw_place(rng), static_cast<std::uint16_t>(rng.between(1, 2))};
     case 2: {
       const VoxelPos at = draw_place(rng);
-      return FillStroke{{at, {at.x + rng.between(1, 6), at.y + rng.between(-1, 1), at.z + rng.between(0, 6)}},
-                        1};
+      return FillStroke{
+          {at, {at.x + rng.between(1, 6), at.y + rng.between(-1, 1), at.z + rng.between(0, 6)}}, 1};
     }
     default:
       return SetVoxel{draw_place(rng)};
@@ -105,7 +105,8 @@ Chunk terrain_chunk(ChunkCoord at) {
   return chunk;
 }
 
-StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& edits, unsigned repetitions) {
+StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& edits,
+                       unsigned repetitions) {
   StackTiming timing;
   ApplyScratch scratch;
   ApplyResult result;
@@ -139,7 +140,8 @@ SpreadTiming time_spread(const EditDescriptor& edit, unsigned repetitions) {
     const std::uint64_t start = now_ns();
     for (const ChunkCoord at : touched_chunks(edit, kEdge)) {
       Chunk& chunk = chunks.at(at);
-      apply_stack(chunk.voxels, chunk.digest, origin_of(at, kEdge), std::span(&edit, 1), scratch, result);
+      apply_stack(chunk.voxels, chunk.digest, origin_of(at, kEdge), std::span(&edit, 1), scratch,
+                  result);
     }
     if (i != 0) timing.us.push_back(us_since(start));
   }

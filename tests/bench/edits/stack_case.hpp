@@ -22,7 +22,8 @@ struct StackTiming {
   std::vector<double> stacked_us, one_by_one_us;  // a sample each per repetition
 };
 /// Both ways give the same chunk, or it aborts. The chunk is copied before, not in the time.
-StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& edits, unsigned repetitions);
+StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& edits,
+                       unsigned repetitions);
 
 struct SpreadTiming {
   std::size_t chunks = 0;  // touched

@@ -18,7 +18,8 @@ PictureDifference difference_of(const DrawnPicture& picture, const DrawnPicture&
                        static_cast<std::size_t>(x)];
   };
   const auto inside_a_plane = [&](int x, int y) {
-    if (x == 0 || y == 0 || x == from.width - 1 || y == from.height - 1 || at(x, y) == 0) return false;
+    if (x == 0 || y == 0 || x == from.width - 1 || y == from.height - 1 || at(x, y) == 0)
+      return false;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         if (at(x + dx, y + dy) != at(x, y)) return false;

@@ -13,6 +13,7 @@ namespace runstone::bench {
 /// Draws off screen, on the calling thread and those of the driver. Progress goes to `progress`, a line a
 /// world. Fails if there is no OpenGL context, with what was tried, if the driver gives up, or if the Luanti
 /// world is asked for and cannot be read.
-Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options, std::ostream& progress);
+Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options,
+                                                   std::ostream& progress);
 
 }  // namespace runstone::bench

@@ -7,21 +7,22 @@
 #include <set>
 #include <string_view>
 
-#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/frames/frames_world.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 
 namespace runstone::bench {
 namespace {
 
 constexpr std::array<std::string_view, 2> kWaysOfRdm = {"quads", "product"};
-constexpr std::array<std::string_view, 4> kSameMesh = {"rdm_kept", "rdm_plain", "grid_binary", "mask_binary"};
+constexpr std::array<std::string_view, 4> kSameMesh = {"rdm_kept", "rdm_plain", "grid_binary",
+                                                       "mask_binary"};
 constexpr int kSideMin = 16, kSideMaxPixels = 4096;
 
 }  // namespace
 
 std::vector<std::string> frames_mesher_names() {
-  const auto contestants = contestant_names();
-  std::vector<std::string> out(contestants.begin(), contestants.end());
+  const auto mesher_cases = mesher_case_names();
+  std::vector<std::string> out(mesher_cases.begin(), mesher_cases.end());
   out.insert(out.end(), kWaysOfRdm.begin(), kWaysOfRdm.end());
   return out;
 }
@@ -41,7 +42,8 @@ bool parse_size(const std::string& text, int& width, int& height) {
   if (first.ec != std::errc{} || first.ptr == end || *first.ptr != 'x') return false;
   const auto second = std::from_chars(first.ptr + 1, end, sides[1]);
   if (second.ec != std::errc{} || second.ptr != end) return false;
-  if (std::any_of(sides.begin(), sides.end(), [](int s) { return s < kSideMin || s > kSideMaxPixels; })) {
+  if (std::any_of(sides.begin(), sides.end(),
+                  [](int s) { return s < kSideMin || s > kSideMaxPixels; })) {
     return false;
   }
   width = sides[0];
@@ -50,12 +52,13 @@ bool parse_size(const std::string& text, int& width, int& height) {
 }
 
 CLI::App* add_frames_command(CLI::App& app, FramesOptions& options) {
-  CLI::App* frames =
-      app.add_subcommand("frames", "frame times of every mesher's polygons, drawn off screen, and seams");
+  CLI::App* frames = app.add_subcommand(
+      "frames", "frame times of every mesher's polygons, drawn off screen, and seams");
   const auto worlds = frames_world_names();
   std::set<std::string> world_names(worlds.begin(), worlds.end());
   world_names.emplace("scenarios");
-  frames->add_option("--worlds", options.worlds, "worlds to draw, scenarios: all 37; all by default")
+  frames
+      ->add_option("--worlds", options.worlds, "worlds to draw, scenarios: all 37; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(world_names));
   const auto meshers = frames_mesher_names();
@@ -67,12 +70,14 @@ CLI::App* add_frames_command(CLI::App& app, FramesOptions& options) {
   frames->add_option("--luanti", options.luanti, "folder of a Luanti world")
       ->capture_default_str()
       ->check(CLI::ExistingDirectory);
-  frames->add_option("--frames", options.frames, "frames of an orbit, for each mesher in each world")
+  frames
+      ->add_option("--frames", options.frames, "frames of an orbit, for each mesher in each world")
       ->capture_default_str()
       ->check(CLI::Range(3, 10'000));
   frames
-      ->add_option("--pictures", options.pictures,
-                   "of these frames, how many to compare pixel by pixel and to count the fragments of")
+      ->add_option(
+          "--pictures", options.pictures,
+          "of these frames, how many to compare pixel by pixel and to count the fragments of")
       ->capture_default_str()
       ->check(CLI::Range(1, 100));
   frames
@@ -85,7 +90,8 @@ CLI::App* add_frames_command(CLI::App& app, FramesOptions& options) {
           "--size",
           [&options](const std::string& text) {
             if (!parse_size(text, options.width, options.height)) {
-              throw CLI::ValidationError("--size", text + ": not a size like 1280x720, sides 16 .. 4096");
+              throw CLI::ValidationError("--size",
+                                         text + ": not a size like 1280x720, sides 16 .. 4096");
             }
           },
           "pixels of the picture")

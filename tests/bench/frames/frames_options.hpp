@@ -11,17 +11,19 @@ class App;
 namespace runstone::bench {
 
 struct FramesOptions {
-  std::vector<std::string> worlds;   // of frames_world_names(); empty: all
-  std::vector<std::string> meshers;  // contestants; empty: one for each different mesh, quads and product
-  std::string luanti;                // folder of a world
-  unsigned frames = 60;              // of each mesher in each world
-  unsigned pictures = 3;             // of the orbit, in which pixels and fragments are counted
-  std::size_t vertices_max = 100'000'000;  // of a mesh; larger ones are named and not drawn, but culled faces
-  int width = 1280, height = 720;          // pixels
-  std::string csv, json;                   // files; empty: none
+  std::vector<std::string> worlds;  // of frames_world_names(); empty: all
+  std::vector<std::string>
+      meshers;            // mesher_cases; empty: one for each different mesh, quads and product
+  std::string luanti;     // folder of a world
+  unsigned frames = 60;   // of each mesher in each world
+  unsigned pictures = 3;  // of the orbit, in which pixels and fragments are counted
+  std::size_t vertices_max =
+      100'000'000;  // of a mesh; larger ones are named and not drawn, but culled faces
+  int width = 1280, height = 720;  // pixels
+  std::string csv, json;           // files; empty: none
 };
 
-/// What a mesher can be called: the contestants, "quads", which is rdm drawn from its packed quads, and
+/// What a mesher can be called: the mesher_cases, "quads", which is rdm drawn from its packed quads, and
 /// "product", which is rdm drawn by the client's renderer.
 std::vector<std::string> frames_mesher_names();
 /// Those that are measured by default. Contestants that make the same mesh as another in another way are left

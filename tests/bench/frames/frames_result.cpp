@@ -42,7 +42,8 @@ std::vector<std::string> worlds_of(const std::vector<FramesRow>& rows) {
   return out;
 }
 
-const FramesRow* find(const std::vector<FramesRow>& rows, const std::string& world, const Column& column) {
+const FramesRow* find(const std::vector<FramesRow>& rows, const std::string& world,
+                      const Column& column) {
   const auto row = std::find_if(rows.begin(), rows.end(), [&](const FramesRow& r) {
     return r.world == world && r.mesher == column.first && r.path == column.second;
   });
@@ -50,7 +51,8 @@ const FramesRow* find(const std::vector<FramesRow>& rows, const std::string& wor
 }
 
 std::string title(const Column& column) {
-  return column.second == "plain" ? column.first : fmt::format("{}, {}", column.first, column.second);
+  return column.second == "plain" ? column.first
+                                  : fmt::format("{}, {}", column.first, column.second);
 }
 
 /// Means over the rows of one mesher.
@@ -75,14 +77,16 @@ class Means {
   }
   void write(const std::string& name, std::ostream& out) const {
     const auto mean = [&](double sum) { return sum / static_cast<double>(rows_); };
-    fmt::print(out,
-               "| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.0f} | {} | {} | {} | {} | {} | {} | "
-               "{} | {} | {} |\n",
-               name, mean(vertices_), mean(triangles_), mean(bytes_) / 1024, mean(ms_), mean(p99_),
-               1000 / mean(ms_),
-               against_culled_.empty() ? "–" : fmt::format("{:.2f}", geometric_mean(against_culled_)),
-               text(overdraw_, 2), text(depth_, 2), text(lanes_, 2), text(thin_16_, 1, 100),
-               text(thin_100_, 1, 100), text(junctions_, 0), text(seams_, 1), text(pinholes_, 1));
+    fmt::print(
+        out,
+        "| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.0f} | {} | {} | {} | {} | {} | {} "
+        "| "
+        "{} | {} | {} |\n",
+        name, mean(vertices_), mean(triangles_), mean(bytes_) / 1024, mean(ms_), mean(p99_),
+        1000 / mean(ms_),
+        against_culled_.empty() ? "–" : fmt::format("{:.2f}", geometric_mean(against_culled_)),
+        text(overdraw_, 2), text(depth_, 2), text(lanes_, 2), text(thin_16_, 1, 100),
+        text(thin_100_, 1, 100), text(junctions_, 0), text(seams_, 1), text(pinholes_, 1));
   }
 
  private:
@@ -98,8 +102,8 @@ class Means {
 
   std::size_t rows_ = 0;
   double vertices_ = 0, triangles_ = 0, bytes_ = 0, ms_ = 0, p99_ = 0;
-  std::vector<double> against_culled_, overdraw_, depth_, lanes_, seams_, pinholes_, junctions_, thin_16_,
-      thin_100_;
+  std::vector<double> against_culled_, overdraw_, depth_, lanes_, seams_, pinholes_, junctions_,
+      thin_16_, thin_100_;
 };
 
 void write_means(const FramesResult& result, const std::vector<Column>& columns,
@@ -114,10 +118,11 @@ void write_means(const FramesResult& result, const std::vector<Column>& columns,
   fmt::print(out, "\nMeans over the {} world{} that every mesher drew:\n\n", common.size(),
              common.size() == 1 ? "" : "s");
   if (common.empty()) return;
-  fmt::print(out,
-             "| mesher | vertices | triangles | KiB | p50 ms | p99 ms | fps | x culled | overdraw | depth "
-             "complexity | lanes | % above 1:16 | % above 1:100 | T-junctions | seam pixels | pinholes "
-             "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      out,
+      "| mesher | vertices | triangles | KiB | p50 ms | p99 ms | fps | x culled | overdraw | depth "
+      "complexity | lanes | % above 1:16 | % above 1:100 | T-junctions | seam pixels | pinholes "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Column& column : columns) {
     Means means;
     for (const std::string& world : common) {
@@ -153,16 +158,18 @@ std::optional<FramesFit> FramesResult::fit() const {
 }
 
 void write_csv(const FramesResult& result, std::ostream& out) {
-  fmt::print(out,
-             "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,"
-             "t_junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,seam_pixels,"
-             "pinhole_pixels\n");
+  fmt::print(
+      out,
+      "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,"
+      "t_junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,seam_pixels,"
+      "pinhole_pixels\n");
   for (const FramesRow& row : result.rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.2f},{},{},{},{},{},{},{},{},{}\n",
-               row.world, row.mesher, row.path, row.vertices, row.triangles, row.upload_bytes, row.frames,
-               row.p50_ms, row.p90_ms, row.p99_ms, row.fps(),
-               row.t_junctions ? fmt::format("{}", *row.t_junctions) : "", text_of(row.thin_16, 6, ""),
-               text_of(row.thin_100, 6, ""), text_of(row.covered_pixels, 1, ""), text_of(row.overdraw, 4, ""),
+               row.world, row.mesher, row.path, row.vertices, row.triangles, row.upload_bytes,
+               row.frames, row.p50_ms, row.p90_ms, row.p99_ms, row.fps(),
+               row.t_junctions ? fmt::format("{}", *row.t_junctions) : "",
+               text_of(row.thin_16, 6, ""), text_of(row.thin_100, 6, ""),
+               text_of(row.covered_pixels, 1, ""), text_of(row.overdraw, 4, ""),
                text_of(row.depth_complexity, 4, ""), text_of(row.lanes, 4, ""),
                text_of(row.seam_pixels, 2, ""), text_of(row.pinhole_pixels, 2, ""));
   }
@@ -213,7 +220,8 @@ void write_json(const FramesResult& result, std::ostream& out) {
 
 void write_tables(const FramesResult& result, std::ostream& out) {
   fmt::print(out, "{}; OpenGL {}; {}\n", result.gl_renderer, result.gl_version, result.gl_context);
-  fmt::print(out, "{} frames of an orbit at {}x{}, {} pictures compared; the meshers' frames shuffled\n",
+  fmt::print(out,
+             "{} frames of an orbit at {}x{}, {} pictures compared; the meshers' frames shuffled\n",
              result.frames, result.width, result.height, result.pictures);
   if (result.is_software()) {
     fmt::print(out, "The processor draws: frame times follow vertices far more than on a GPU.\n");
@@ -222,8 +230,9 @@ void write_tables(const FramesResult& result, std::ostream& out) {
   const auto worlds = worlds_of(result.rows);
   write_means(result, columns, worlds, out);
   if (const auto line = result.fit()) {
-    fmt::print(out, "\nOver all plain rows: p50 = {:.2f} ms + {:.2f} ms a million vertices, r² = {:.2f}\n",
-               line->intercept_ms, line->ms_per_million_vertices, line->r2);
+    fmt::print(
+        out, "\nOver all plain rows: p50 = {:.2f} ms + {:.2f} ms a million vertices, r² = {:.2f}\n",
+        line->intercept_ms, line->ms_per_million_vertices, line->r2);
   }
   fmt::print(out, "\nFrames a second (1000 / p50 ms):\n\n| world |");
   for (const Column& column : columns) fmt::print(out, " {} |", title(column));

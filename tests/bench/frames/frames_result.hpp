@@ -17,7 +17,8 @@ struct FramesRow {
   /// packed quads of 8 bytes, an instance each, as the client draws them. "product": the client's renderer,
   /// whose sky, fog and light cost more a pixel, and whose picture cannot be compared.
   std::string path;
-  std::size_t vertices = 0;  // 4 a quad, as the thesis counts; those that a triangle mesh shares count once
+  std::size_t vertices =
+      0;  // 4 a quad, as the thesis counts; those that a triangle mesh shares count once
   std::size_t triangles = 0;
   std::size_t upload_bytes = 0;
   unsigned frames = 0;  // timed
@@ -31,7 +32,7 @@ struct FramesRow {
   std::optional<double> depth_complexity;  // fragments without a depth test, a covered pixel
   std::optional<double> lanes;             // lanes of 2 x 2 blocks that shade a fragment: 1 .. 4
   std::optional<double> seam_pixels;       // unlike the picture of culled faces
-  std::optional<double> pinhole_pixels;    // of these, those inside a plane of it (drawn_picture.hpp)
+  std::optional<double> pinhole_pixels;  // of these, those inside a plane of it (drawn_picture.hpp)
 
   double fps() const { return 1000 / p50_ms; }
 };

@@ -21,14 +21,18 @@ constexpr std::string_view kScenario = "scenario_";
 
 FramesWorld scenario_block(const std::string& name, unsigned number) {
   const auto world = test::scenario_generator(number, kEdge);
-  FramesWorld out{
-      name, kEdge, {3, 3, 3}, std::make_shared<const VisibilityTable>(test::scenario_visibility()), {}};
+  FramesWorld out{name,
+                  kEdge,
+                  {3, 3, 3},
+                  std::make_shared<const VisibilityTable>(test::scenario_visibility()),
+                  {}};
   for (int z = 0; z < 3; ++z) {
     for (int y = 0; y < 3; ++y) {
       for (int x = 0; x < 3; ++x) {
         const ChunkCoord at = {x - 1, y - 1, z - 1};
         out.chunks.push_back(
-            {{x, y, z}, {origin_of(at, kSide), kEdge, test::scenario_scene(*world, at, kEdge, false)}});
+            {{x, y, z},
+             {origin_of(at, kSide), kEdge, test::scenario_scene(*world, at, kEdge, false)}});
       }
     }
   }
@@ -47,7 +51,8 @@ std::int32_t ground_of(const VoxelWorld& world, std::int32_t x, std::int32_t z) 
 
 /// Where a block of `size` voxels begins along an axis so that `middle` is in its middle and it stays within
 /// the bounds, if they are as wide.
-std::int32_t begin_around(std::int32_t middle, std::int32_t size, std::int32_t low, std::int32_t high) {
+std::int32_t begin_around(std::int32_t middle, std::int32_t size, std::int32_t low,
+                          std::int32_t high) {
   return std::clamp(middle - size / 2, low, std::max(low, high - size));
 }
 
@@ -77,7 +82,8 @@ std::vector<std::string> frames_world_names() {
   return out;
 }
 
-FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3> size, unsigned edge) {
+FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3> size,
+                     unsigned edge) {
   const auto side = static_cast<std::int32_t>(edge);
   FramesWorld out{world.name, edge, size, world.visibility, {}};
   for (int z = 0; z < size[2]; ++z) {
@@ -89,7 +95,8 @@ FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3
     }
   }
   const auto chunk_at = [&](ChunkCoord c) -> const RunChunk* {
-    if (std::min({c.x, c.y, c.z}) < 0 || c.x >= size[0] || c.y >= size[1] || c.z >= size[2]) return nullptr;
+    if (std::min({c.x, c.y, c.z}) < 0 || c.x >= size[0] || c.y >= size[1] || c.z >= size[2])
+      return nullptr;
     const auto index = static_cast<std::size_t>((c.z * size[1] + c.y) * size[0] + c.x);
     return &out.chunks[index].volume.scene.chunk;
   };

@@ -28,7 +28,8 @@ struct FramesWorld {
 std::vector<std::string> frames_world_names();
 
 /// A block of `size` chunks whose lowest voxel is `origin`. O(volume).
-FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3> size, unsigned edge);
+FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3> size,
+                     unsigned edge);
 
 /// The world of that name at edge 32: a scenario as its 3 x 3 x 3 chunks, or of the Luanti world in `luanti`
 /// the 5 x 3 x 5 chunks around the ground in its middle, or as many as fit its bounds. Requires a name of

@@ -13,10 +13,12 @@ void index_surface(const reference::Surface& surface, IndexedMesh& out) {
     const QuadFields fields = unpack(quad);
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
     for (const Corner& corner : quad_corners(quad)) {
-      out.vertices.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
-                              static_cast<std::uint8_t>(corner[2]), fields.direction, fields.material});
+      out.vertices.push_back(
+          {static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
+           static_cast<std::uint8_t>(corner[2]), fields.direction, fields.material});
     }
-    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) out.indices.push_back(first + corner);
+    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
+      out.indices.push_back(first + corner);
   }
   const auto first = static_cast<std::uint32_t>(out.vertices.size());
   for (const reference::MeshVertex& v : surface.triangles.vertices) {

@@ -36,8 +36,8 @@ Machine this_machine() {
 }
 
 void write_machine(const Machine& machine, std::ostream& out) {
-  fmt::print(out, "{}, {} cores; {}; commit {}; vectors: {}\n", machine.cpu, machine.cores, machine.compiler,
-             machine.commit, machine.simd);
+  fmt::print(out, "{}, {} cores; {}; commit {}; vectors: {}\n", machine.cpu, machine.cores,
+             machine.compiler, machine.commit, machine.simd);
 }
 
 }  // namespace runstone::bench

@@ -9,8 +9,9 @@ struct Machine {
   std::string cpu;  // as the system names it
   unsigned cores = 0;
   std::string compiler;
-  std::string commit;  // of the sources the program was built from; "-dirty" if they differed from it
-  std::string simd;    // vector instructions that Highway picks here
+  std::string
+      commit;        // of the sources the program was built from; "-dirty" if they differed from it
+  std::string simd;  // vector instructions that Highway picks here
 };
 
 Machine this_machine();

@@ -24,7 +24,8 @@ double core_ns_per_call(std::uint64_t calls, Work work) {
 }
 
 /// Shares the time of a call out among its phases.
-void add_phases(PhaseTimes phases, std::uint64_t wall_ns, double call_ns, std::vector<double>& figures) {
+void add_phases(PhaseTimes phases, std::uint64_t wall_ns, double call_ns,
+                std::vector<double>& figures) {
   std::uint64_t before_mesh = 0;
   for (const std::uint64_t phase : phases) before_mesh += phase;
   phases[static_cast<std::size_t>(Phase::mesh)] = wall_ns - before_mesh;
@@ -33,14 +34,15 @@ void add_phases(PhaseTimes phases, std::uint64_t wall_ns, double call_ns, std::v
   }
 }
 
-std::vector<double> repeat(const Contestant& contestant, std::size_t mesh_bytes, std::uint64_t calls) {
-  const std::size_t bytes = contestant.storage_bytes + mesh_bytes;
+std::vector<double> repeat(const MesherCase& mesher_case, std::size_t mesh_bytes,
+                           std::uint64_t calls) {
+  const std::size_t bytes = mesher_case.storage_bytes + mesh_bytes;
   std::vector<char> from(bytes, 1), to(bytes, 2);
   PhaseTimes phases{};
-  for (std::uint64_t i = 0; i < calls; ++i) contestant.mesh(phases);
+  for (std::uint64_t i = 0; i < calls; ++i) mesher_case.mesh(phases);
   phases = {};
   const std::uint64_t start = now_ns();
-  const double call_ns = core_ns_per_call(calls, [&] { contestant.mesh(phases); });
+  const double call_ns = core_ns_per_call(calls, [&] { mesher_case.mesh(phases); });
   const std::uint64_t wall_ns = now_ns() - start;
   const double copy_ns = core_ns_per_call(calls, [&] {
     std::memcpy(to.data(), from.data(), bytes);
@@ -65,35 +67,38 @@ Timing timing_of(const std::vector<std::vector<double>>& samples) {
 
 }  // namespace
 
-std::vector<std::optional<Timing>> measure_cell(std::span<Contestant> contestants, unsigned repetitions) {
+std::vector<std::optional<Timing>> measure_cell(std::span<MesherCase> mesher_cases,
+                                                unsigned repetitions) {
   std::vector<ShuffledCase> cases;
-  std::vector<std::optional<Timing>> out(contestants.size());
+  std::vector<std::optional<Timing>> out(mesher_cases.size());
   reference::Surface surface;
-  for (std::size_t i = 0; i < contestants.size(); ++i) {
-    const Contestant& contestant = contestants[i];
+  for (std::size_t i = 0; i < mesher_cases.size(); ++i) {
+    const MesherCase& mesher_case = mesher_cases[i];
     PhaseTimes unused{};
-    contestant.mesh(unused);
+    mesher_case.mesh(unused);
     Timing timing;
     double call_ns = 1e18;  // the faster of two calls: others may have the core during one
     for (int call = 0; call < 2; ++call) {
       const std::uint64_t start = now_ns();
-      timing.allocations = test::allocations_of([&] { contestant.mesh(unused); }).count;
-      call_ns = std::min(call_ns, static_cast<double>(std::max<std::uint64_t>(now_ns() - start, 10)));
+      timing.allocations = test::allocations_of([&] { mesher_case.mesh(unused); }).count;
+      call_ns =
+          std::min(call_ns, static_cast<double>(std::max<std::uint64_t>(now_ns() - start, 10)));
     }
     const auto calls = static_cast<std::uint64_t>(std::max(1.0, kBlockNs / call_ns));
     // A repetition: the block twice, and copies that cost no more than the block.
     if (repetitions * call_ns * 3 * static_cast<double>(calls) > kCellSecondsMax * 1e9) continue;
-    contestant.surface(surface);
-    timing.quads = contestant.quads();
+    mesher_case.surface(surface);
+    timing.quads = mesher_case.quads();
     timing.mesh = figures_of(surface);
-    timing.storage_bytes = contestant.storage_bytes;
+    timing.storage_bytes = mesher_case.storage_bytes;
     out[i] = timing;
-    cases.push_back({std::string(contestant.name), [&contestant, bytes = timing.mesh.bytes, calls] {
-                       return repeat(contestant, bytes, calls);
-                     }});
+    cases.push_back(
+        {std::string(mesher_case.name), [&mesher_case, bytes = timing.mesh.bytes, calls] {
+           return repeat(mesher_case, bytes, calls);
+         }});
   }
   const auto samples = run_shuffled(cases, repetitions);
-  for (std::size_t i = 0, measured = 0; i < contestants.size(); ++i) {
+  for (std::size_t i = 0, measured = 0; i < mesher_cases.size(); ++i) {
     if (!out[i]) continue;
     const Timing& known = *out[i];
     Timing timing = timing_of(samples[measured++]);

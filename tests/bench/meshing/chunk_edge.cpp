@@ -7,11 +7,11 @@
 
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "protocol/codec/chunk_codec.hpp"
-#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/edits/edit_case.hpp"
 #include "tests/bench/harness/machine.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -80,7 +80,8 @@ void measure_edits_of(Cut& cut, const VoxelWorld& world) {
 }
 
 /// One world at all edges, pass by pass in turns, so that a noisy machine hits all of them alike.
-void measure(const VoxelWorld& world, const std::vector<unsigned>& edges, std::vector<ChunkEdgeRow>& out) {
+void measure(const VoxelWorld& world, const std::vector<unsigned>& edges,
+             std::vector<ChunkEdgeRow>& out) {
   std::vector<Cut> cuts;
   cuts.reserve(edges.size());
   for (const unsigned edge : edges) cuts.push_back(cut_region(world, edge));
@@ -88,7 +89,8 @@ void measure(const VoxelWorld& world, const std::vector<unsigned>& edges, std::v
   ChunkMesh mesh;
   for (unsigned pass = 0; pass < kPasses; ++pass) {
     for (Cut& cut : cuts) {
-      cut.passes.push_back(mesh_pass_ns(cut.volumes, *world.visibility, scratch, mesh, cut.row.quads));
+      cut.passes.push_back(
+          mesh_pass_ns(cut.volumes, *world.visibility, scratch, mesh, cut.row.quads));
     }
   }
   for (Cut& cut : cuts) {
@@ -104,7 +106,8 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
                                                               std::ostream& progress) {
   for (const unsigned edge : options.edges) {
     if (kRegionUnit % static_cast<std::int32_t>(edge) != 0) {
-      return Unexpected<std::string>{fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge)};
+      return Unexpected<std::string>{
+          fmt::format("edge {}: 8, 16, 32 and 64 divide a region", edge)};
     }
   }
   std::vector<std::string> names = options.worlds;
@@ -125,7 +128,8 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
 
 void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(out,
-             "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed B/voxel | "
+             "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed "
+             "B/voxel | "
              "quads | mesh "
              "ns/voxel | of a chunk that is not uniform: runs B | full mesh µs | edit µs |\n"
              "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -133,20 +137,21 @@ void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
     const auto voxels = static_cast<double>(row.voxels);
     const auto per_voxel = [&](std::size_t bytes) { return static_cast<double>(bytes) / voxels; };
     const auto mixed = static_cast<double>(std::max<std::size_t>(row.chunks - row.uniform, 1));
-    fmt::print(
-        out,
-        "| {} | {} | {} ({}) | {} | {:.4f} | {:.4f} | {:.4f} | {} | {:.3f} | {:.0f} | {:.2f} | {:.2f} |\n",
-        row.world, row.edge, row.chunks, row.uniform, row.runs, per_voxel(row.run_bytes),
-        per_voxel(row.memory_bytes), per_voxel(row.packed_bytes), row.quads, row.mesh_ns / voxels,
-        static_cast<double>(row.mixed_bytes) / mixed, row.edit_full_mesh_ns / 1000, row.edit_ns / 1000);
+    fmt::print(out,
+               "| {} | {} | {} ({}) | {} | {:.4f} | {:.4f} | {:.4f} | {} | {:.3f} | {:.0f} | "
+               "{:.2f} | {:.2f} |\n",
+               row.world, row.edge, row.chunks, row.uniform, row.runs, per_voxel(row.run_bytes),
+               per_voxel(row.memory_bytes), per_voxel(row.packed_bytes), row.quads,
+               row.mesh_ns / voxels, static_cast<double>(row.mixed_bytes) / mixed,
+               row.edit_full_mesh_ns / 1000, row.edit_ns / 1000);
   }
 }
 
 void write_csv(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
-  fmt::print(
-      out,
-      "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,packed_bytes,quads,mesh_ns,"
-      "edit_ns,edit_full_mesh_ns\n");
+  fmt::print(out,
+             "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,packed_"
+             "bytes,quads,mesh_ns,"
+             "edit_ns,edit_full_mesh_ns\n");
   for (const ChunkEdgeRow& row : rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{:.0f},{:.0f},{:.0f}\n", row.world, row.edge,
                row.chunks, row.uniform, row.runs, row.voxels, row.run_bytes, row.mixed_bytes,

@@ -6,9 +6,9 @@
 
 #include "common/runs/reorder.hpp"
 #include "tests/bench/edits/edit_case.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
-#include "tests/bench/meshing/mesh_bars.hpp"
+#include "tests/bench/meshing/mesh_targets.hpp"
 #include "tests/bench/meshing/order_name.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -36,41 +36,42 @@ std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std:
 }
 
 std::vector<std::string_view> meshers_of(const BenchOptions& options) {
-  const auto all = contestant_names();
+  const auto all = mesher_case_names();
   std::vector<std::string_view> out(all.begin(), all.end());
   if (!options.meshers.empty()) {
     std::erase_if(out, [&](std::string_view name) {
-      return std::find(options.meshers.begin(), options.meshers.end(), name) == options.meshers.end();
+      return std::find(options.meshers.begin(), options.meshers.end(), name) ==
+             options.meshers.end();
     });
   }
   return out;
 }
 
 /// All meshers on one volume in one order.
-void measure_volume(const BenchOptions& options, const Volume& volume, const VisibilityTable& visibility,
-                    const MeshRow& shared, MeshResult& result) {
+void measure_volume(const BenchOptions& options, const Volume& volume,
+                    const VisibilityTable& visibility, const MeshRow& shared, MeshResult& result) {
   const std::size_t first = result.rows.size();
-  std::vector<Contestant> contestants;
+  std::vector<MesherCase> mesher_cases;
   const auto skip = [&](std::string_view mesher, const char* why) {
     MeshRow row = shared;
     row.mesher = mesher;
     result.skipped.push_back(row.cell() + ": " + why);
   };
   for (const std::string_view name : meshers_of(options)) {
-    if (auto contestant = make_contestant(name, volume, visibility)) {
-      contestants.push_back(std::move(*contestant));
+    if (auto mesher_case = make_mesher_case(name, volume, visibility)) {
+      mesher_cases.push_back(std::move(*mesher_case));
     } else {
       skip(name, "sides above 64");
     }
   }
-  const auto timings = measure_cell(contestants, options.repetitions);
-  for (std::size_t i = 0; i < contestants.size(); ++i) {
+  const auto timings = measure_cell(mesher_cases, options.repetitions);
+  for (std::size_t i = 0; i < mesher_cases.size(); ++i) {
     if (!timings[i]) {
-      skip(contestants[i].name, "would take longer than 5 s");
+      skip(mesher_cases[i].name, "would take longer than 5 s");
       continue;
     }
     MeshRow row = shared;
-    row.mesher = contestants[i].name;
+    row.mesher = mesher_cases[i].name;
     row.timing = *timings[i];
     result.rows.push_back(std::move(row));
   }
@@ -90,7 +91,8 @@ void measure_volume(const BenchOptions& options, const Volume& volume, const Vis
 
 }  // namespace
 
-Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options, std::ostream& progress) {
+Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options,
+                                               std::ostream& progress) {
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
   if (!worlds) return Unexpected<std::string>{worlds.error()};
   MeshResult result;
@@ -105,8 +107,8 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options, std:
         result.skipped.push_back(fmt::format("{} edge {}: {}", world.name, edge, world.missing));
       }
       for (std::size_t v = 0; v < world.volumes.size(); ++v) {
-        if (!options.parts.empty() &&
-            std::find(options.parts.begin(), options.parts.end(), world.parts[v]) == options.parts.end()) {
+        if (!options.parts.empty() && std::find(options.parts.begin(), options.parts.end(),
+                                                world.parts[v]) == options.parts.end()) {
           continue;
         }
         for (const RankedOrder& order : orders_of(world.volumes[v].scene.chunk, options.orders)) {
@@ -125,12 +127,12 @@ Result<MeshResult, std::string> run_mesh_bench(const BenchOptions& options, std:
       if (world.name == "luanti" && edge == 32) {
         edits = measure_edits(*worlds->voxels(w), world.volumes, options.repetitions, 1);
       }
-      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge, world.volumes.size(),
-                 static_cast<double>(now_ns() - start) * 1e-9);
+      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
+                 world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);
       progress.flush();
     }
   }
-  result.bars = mesh_bars(result.rows, edits);
+  result.targets = mesh_targets(result.rows, edits);
   return result;
 }
 

@@ -9,7 +9,7 @@
 namespace runstone::bench {
 
 struct MeshFigures {
-  std::size_t bytes = 0;                    // as the mesher writes it: 8 a quad; 3 a vertex and 16 a triangle
+  std::size_t bytes = 0;  // as the mesher writes it: 8 a quad; 3 a vertex and 16 a triangle
   std::size_t vertices = 0, triangles = 0;  // 4 and 2 a quad
   reference::TJunctions t_junctions;
   reference::ThinTriangles thin;

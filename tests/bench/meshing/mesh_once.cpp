@@ -10,10 +10,10 @@
 
 namespace runstone::bench {
 
-void mesh_counted(std::span<Contestant> contestants, unsigned times) {
+void mesh_counted(std::span<MesherCase> mesher_cases, unsigned times) {
   PhaseTimes phases{};
   for (unsigned i = 0; i < times; ++i) {
-    for (Contestant& contestant : contestants) contestant.mesh(phases);
+    for (MesherCase& mesher_case : mesher_cases) mesher_case.mesh(phases);
   }
 }
 
@@ -24,28 +24,29 @@ Result<void, std::string> run_mesh_once(const BenchOptions& options, std::ostrea
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     for (const unsigned edge : options.edges) {
       const MeasuredWorld world = worlds->at_edge(w, edge);
-      std::vector<Contestant> contestants;
+      std::vector<MesherCase> mesher_cases;
       std::size_t runs = 0, quads = 0;
       for (const Volume& volume : world.volumes) {
-        auto contestant = make_contestant(mesher, volume, *world.visibility);
-        if (!contestant) continue;
+        auto mesher_case = make_mesher_case(mesher, volume, *world.visibility);
+        if (!mesher_case) continue;
         PhaseTimes phases{};
-        contestant->mesh(phases);  // buffers grow here
-        contestants.push_back(std::move(*contestant));
+        mesher_case->mesh(phases);  // buffers grow here
+        mesher_cases.push_back(std::move(*mesher_case));
         runs += volume.scene.chunk.runs.size();
       }
-      if (contestants.empty()) {
-        return Unexpected<std::string>{fmt::format("{} edge {}: nothing for {}", world.name, edge, mesher)};
+      if (mesher_cases.empty()) {
+        return Unexpected<std::string>{
+            fmt::format("{} edge {}: nothing for {}", world.name, edge, mesher)};
       }
-      mesh_counted(contestants, options.repetitions);
-      for (const Contestant& contestant : contestants) quads += contestant.quads();
+      mesh_counted(mesher_cases, options.repetitions);
+      for (const MesherCase& mesher_case : mesher_cases) quads += mesher_case.quads();
       const nlohmann::ordered_json line = {{"world", world.name},
                                            {"edge", edge},
                                            {"mesher", mesher},
                                            {"simd", this_machine().simd},
                                            {"commit", this_machine().commit},
-                                           {"meshes", options.repetitions * contestants.size()},
-                                           {"volumes", contestants.size()},
+                                           {"meshes", options.repetitions * mesher_cases.size()},
+                                           {"volumes", mesher_cases.size()},
                                            {"runs", runs},
                                            {"quads", quads}};
       fmt::print(out, "{}\n", line.dump());

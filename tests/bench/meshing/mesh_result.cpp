@@ -99,10 +99,10 @@ void write_total(const std::string& mesher, const Total& total, std::ostream& ou
   fmt::print(out, "| {} | {} | {} | {} |", mesher, us(total.median), us(total.min), us(total.p90));
   for (const double phase : total.phase) fmt::print(out, " {} |", phase == 0 ? "–" : us(phase));
   fmt::print(out, " {:.1f} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} |\n",
-             total.median / static_cast<double>(total.runs), mean(total.quads), mean(total.vertices),
-             mean(total.triangles), mean(total.t_junctions), mean(total.thin_16), mean(total.thin_100),
-             mean(total.storage), mean(total.allocations),
-             ratios(total.against_decode, total.decode, total.median),
+             total.median / static_cast<double>(total.runs), mean(total.quads),
+             mean(total.vertices), mean(total.triangles), mean(total.t_junctions),
+             mean(total.thin_16), mean(total.thin_100), mean(total.storage),
+             mean(total.allocations), ratios(total.against_decode, total.decode, total.median),
              ratios(total.against_grid, total.grid, total.median), total.median / total.copy);
 }
 
@@ -123,8 +123,8 @@ std::vector<Group> groups_of(const std::vector<MeshRow>& rows) {
     auto group = std::find_if(out.begin(), out.end(), same);
     if (group == out.end()) group = out.insert(out.end(), Group{row.world, order, row.edge, {}});
     auto& meshers = group->meshers;
-    auto mesher =
-        std::find_if(meshers.begin(), meshers.end(), [&](const auto& m) { return m.first == row.mesher; });
+    auto mesher = std::find_if(meshers.begin(), meshers.end(),
+                               [&](const auto& m) { return m.first == row.mesher; });
     if (mesher == meshers.end()) mesher = meshers.insert(meshers.end(), {row.mesher, Total{}});
     mesher->second.add(row);
   }
@@ -138,19 +138,20 @@ std::string MeshRow::cell() const {
 }
 
 void write_csv(const MeshResult& result, std::ostream& out) {
-  fmt::print(
-      out,
-      "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,mask_ns,mesh_ns,"
-      "ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,mesh_bytes,"
-      "storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
+  fmt::print(out,
+             "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,"
+             "mask_ns,mesh_ns,"
+             "ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,"
+             "mesh_bytes,"
+             "storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
   for (const MeshRow& row : result.rows) {
     const Timing& t = row.timing;
-    fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge, row.order,
-               row.rank, row.mesher, row.runs, t.median_ns, t.min_ns, t.p90_ns);
+    fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge,
+               row.order, row.rank, row.mesher, row.runs, t.median_ns, t.min_ns, t.p90_ns);
     for (const double phase : t.phase_ns) fmt::print(out, "{:.1f},", phase);
     fmt::print(out, "{:.2f},{},{},{},{},{},{},{},{},", row.ns_per_run(), t.quads, t.mesh.vertices,
-               t.mesh.triangles, t.mesh.t_junctions.places, t.mesh.t_junctions.edges, t.mesh.thin.above_16,
-               t.mesh.thin.above_100, t.mesh.bytes);
+               t.mesh.triangles, t.mesh.t_junctions.places, t.mesh.t_junctions.edges,
+               t.mesh.thin.above_16, t.mesh.thin.above_100, t.mesh.bytes);
     fmt::print(out, "{},{},{:.1f},{},{}\n", t.storage_bytes, t.allocations, t.copy_ns,
                ratio_text(row.against_decode), ratio_text(row.against_grid));
   }
@@ -163,11 +164,11 @@ void write_json(const MeshResult& result, std::ostream& out) {
                                  {"skipped", result.skipped},
                                  {"summary", nlohmann::ordered_json::array()}};
   for (const MeshRow& row : result.rows) json["rows"].push_back(json_of(row));
-  for (const Bar& bar : result.bars) {
-    json["summary"].push_back({{"case", bar.what},
-                               {"bar", bar.wanted},
-                               {"measured", bar.measured},
-                               {"verdict", name_of(bar.verdict)}});
+  for (const Target& target : result.targets) {
+    json["summary"].push_back({{"case", target.what},
+                               {"bar", target.wanted},
+                               {"measured", target.measured},
+                               {"verdict", name_of(target.verdict)}});
   }
   out << json.dump(1) << '\n';
 }
@@ -176,30 +177,34 @@ void write_tables(const MeshResult& result, std::ostream& out) {
   for (const Group& group : groups_of(result.rows)) {
     const Total& first = group.meshers.front().second;
     const bool one = first.volumes == 1;
-    fmt::print(out, "\n**{}**, edge {}, {} order, {} volume{}, {} runs{}\n\n", group.world, group.edge,
-               group.order, first.volumes, one ? "" : "s", first.runs / first.volumes,
+    fmt::print(out, "\n**{}**, edge {}, {} order, {} volume{}, {} runs{}\n\n", group.world,
+               group.edge, group.order, first.volumes, one ? "" : "s", first.runs / first.volumes,
                one ? "" : " on average");
+    fmt::print(out,
+               "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads "
+               "| vertices | "
+               "triangles | T-junctions | thin 1:16 | 1:100 | storage B | allocations | x decode + "
+               "binary | x grid "
+               "ready | copies |\n");
     fmt::print(
-        out,
-        "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads | vertices | "
-        "triangles | T-junctions | thin 1:16 | 1:100 | storage B | allocations | x decode + binary | x grid "
-        "ready | copies |\n");
-    fmt::print(out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const auto& [mesher, total] : group.meshers) write_total(mesher, total, out);
   }
 }
 
 void write_overview(const MeshResult& result, std::ostream& out) {
   fmt::print(out,
-             "| world | edge | order | volumes | runs | quads | median µs | ns/run | x decode + binary | x "
+             "| world | edge | order | volumes | runs | quads | median µs | ns/run | x decode + "
+             "binary | x "
              "grid ready "
              "| copies |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Group& group : groups_of(result.rows)) {
     for (const auto& [mesher, total] : group.meshers) {
       if (mesher != "rdm") continue;
-      fmt::print(out, "| {} | {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {} | {} | {:.0f} |\n", group.world,
-                 group.edge, group.order, total.volumes, total.runs / total.volumes,
-                 total.quads / total.volumes, total.median / static_cast<double>(total.volumes) / 1000,
+      fmt::print(out, "| {} | {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {} | {} | {:.0f} |\n",
+                 group.world, group.edge, group.order, total.volumes, total.runs / total.volumes,
+                 total.quads / total.volumes,
+                 total.median / static_cast<double>(total.volumes) / 1000,
                  total.median / static_cast<double>(total.runs),
                  ratios(total.against_decode, total.decode, total.median),
                  ratios(total.against_grid, total.grid, total.median), total.median / total.copy);

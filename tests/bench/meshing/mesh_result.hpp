@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/harness/bar.hpp"
-#include "tests/bench/meshing/cell.hpp"
 #include "tests/bench/harness/machine.hpp"
+#include "tests/bench/harness/target.hpp"
+#include "tests/bench/meshing/cell.hpp"
 
 namespace runstone::bench {
 
@@ -34,7 +34,7 @@ struct MeshResult {
   unsigned repetitions = 0;
   std::vector<MeshRow> rows;
   std::vector<std::string> skipped;  // cells that were not measured, each with the reason
-  std::vector<Bar> bars;
+  std::vector<Target> targets;
 };
 
 /// One line of names, then one a row. Times in ns.

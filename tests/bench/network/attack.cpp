@@ -15,7 +15,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/coords.hpp"
 #include "protocol/limits.hpp"
-#include "tests/bench/network/hostile_crew.hpp"
+#include "tests/bench/network/hostile_fleet.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -38,52 +38,54 @@ void say_nothing(HostileClient& /*client*/) {}
 
 // ---- slow readers
 
-void never_read(HostileCrew& crew) {
-  const auto client = crew.join(kTinyBuffer);
+void never_read(HostileFleet& fleet) {
+  const auto client = fleet.join(kTinyBuffer);
   if (client == nullptr) return;
   client->queue(large_view());
-  while (!crew.is_over()) {
+  while (!fleet.is_over()) {
     client->flush();
-    crew.pause_ms(50);
+    fleet.pause_ms(50);
   }
   client->read();
-  crew.end(*client);
+  fleet.end(*client);
 }
 
-void ping_unread(HostileCrew& crew) {
-  crew.flood([](HostileClient& client) { client.queue(large_view()); },
-             [](HostileClient& client) { client.queue(Ping{1}); }, kJustBelowFlooding, false);
+void ping_unread(HostileFleet& fleet) {
+  fleet.flood([](HostileClient& client) { client.queue(large_view()); },
+              [](HostileClient& client) { client.queue(Ping{1}); }, kJustBelowFlooding, false);
 }
 
-void read_a_byte_a_second(HostileCrew& crew) {
-  const auto client = crew.join(kTinyBuffer);
+void read_a_byte_a_second(HostileFleet& fleet) {
+  const auto client = fleet.join(kTinyBuffer);
   if (client == nullptr) return;
   client->queue(large_view());
-  for (double next = 1; !crew.is_over(); crew.pause_ms(10)) {
+  for (double next = 1; !fleet.is_over(); fleet.pause_ms(10)) {
     client->flush();
-    if (crew.seconds() < next) continue;
+    if (fleet.seconds() < next) continue;
     next += 1;
     client->queue(Ping{1});
     client->read(1);
   }
   client->read();
-  crew.end(*client);
+  fleet.end(*client);
 }
 
 // ---- floods of one kind of message
 
-double rate_of(const HostileCrew& crew) { return crew.index() % 2 == 0 ? kJustBelowFlooding : kNoLimit; }
-
-void flood_views(HostileCrew& crew) {
-  const auto look = [&crew](HostileClient& client) {
-    client.queue(view_at(anywhere(crew.random(), kFarChunk), kViewRadiusMax, kViewRadiusMax));
-  };
-  crew.flood(say_nothing, look, rate_of(crew));
+double rate_of(const HostileFleet& fleet) {
+  return fleet.index() % 2 == 0 ? kJustBelowFlooding : kNoLimit;
 }
 
-void flood_absurd_views(HostileCrew& crew) {
+void flood_views(HostileFleet& fleet) {
+  const auto look = [&fleet](HostileClient& client) {
+    client.queue(view_at(anywhere(fleet.random(), kFarChunk), kViewRadiusMax, kViewRadiusMax));
+  };
+  fleet.flood(say_nothing, look, rate_of(fleet));
+}
+
+void flood_absurd_views(HostileFleet& fleet) {
   const auto look = [](HostileClient& client) { client.queue(view_at({}, 255, 255)); };
-  crew.flood(say_nothing, look, kNoLimit);
+  fleet.flood(say_nothing, look, kNoLimit);
 }
 
 /// Of so many chunks of a block around the middle, each said to be held as it was after edit 1.
@@ -96,16 +98,17 @@ std::vector<EncodedMessage> claims_of(std::int32_t reach, SplitMix64& random) {
       }
     }
   }
-  std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  std::sort(chunks.begin(), chunks.end(),
+            [](const auto& a, const auto& b) { return a.key < b.key; });
   std::vector<EncodedMessage> out;
   for (const Message& message : held_messages(chunks)) out.push_back(encode_message(message));
   return out;
 }
 
-void claim_falsely(HostileCrew& crew) {
+void claim_falsely(HostileFleet& fleet) {
   // 29,791 chunks fit what a session may claim, and are claimed again and again; 117,649 do not.
-  const bool fits = crew.index() % 2 == 0;
-  const std::vector<EncodedMessage> claims = claims_of(fits ? 15 : 24, crew.random());
+  const bool fits = fleet.index() % 2 == 0;
+  const std::vector<EncodedMessage> claims = claims_of(fits ? 15 : 24, fleet.random());
   std::size_t next = 0;
   const auto begin = [&](HostileClient& client) {
     next = 0;
@@ -115,25 +118,27 @@ void claim_falsely(HostileCrew& crew) {
     client.queue(claims[next]);
     next = (next + 1) % claims.size();
   };
-  crew.flood(begin, claim, rate_of(crew));
+  fleet.flood(begin, claim, rate_of(fleet));
 }
 
-void request_chunks(HostileCrew& crew) {
-  const auto begin = [](HostileClient& client) { client.queue(view_at({}, kSomeRadius, kSomeRadius)); };
-  const auto request = [&crew](HostileClient& client) {
+void request_chunks(HostileFleet& fleet) {
+  const auto begin = [](HostileClient& client) {
+    client.queue(view_at({}, kSomeRadius, kSomeRadius));
+  };
+  const auto request = [&fleet](HostileClient& client) {
     ChunkRequest wish;
     for (std::size_t i = 0; i < kChunkRequestKeysMax; ++i) {
-      wish.keys.push_back({0, anywhere(crew.random(), kSomeRadius)});
+      wish.keys.push_back({0, anywhere(fleet.random(), kSomeRadius)});
     }
     client.queue(wish);
   };
-  crew.flood(begin, request, rate_of(crew));
+  fleet.flood(begin, request, rate_of(fleet));
 }
 
-/// Edits of this shape in a place of the crew's own, far from everybody.
+/// Edits of this shape in a place of the fleet's own, far from everybody.
 template <class ShapeAt>
-void flood_edits(HostileCrew& crew, const ShapeAt& shape_at) {
-  const VoxelPos home{1 << 20, 0, static_cast<std::int32_t>(crew.index() + 1) << 12};
+void flood_edits(HostileFleet& fleet, const ShapeAt& shape_at) {
+  const VoxelPos home{1 << 20, 0, static_cast<std::int32_t>(fleet.index() + 1) << 12};
   ClientSequence next = 0;
   const auto begin = [&](HostileClient& client) {
     next = 0;
@@ -141,41 +146,43 @@ void flood_edits(HostileCrew& crew, const ShapeAt& shape_at) {
     client.queue(view_at({home.x / edge, home.y / edge, home.z / edge}, kSomeRadius, kSomeRadius));
   };
   const auto edit = [&](HostileClient& client) {
-    const VoxelPos at{home.x + crew.random().between(-64, 64), crew.random().between(-64, 64),
-                      home.z + crew.random().between(-64, 64)};
-    const auto material = static_cast<Material>(crew.random().below(2));
+    const VoxelPos at{home.x + fleet.random().between(-64, 64), fleet.random().between(-64, 64),
+                      home.z + fleet.random().between(-64, 64)};
+    const auto material = static_cast<Material>(fleet.random().below(2));
     client.queue(EditRequest{++next, 0, {shape_at(at), {}, material}});
   };
-  crew.flood(begin, edit, rate_of(crew));
+  fleet.flood(begin, edit, rate_of(fleet));
 }
 
-void edit_too_often(HostileCrew& crew) {
-  flood_edits(crew, [](const VoxelPos& at) { return EditShape{SetVoxel{at}}; });
+void edit_too_often(HostileFleet& fleet) {
+  flood_edits(fleet, [](const VoxelPos& at) { return EditShape{SetVoxel{at}}; });
 }
 
-void edit_too_much(HostileCrew& crew) {
-  constexpr std::uint16_t kRadius = 60;  // 905,000 voxels, just below what one edit may have by default
-  flood_edits(crew, [](const VoxelPos& at) { return EditShape{FillSphere{at, kRadius}}; });
+void edit_too_much(HostileFleet& fleet) {
+  constexpr std::uint16_t kRadius =
+      60;  // 905,000 voxels, just below what one edit may have by default
+  flood_edits(fleet, [](const VoxelPos& at) { return EditShape{FillSphere{at, kRadius}}; });
 }
 
-void travel_too_often(HostileCrew& crew) {
+void travel_too_often(HostileFleet& fleet) {
   std::uint32_t request = 0;
   const auto begin = [&](HostileClient& client) {
     request = 0;
     client.queue(view_at({}, kSomeRadius, kSomeRadius));
   };
   const auto travel = [&](HostileClient& client) {
-    client.queue(Travel{++request, TravelTo::sequence, crew.random().below(1'000), 0});
+    client.queue(
+        HistoryRequest{++request, HistoryTarget::sequence, fleet.random().below(1'000), 0});
   };
-  crew.flood(begin, travel, rate_of(crew));
+  fleet.flood(begin, travel, rate_of(fleet));
 }
 
-void command_too_often(HostileCrew& crew) {
+void command_too_often(HostileFleet& fleet) {
   std::uint32_t id = 0;
   const auto command = [&](HostileClient& client) {
     client.queue(CommandRequest{++id, id % 2 == 0 ? "undo" : std::string(kCommandBytesMax, 'x')});
   };
-  crew.flood(say_nothing, command, rate_of(crew));
+  fleet.flood(say_nothing, command, rate_of(fleet));
 }
 
 // ---- before there is a session
@@ -189,7 +196,7 @@ Bytes framed_hello() {
   return out;
 }
 
-void open_halfway(HostileCrew& crew) {
+void open_halfway(HostileFleet& fleet) {
   constexpr std::size_t kOpenMax = 500;  // of each thread: far fewer than a process may have open
   constexpr std::uint32_t kAddresses = 250;
   constexpr int kPerStep = 4;
@@ -202,22 +209,22 @@ void open_halfway(HostileCrew& crew) {
         ++it;
         continue;
       }
-      crew.end(**it);
+      fleet.end(**it);
       it = open.erase(it);
     }
   };
-  for (std::uint32_t turn = 0; !crew.is_over(); ++turn) {
+  for (std::uint32_t turn = 0; !fleet.is_over(); ++turn) {
     for (int i = 0; i < kPerStep && open.size() < kOpenMax; ++i) {
       // Every other thread from as many addresses as it likes, the others from the one that honest clients have, too.
-      const std::uint32_t other = crew.index() % 2 == 0 ? 0 : 1 + crew.random().below(kAddresses);
-      auto client = crew.connect(HostileCrew::kLoopback + other);
+      const std::uint32_t other = fleet.index() % 2 == 0 ? 0 : 1 + fleet.random().below(kAddresses);
+      auto client = fleet.connect(HostileFleet::kLoopback + other);
       if (client == nullptr) break;
       const Bytes hello = framed_hello();
       if (turn % 2 == 0) client->queue_bytes(ByteView(hello).first(hello.size() / 2));
       open.push_back(std::move(client));
     }
     look(false);
-    crew.pause_ms(1);
+    fleet.pause_ms(1);
   }
   look(true);
 }
@@ -240,7 +247,8 @@ Bytes garbage(SplitMix64& random, std::uint64_t sort) {
       break;
     case 3:  // a message with one bit turned over
       out = hello;
-      out[kFrameHeaderBytes + random.below(static_cast<std::uint32_t>(out.size() - kFrameHeaderBytes))] ^=
+      out[kFrameHeaderBytes +
+          random.below(static_cast<std::uint32_t>(out.size() - kFrameHeaderBytes))] ^=
           static_cast<std::uint8_t>(1U << random.below(8));
       break;
     default:  // a fragment after the other of a message that never ends
@@ -254,31 +262,31 @@ Bytes garbage(SplitMix64& random, std::uint64_t sort) {
   return out;
 }
 
-void send_garbage(HostileCrew& crew) {
+void send_garbage(HostileFleet& fleet) {
   constexpr int kWaitMs = 200;
-  for (std::uint64_t sort = crew.index(); !crew.is_over(); ++sort) {
-    const auto client = crew.connect();
+  for (std::uint64_t sort = fleet.index(); !fleet.is_over(); ++sort) {
+    const auto client = fleet.connect();
     if (client == nullptr) return;
-    client->queue_bytes(garbage(crew.random(), sort));
-    for (int ms = 0; ms < kWaitMs && client->is_open() && !crew.is_over(); ++ms) {
+    client->queue_bytes(garbage(fleet.random(), sort));
+    for (int ms = 0; ms < kWaitMs && client->is_open() && !fleet.is_over(); ++ms) {
       client->flush();
       if (client->queued() == 0) client->shutdown_send();
       client->wait(1, true);
       client->read();
     }
-    crew.end(*client);
+    fleet.end(*client);
   }
 }
 
 /// No attack at all: bytes between two sockets of its own. What others feel of it is what a busy machine does to them.
-void keep_the_machine_busy(HostileCrew& crew) {
+void keep_the_machine_busy(HostileFleet& fleet) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;
   const Descriptor in(ends[0]), out(ends[1]);
   std::array<std::uint8_t, 16 * 1024> bytes{};
-  while (!crew.is_over()) {
+  while (!fleet.is_over()) {
     const ssize_t sent = ::send(in.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent > 0) crew.outcome.bytes_sent += static_cast<std::uint64_t>(sent);
+    if (sent > 0) fleet.outcome.bytes_sent += static_cast<std::uint64_t>(sent);
     while (::recv(out.get(), bytes.data(), bytes.size(), MSG_DONTWAIT) > 0) {
     }
   }
@@ -290,13 +298,15 @@ constexpr std::array<Attack, 14> kAttacks = {{
     {"never-reads", "a view of radius 64, and nothing is ever read", never_read},
     {"unread-pings", "the same, and 9,000 pings a second whose answers are not read", ping_unread},
     {"byte-a-second", "a view of radius 64, one byte read a second", read_a_byte_a_second},
-    {"views", "views of radius 64 anywhere in the world, 9,000 a second and as many as the socket takes",
+    {"views",
+     "views of radius 64 anywhere in the world, 9,000 a second and as many as the socket takes",
      flood_views},
     {"absurd-views", "views of radius 255", flood_absurd_views},
     {"claims", "29,791 chunks said to be held, again and again; and 117,649", claim_falsely},
     {"half-open", "connections that say nothing, or half a hello; from one address and from 250",
      open_halfway},
-    {"garbage", "random bytes, frames of 4 GiB, frames cut short, bits turned over, messages without end",
+    {"garbage",
+     "random bytes, frames of 4 GiB, frames cut short, bits turned over, messages without end",
      send_garbage},
     {"chunk-requests", "64 chunks of a view a message, again and again", request_chunks},
     {"edits", "single voxels, 9,000 a second and as many as the socket takes", edit_too_often},
@@ -309,16 +319,16 @@ AttackOutcome play(const Attack& attack, std::uint16_t port, unsigned index, dou
                    std::uint64_t seed) {
   constexpr int kLowest = 19;
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLowest);
-  HostileCrew crew(port, index, seconds, seed);
-  attack.play(crew);
+  HostileFleet fleet(port, index, seconds, seed);
+  attack.play(fleet);
   rusage used{};
   if (::getrusage(RUSAGE_THREAD, &used) == 0) {
     const auto seconds_of = [](const timeval& time) {
       return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / 1e6;
     };
-    crew.outcome.core_seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
+    fleet.outcome.core_seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
   }
-  return std::move(crew.outcome);
+  return std::move(fleet.outcome);
 }
 
 }  // namespace
@@ -344,8 +354,8 @@ void AttackOutcome::merge(const AttackOutcome& other) {
   core_seconds += other.core_seconds;
 }
 
-RunningAttack::RunningAttack(const Attack& attack, std::uint16_t port, unsigned clients, double seconds,
-                             std::uint64_t seed)
+RunningAttack::RunningAttack(const Attack& attack, std::uint16_t port, unsigned clients,
+                             double seconds, std::uint64_t seed)
     : outcomes_(clients) {
   for (unsigned i = 0; i < clients; ++i) {
     threads_.emplace_back([=, this] { outcomes_[i] = play(attack, port, i, seconds, seed); });

@@ -10,12 +10,12 @@
 
 namespace runstone::bench {
 
-class HostileCrew;
+class HostileFleet;
 
 struct Attack {
   const char* name;
-  const char* what;                 // for people
-  void (*play)(HostileCrew& crew);  // one thread of the attack, until its time is over
+  const char* what;                   // for people
+  void (*play)(HostileFleet& fleet);  // one thread of the attack, until its time is over
 };
 /// All of them, by name.
 std::span<const Attack> all_attacks();

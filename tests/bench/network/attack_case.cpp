@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "tests/bench/network/attack.hpp"
-#include "tests/bench/network/crowd.hpp"
+#include "tests/bench/network/fleet.hpp"
 #include "tests/bench/network/join_probe.hpp"
 
 namespace runstone::bench {
@@ -23,7 +23,7 @@ constexpr std::array<const char*, 3> kPhases = {"before", "during", "after"};
 
 struct AttackResult {
   std::string name;
-  std::array<CrowdSight, 3> seen;  // by phase
+  std::array<FleetSight, 3> seen;  // by phase
   JoinProbe::Joins joins;
   AttackOutcome outcome;
   std::map<std::string, std::uint64_t>
@@ -56,13 +56,15 @@ std::map<std::string, std::uint64_t> reasons_in(const std::string& log) {
 
 class AttackRun {
  public:
-  AttackRun(Lab& lab, LabLink& link, const Attack& attack) : lab_(lab), link_(link), attack_(attack) {}
+  AttackRun(Lab& lab, LabLink& link, const Attack& attack)
+      : lab_(lab), link_(link), attack_(attack) {}
 
   Result<AttackResult, std::string> run() {
     // A peer that says nothing is sent away within the attack, not a minute after it.
     constexpr const char* kIdleSeconds = "5";
-    auto server = lab_.start_server(link_, lab_.fresh("world"),
-                                    {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
+    auto server =
+        lab_.start_server(link_, lab_.fresh("world"),
+                          {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
     if (!server) return Unexpected<std::string>{server.error()};
     server_ = *std::move(server);
     AttackResult out;
@@ -70,7 +72,8 @@ class AttackRun {
     for (const Phase phase : {before, during, after}) {
       if (const auto done = play(phase, out); !done) return Unexpected<std::string>{done.error()};
     }
-    if (const auto ended = lab_.stop_server(server_); !ended) return Unexpected<std::string>{ended.error()};
+    if (const auto ended = lab_.stop_server(server_); !ended)
+      return Unexpected<std::string>{ended.error()};
     out.logged = reasons_in(server_.program->log());
     return out;
   }
@@ -79,9 +82,9 @@ class AttackRun {
   Done play(Phase phase, AttackResult& out) {
     const double seconds = lab_.options().attack_seconds;
     // Bots without a replica verify all that comes.
-    auto crowd =
-        Crowd::join(lab_, link_, server_.address, lab_.options().attack_bots, seconds, {"--replicas", "0"});
-    if (!crowd) return Unexpected<std::string>{crowd.error()};
+    auto fleet = Fleet::join(lab_, link_, server_.address, lab_.options().attack_bots, seconds,
+                             {"--replicas", "0"});
+    if (!fleet) return Unexpected<std::string>{fleet.error()};
     const double cores_before = server_.program->core_seconds();
     std::optional<RunningAttack> attack;
     std::optional<JoinProbe> probe;
@@ -101,7 +104,7 @@ class AttackRun {
       out.outcome = attack->finish();
       out.attacker_cores = out.outcome.core_seconds / seconds;
     }
-    const auto seen = crowd->finish(lab_);
+    const auto seen = fleet->finish(lab_);
     if (!seen) return Unexpected<std::string>{seen.error()};
     out.seen[phase] = *seen;
     return {};
@@ -118,7 +121,7 @@ void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
     figures.push_back({"attack", "loopback", "loopback", result.name, std::move(name), value});
   };
   for (const Phase phase : {before, during, after}) {
-    const CrowdSight& seen = result.seen[phase];
+    const FleetSight& seen = result.seen[phase];
     const std::string when = kPhases[phase];
     add(when + "_p50_ms", seen.p50_ms);
     add(when + "_p99_ms", seen.p99_ms);
@@ -137,7 +140,8 @@ void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
   add("attacker_connections", static_cast<double>(result.outcome.connections));
   add("attacker_sent_mb", static_cast<double>(result.outcome.bytes_sent) / 1e6);
   add("attacker_received_mb", static_cast<double>(result.outcome.bytes_received) / 1e6);
-  const auto add_reasons = [&](const char* where, const std::map<std::string, std::uint64_t>& reasons) {
+  const auto add_reasons = [&](const char* where,
+                               const std::map<std::string, std::uint64_t>& reasons) {
     std::map<std::string, std::uint64_t> sums;  // by reason, without the text behind it
     for (const auto& [reason, count] : reasons) sums[reason.substr(0, reason.find(':'))] += count;
     for (const auto& [reason, count] : sums) {
@@ -158,25 +162,27 @@ std::string list_of(const std::map<std::string, std::uint64_t>& reasons) {
 
 void write_rows(const AttackResult& result, std::string& latencies, std::string& answers) {
   const auto& seen = result.seen;
-  const auto times = [](const CrowdSight& of) {
-    return fmt::format("{}, {}, {}", number_text(of.p50_ms), number_text(of.p99_ms), number_text(of.max_ms));
+  const auto times = [](const FleetSight& of) {
+    return fmt::format("{}, {}, {}", number_text(of.p50_ms), number_text(of.p99_ms),
+                       number_text(of.max_ms));
   };
   double samples = 0, never = 0, disconnects = 0, violations = 0;
-  for (const CrowdSight& phase : seen) {
+  for (const FleetSight& phase : seen) {
     samples += phase.samples;
     never += phase.never;
     disconnects += phase.disconnects;
     violations += phase.violations;
   }
-  fmt::format_to(std::back_inserter(latencies),
-                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, {:.0f}, "
-                 "{:.0f} | {:.2f}, "
-                 "{:.2f} | {:.2f} |\n",
-                 result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples, never,
-                 disconnects, violations, result.joins.open, result.joins.tried,
-                 number_text(result.joins.slowest_ms), result.resident_mb[before], result.resident_mb[during],
-                 result.resident_mb[after], result.server_cores[before], result.server_cores[during],
-                 result.attacker_cores);
+  fmt::format_to(
+      std::back_inserter(latencies),
+      "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, {:.0f}, "
+      "{:.0f} | {:.2f}, "
+      "{:.2f} | {:.2f} |\n",
+      result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples, never,
+      disconnects, violations, result.joins.open, result.joins.tried,
+      number_text(result.joins.slowest_ms), result.resident_mb[before], result.resident_mb[during],
+      result.resident_mb[after], result.server_cores[before], result.server_cores[during],
+      result.attacker_cores);
   fmt::format_to(std::back_inserter(answers), "| {} | {} | {}, {} | {} | {} |\n", result.name,
                  result.outcome.connections,
                  number_text(static_cast<double>(result.outcome.bytes_sent) / 1e6),
@@ -192,28 +198,34 @@ Done measure_attacks(Lab& lab, LabFindings& findings) {
   std::string latencies, answers;
   for (const Attack& attack : all_attacks()) {
     const auto& asked = lab.options().attacks;
-    if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end()) continue;
+    if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end())
+      continue;
     const auto result = AttackRun(lab, **link, attack).run();
-    if (!result) return Unexpected<std::string>{fmt::format("attack {}: {}", attack.name, result.error())};
+    if (!result)
+      return Unexpected<std::string>{fmt::format("attack {}: {}", attack.name, result.error())};
     add_figures(*result, findings.figures);
     write_rows(*result, latencies, answers);
     fmt::print(lab.progress(), "attack {}\n", attack.name);
     lab.progress().flush();
   }
   findings.tables += fmt::format(
-      "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, during and "
+      "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, "
+      "during and "
       "after an attack of "
-      "{} clients; a server for each attack. Latency from when an edit was due until each bot that sees it "
+      "{} clients; a server for each attack. Latency from when an edit was due until each bot that "
+      "sees it "
       "had received and "
       "verified it.\n\n"
-      "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, rules "
+      "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, "
+      "rules "
       "broken | newcomers let in, "
       "slowest ms | server MB before, peak, after | server cores before, during | attackers' cores "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n{}"
-      "\n| attack | connections | MB sent, received | what attackers were told | what the server logged "
+      "\n| attack | connections | MB sent, received | what attackers were told | what the server "
+      "logged "
       "|\n|---|---|---|---|---|\n{}",
-      lab.options().attack_bots, kCrowdEditsPerSecond, lab.options().attack_seconds, lab.options().attackers,
-      latencies, answers);
+      lab.options().attack_bots, kFleetEditsPerSecond, lab.options().attack_seconds,
+      lab.options().attackers, latencies, answers);
   findings.tables += "\n";
   for (const Attack& attack : all_attacks()) {
     findings.tables += fmt::format("- {}: {}\n", attack.name, attack.what);

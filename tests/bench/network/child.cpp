@@ -74,7 +74,8 @@ bool pause_for(double seconds) {
 Child::Child(pid_t pid, std::string name, std::string log)
     : pid_(pid), name_(std::move(name)), log_(std::move(log)) {}
 
-Result<std::unique_ptr<Child>, std::string> Child::start(Place& place, std::vector<std::string> words,
+Result<std::unique_ptr<Child>, std::string> Child::start(Place& place,
+                                                         std::vector<std::string> words,
                                                          std::string log) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);

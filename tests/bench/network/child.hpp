@@ -16,7 +16,8 @@ namespace runstone::bench {
 class Child {
  public:
   /// `words`: the program's file and its arguments. `log` takes its standard output and error.
-  static Result<std::unique_ptr<Child>, std::string> start(Place& place, std::vector<std::string> words,
+  static Result<std::unique_ptr<Child>, std::string> start(Place& place,
+                                                           std::vector<std::string> words,
                                                            std::string log);
   /// Kills it if it still runs.
   ~Child();

@@ -50,9 +50,10 @@ class Answerer {
   void read() {
     asio::async_read(socket_, asio::buffer(message_), [this](asio::error_code error, std::size_t) {
       if (error) return;
-      asio::async_write(socket_, asio::buffer(message_), [this](asio::error_code wrong, std::size_t) {
-        if (!wrong) read();
-      });
+      asio::async_write(socket_, asio::buffer(message_),
+                        [this](asio::error_code wrong, std::size_t) {
+                          if (!wrong) read();
+                        });
     });
   }
 
@@ -90,16 +91,18 @@ struct EchoProbe::Parts {
     });
   }
   void write() {
-    asio::async_write(socket, asio::buffer(out.front()), [this](asio::error_code error, std::size_t) {
-      if (error) return;
-      out.pop_front();
-      if (!out.empty()) write();
-    });
+    asio::async_write(socket, asio::buffer(out.front()),
+                      [this](asio::error_code error, std::size_t) {
+                        if (error) return;
+                        out.pop_front();
+                        if (!out.empty()) write();
+                      });
   }
   void read() {
     asio::async_read(socket, asio::buffer(in), [this](asio::error_code error, std::size_t) {
       if (error) return;
-      back_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - under_way.front()).count());
+      back_ms.push_back(
+          std::chrono::duration<double, std::milli>(Clock::now() - under_way.front()).count());
       under_way.pop_front();
       read();
     });

@@ -26,13 +26,13 @@ std::string number_text(double value) {
 void write_csv(std::span<const Figure> figures, std::ostream& out) {
   fmt::print(out, "experiment,profile,link,case,figure,value\n");
   for (const Figure& figure : figures) {
-    fmt::print(out, "{},{},{},{},{},{}\n", figure.experiment, figure.profile, figure.link, figure.what,
-               figure.name, figure.value);
+    fmt::print(out, "{},{},{},{},{},{}\n", figure.experiment, figure.profile, figure.link,
+               figure.what, figure.name, figure.value);
   }
 }
 
-void write_json(const Machine& machine, std::span<const Figure> figures, std::span<const Bar> bars,
-                std::ostream& out) {
+void write_json(const Machine& machine, std::span<const Figure> figures,
+                std::span<const Target> targets, std::ostream& out) {
   nlohmann::ordered_json json;
   json["machine"] = json_of(machine);
   json["figures"] = nlohmann::ordered_json::array();
@@ -45,11 +45,11 @@ void write_json(const Machine& machine, std::span<const Figure> figures, std::sp
                                {"value", json_of(figure.value)}});
   }
   json["bars"] = nlohmann::ordered_json::array();
-  for (const Bar& bar : bars) {
-    json["bars"].push_back({{"case", bar.what},
-                            {"bar", bar.wanted},
-                            {"measured", bar.measured},
-                            {"verdict", name_of(bar.verdict)}});
+  for (const Target& target : targets) {
+    json["bars"].push_back({{"case", target.what},
+                            {"bar", target.wanted},
+                            {"measured", target.measured},
+                            {"verdict", name_of(target.verdict)}});
   }
   fmt::print(out, "{}\n", json.dump(1));
 }

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "tests/bench/harness/bar.hpp"
 #include "tests/bench/harness/machine.hpp"
+#include "tests/bench/harness/target.hpp"
 
 namespace runstone::bench {
 
@@ -19,8 +19,8 @@ struct Figure {
 /// One line of names, then one a figure. Infinite is "inf".
 void write_csv(std::span<const Figure> figures, std::ostream& out);
 /// {machine, figures, bars}. Infinite is "inf".
-void write_json(const Machine& machine, std::span<const Figure> figures, std::span<const Bar> bars,
-                std::ostream& out);
+void write_json(const Machine& machine, std::span<const Figure> figures,
+                std::span<const Target> targets, std::ostream& out);
 
 /// Milliseconds and other numbers for tables: "12.3", "0.45", "inf".
 std::string number_text(double value);

@@ -28,7 +28,9 @@ sockaddr_in endpoint(std::uint32_t address, std::uint16_t port) {
   return out;
 }
 
-bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINPROGRESS; }
+bool would_block(int error) {
+  return error == EAGAIN || error == EWOULDBLOCK || error == EINPROGRESS;
+}
 
 void set_option(int socket, int level, int name, int value) {
   // A socket without the option still attacks.
@@ -37,7 +39,8 @@ void set_option(int socket, int level, int name, int value) {
 
 KeyPair key_of(std::uint64_t identity) {
   KeySeed seed{};
-  for (std::size_t i = 0; i < sizeof identity; ++i) seed[i] = static_cast<std::uint8_t>(identity >> (8 * i));
+  for (std::size_t i = 0; i < sizeof identity; ++i)
+    seed[i] = static_cast<std::uint8_t>(identity >> (8 * i));
   return key_pair_of(seed);
 }
 
@@ -54,8 +57,9 @@ HostileClient::HostileClient(std::uint16_t port, std::uint32_t from, int receive
   const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
   // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
   if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) return;
-  is_open_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
-             would_block(errno);
+  is_open_ =
+      ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
+      would_block(errno);
   // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
@@ -76,12 +80,14 @@ bool HostileClient::open_session(std::uint64_t identity, int wait_ms) {
     if (!came_ || is_proven) continue;
     is_proven = true;
     welcome_ = *came_;
-    queue(Proof{sign(keys, client_transcript(hello, welcome_))});
+    queue(ClientAuth{sign(keys, client_transcript(hello, welcome_))});
   }
   return is_open() && has_session_;
 }
 
-void HostileClient::queue_bytes(ByteView bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+void HostileClient::queue_bytes(ByteView bytes) {
+  out_.insert(out_.end(), bytes.begin(), bytes.end());
+}
 
 void HostileClient::flush() {
   while (is_open_ && queued() > 0) {
@@ -103,7 +109,8 @@ void HostileClient::flush() {
 void HostileClient::read(std::size_t bytes_max) {
   std::array<std::uint8_t, 16 * 1024> buffer;
   for (std::size_t got = 0; is_open_ && got < bytes_max;) {
-    const ssize_t count = ::recv(socket_.get(), buffer.data(), std::min(buffer.size(), bytes_max - got), 0);
+    const ssize_t count =
+        ::recv(socket_.get(), buffer.data(), std::min(buffer.size(), bytes_max - got), 0);
     if (count < 0 && (would_block(errno) || errno == ENOTCONN)) return;
     if (count <= 0) {
       is_open_ = false;
@@ -111,9 +118,9 @@ void HostileClient::read(std::size_t bytes_max) {
     }
     got += static_cast<std::size_t>(count);
     bytes_received_ += static_cast<std::uint64_t>(count);
-    const auto fed =
-        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(count)),
-                     [this](FrameClass frame_class, ByteView body) { return take(frame_class, body); });
+    const auto fed = reader_.feed(
+        ByteView(buffer.data(), static_cast<std::size_t>(count)),
+        [this](FrameClass frame_class, ByteView body) { return take(frame_class, body); });
     if (!fed) is_open_ = false;
   }
 }
@@ -134,13 +141,14 @@ std::string HostileClient::ending() const {
 
 // Terrain and commits are only counted: to decode them would slow the attack down.
 Result<void> HostileClient::take(FrameClass frame_class, ByteView body) {
-  if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_)) return {};
+  if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_))
+    return {};
   auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
   if (!message) return Unexpected<Error>{message.error()};
   if (auto* welcome = std::get_if<Welcome>(&*message)) {
     chunk_edge_ = welcome->chunk_edge;
     came_ = std::move(*welcome);
-  } else if (std::holds_alternative<Ready>(*message)) {
+  } else if (std::holds_alternative<SessionAccepted>(*message)) {
     has_session_ = true;
   } else if (auto* goodbye = std::get_if<Goodbye>(&*message)) {
     goodbye_ = std::move(*goodbye);

@@ -34,10 +34,11 @@ using Join = std::array<double, kParts.size()>;
 Result<Join, std::string> join_once(Lab& lab, LabLink& link, const std::string& address,
                                     const std::string& script) {
   const std::string report_file = lab.fresh("report.json");
-  auto client = lab.start_client(
-      link, "runstone-client",
-      {"--connect", address, "--name", "newcomer", "--no-render", "--view", fmt::to_string(kViewRadius),
-       "--view-vertical", fmt::to_string(kViewRadiusV), "--script", script, "--report", report_file});
+  auto client =
+      lab.start_client(link, "runstone-client",
+                       {"--connect", address, "--name", "newcomer", "--no-render", "--view",
+                        fmt::to_string(kViewRadius), "--view-vertical",
+                        fmt::to_string(kViewRadiusV), "--script", script, "--report", report_file});
   if (!client) return Unexpected<std::string>{client.error()};
   if (const auto ended = lab.finish(**client, 2 * kWaitSeconds); !ended) {
     return Unexpected<std::string>{ended.error()};
@@ -82,26 +83,30 @@ Done measure_joins(Lab& lab, LabFindings& findings) {
   if (!world) return Unexpected<std::string>{world.error()};
   std::string& table = findings.tables;
   const auto into = std::back_inserter(table);
-  fmt::format_to(into,
-                 "\n### Joins\n\nms from the start of the connection, median and slowest of {}:\n\n| link |",
-                 lab.options().repetitions);
+  fmt::format_to(
+      into,
+      "\n### Joins\n\nms from the start of the connection, median and slowest of {}:\n\n| link |",
+      lab.options().repetitions);
   for (const Part& part : kParts) fmt::format_to(into, " {} |", part.title);
   fmt::format_to(into, "\n|---|---|---|---|---|---|---|\n");
   for (const test::LinkProfile& profile : lab.profiles()) {
     const auto joins = joins_of(lab, profile, *world);
-    if (!joins) return Unexpected<std::string>{fmt::format("join, {}: {}", profile.name, joins.error())};
+    if (!joins)
+      return Unexpected<std::string>{fmt::format("join, {}: {}", profile.name, joins.error())};
     const char* link = name_of(profile.passes_all() ? LinkKind::loopback : lab.kind());
     fmt::format_to(into, "| {} ({}) |", profile.name, link);
     for (std::size_t i = 0; i < kParts.size(); ++i) {
       std::vector<double> samples;
       for (const Join& join : *joins) samples.push_back(join[i]);
-      const double middle = median(samples), slowest = *std::max_element(samples.begin(), samples.end());
+      const double middle = median(samples),
+                   slowest = *std::max_element(samples.begin(), samples.end());
       fmt::format_to(into, " {}, {} |", number_text(middle), number_text(slowest));
-      std::string name = i == kBytes ? "bytes" : fmt::format("{}_{}", kParts[i].part, kParts[i].time);
+      std::string name =
+          i == kBytes ? "bytes" : fmt::format("{}_{}", kParts[i].part, kParts[i].time);
       findings.figures.push_back({"join", std::string(profile.name), link, "median", name, middle});
       findings.figures.push_back({"join", std::string(profile.name), link, "max", name, slowest});
       if (i == kNearMost && profile.name == "broadband") {
-        findings.bars.push_back(
+        findings.targets.push_back(
             {"join on broadband, imported world, warm server: 80 % of the near view meshed",
              number_text(kNearMostMsMax) + " ms",
              fmt::format("{} ms; the slowest {} ms", number_text(middle), number_text(slowest)),

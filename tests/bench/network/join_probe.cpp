@@ -36,7 +36,8 @@ void JoinProbe::run(std::uint16_t port) {
     ++joins_.tried;
     if (newcomer.open_session(mix64(~who), kJoinMsMax)) {
       ++joins_.open;
-      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+      const std::chrono::duration<double, std::milli> took =
+          std::chrono::steady_clock::now() - began;
       joins_.slowest_ms = std::max(joins_.slowest_ms, took.count());
     }
     pause_for(kPauseSeconds);

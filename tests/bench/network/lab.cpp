@@ -45,13 +45,16 @@ Result<std::unique_ptr<LabLink>, std::string> Lab::make_link(const test::LinkPro
   return LabLink::make(profile, kind_, options_.seed);
 }
 
-std::string Lab::fresh(const std::string& name) { return folder_ / fmt::format("{}-{}", names_++, name); }
+std::string Lab::fresh(const std::string& name) {
+  return folder_ / fmt::format("{}-{}", names_++, name);
+}
 
 Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::string& world,
                                                  const std::vector<std::string>& flags) {
   const std::string port_file = fresh("port");
-  std::vector<std::string> words = {program_file("runstone-server"), "--world",     world,    "--listen",
-                                    link.server_address() + ":0",    "--port-file", port_file};
+  std::vector<std::string> words = {
+      program_file("runstone-server"), "--world",     world,    "--listen",
+      link.server_address() + ":0",    "--port-file", port_file};
   words.insert(words.end(), flags.begin(), flags.end());
   auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));
   if (!program) return failure(program.error());
@@ -72,7 +75,8 @@ Done Lab::stop_server(LabServer& server) {
   return finish(*server.program, kStartSeconds);
 }
 
-Result<std::unique_ptr<Child>, std::string> Lab::start_client(LabLink& link, const std::string& program,
+Result<std::unique_ptr<Child>, std::string> Lab::start_client(LabLink& link,
+                                                              const std::string& program,
                                                               std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program_file(program));
   return Child::start(link.client_side(), std::move(arguments), fresh(program + ".log"));
@@ -82,7 +86,8 @@ Done Lab::finish(Child& child, double seconds) {
   const auto status = child.wait(seconds);
   if (interrupted()) return failure("interrupted");
   if (!status) return failure(child.explain("did not end in time"));
-  if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0) return failure(child.explain(how_it_ended(*status)));
+  if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0)
+    return failure(child.explain(how_it_ended(*status)));
   return {};
 }
 
@@ -91,7 +96,8 @@ Result<std::string, std::string> Lab::imported_world() {
   const std::string world = fresh("luanti");
   const auto here = Place::here();
   auto import = Child::start(
-      *here, {program_file("runstone-server"), "import", "--luanti", options_.luanti, "--world", world},
+      *here,
+      {program_file("runstone-server"), "import", "--luanti", options_.luanti, "--world", world},
       fresh("import.log"));
   if (!import) return failure(import.error());
   if (const auto done = finish(**import, kImportSeconds); !done) return failure(done.error());

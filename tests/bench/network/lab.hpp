@@ -20,7 +20,7 @@ namespace runstone::bench {
 struct LabFindings {
   std::string tables;
   std::vector<Figure> figures;
-  std::vector<Bar> bars;
+  std::vector<Target> targets;
 };
 using Done = Result<void, std::string>;
 
@@ -52,7 +52,8 @@ class Lab {
   /// Ends it properly; the error says what was wrong.
   Done stop_server(LabServer& server);
   /// Starts a program of ours in the link's client side. `log` as of Child.
-  Result<std::unique_ptr<Child>, std::string> start_client(LabLink& link, const std::string& program,
+  Result<std::unique_ptr<Child>, std::string> start_client(LabLink& link,
+                                                           const std::string& program,
                                                            std::vector<std::string> arguments);
   /// Waits for it and requires exit code 0.
   Done finish(Child& child, double seconds);

@@ -23,8 +23,8 @@ std::string why_no_namespaces() {
   return link ? "" : link.error();
 }
 
-Result<std::unique_ptr<LabLink>, std::string> LabLink::make(const test::LinkProfile& profile, LinkKind kind,
-                                                            std::uint64_t seed) {
+Result<std::unique_ptr<LabLink>, std::string> LabLink::make(const test::LinkProfile& profile,
+                                                            LinkKind kind, std::uint64_t seed) {
   if (profile.passes_all()) kind = LinkKind::loopback;
   RUNSTONE_ASSERT(profile.passes_all() || kind != LinkKind::loopback);
   std::unique_ptr<LabLink> link(new LabLink(kind, profile, seed));

@@ -23,8 +23,8 @@ std::string why_no_namespaces();
 class LabLink {
  public:
   /// A profile that passes everything has no link but loopback; any other one is of `kind`, which is not loopback.
-  static Result<std::unique_ptr<LabLink>, std::string> make(const test::LinkProfile& profile, LinkKind kind,
-                                                            std::uint64_t seed);
+  static Result<std::unique_ptr<LabLink>, std::string> make(const test::LinkProfile& profile,
+                                                            LinkKind kind, std::uint64_t seed);
 
   LinkKind kind() const { return kind_; }
   Place& server_side() { return tun_ ? tun_->server_side() : *here_; }

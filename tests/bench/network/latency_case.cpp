@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "tests/bench/network/echo_probe.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/network/echo_probe.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -104,7 +104,8 @@ void take_report(const json& report, CaseResult& result) {
   // Server and clients read one clock here: what a client believes of the difference is all error.
   const json& clock = report["clock"];
   if (!clock.is_null()) {
-    result.clock_error_ms = std::max(result.clock_error_ms, std::fabs(number_in(clock["offset_us"])) / 1000);
+    result.clock_error_ms =
+        std::max(result.clock_error_ms, std::fabs(number_in(clock["offset_us"])) / 1000);
   }
   result.drifted += number_in(report["replica"]["drifted"]);
   result.terrain_kb += number_in(report["net"]["chunk_bytes"]) / 1000 / 2;
@@ -116,22 +117,26 @@ std::string script_of(const Lab& lab, const Load& load, unsigned client) {
   return fmt::format(
       "wait loaded {0}\nmove 0 ^+4 -20\nwait loaded {0}\nwait 5\n{1}burst {2} {3} 8 {4} wool_red\n"
       "move ~ ~ ~\nwait synced\nwait durable\ncommand {5}\nwait {6}\nwait synced\n",
-      kWaitSeconds, load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "", edits,
-      kEditsPerSecond, lab.options().seed * 2 + client, kDoneCommand, load.bots == 0 ? 2 : kBotsLeaveSeconds);
+      kWaitSeconds, load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "",
+      edits, kEditsPerSecond, lab.options().seed * 2 + client, kDoneCommand,
+      load.bots == 0 ? 2 : kBotsLeaveSeconds);
 }
 
-Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& profile, const Load& load) {
+Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& profile,
+                                         const Load& load) {
   const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
   auto link = lab.make_link(profile);
   if (!link) return failed(link);
-  auto server = lab.start_server(**link, lab.fresh("world"), {"--generator", "terrain", "--seed", "7"});
+  auto server =
+      lab.start_server(**link, lab.fresh("world"), {"--generator", "terrain", "--seed", "7"});
   if (!server) return failed(server);
   std::unique_ptr<Child> bots;
   if (load.bots != 0) {
-    auto started = lab.start_client(**link, "runstone-bot",
-                                    {"--connect", server->address, "--count", fmt::to_string(load.bots),
-                                     "--behaviour", "build", "--rate", fmt::to_string(kBotEditsPerSecond),
-                                     "--duration", "3600", "--patience", fmt::to_string(kWaitSeconds)});
+    auto started =
+        lab.start_client(**link, "runstone-bot",
+                         {"--connect", server->address, "--count", fmt::to_string(load.bots),
+                          "--behaviour", "build", "--rate", fmt::to_string(kBotEditsPerSecond),
+                          "--duration", "3600", "--patience", fmt::to_string(kWaitSeconds)});
     if (!started) return failed(started);
     bots = *std::move(started);
   }
@@ -145,11 +150,11 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
   for (unsigned i = 0; i < 2; ++i) {
     const std::string script = lab.fresh("script.txt"), report = lab.fresh("report.json");
     write_text(script, script_of(lab, load, i));
-    auto client =
-        lab.start_client(**link, "runstone-client",
-                         {"--connect", server->address, "--name", i == 0 ? "carol" : "dave", "--no-render",
-                          "--workers", "1", "--view", fmt::to_string(kViewRadius), "--view-vertical",
-                          fmt::to_string(kViewRadiusV), "--script", script, "--report", report});
+    auto client = lab.start_client(
+        **link, "runstone-client",
+        {"--connect", server->address, "--name", i == 0 ? "carol" : "dave", "--no-render",
+         "--workers", "1", "--view", fmt::to_string(kViewRadius), "--view-vertical",
+         fmt::to_string(kViewRadiusV), "--script", script, "--report", report});
     if (!client) return failed(client);
     clients.push_back({*std::move(client), report});
   }
@@ -206,18 +211,20 @@ std::string what_of(const CaseResult& result) {
 void add_figures(const CaseResult& result, LabFindings& findings) {
   const auto add = [&](const std::string& name, double value) {
     findings.figures.push_back({"latency", std::string(result.profile.name), name_of(result.link),
-                                result.load->bots == 0 ? result.load->name : "streaming 20 clients", name,
-                                value});
+                                result.load->bots == 0 ? result.load->name : "streaming 20 clients",
+                                name, value});
   };
   for (const Stage& stage : kStages) {
     const Ranks* ranks = find(result, stage.title);
     if (ranks == nullptr) continue;
     for (std::size_t i = 0; i < kRanks.size(); ++i) {
-      add(fmt::format("{}{}{}_{}_ms", stage.way, *stage.stage == '\0' ? "" : "_", stage.stage, kRanks[i]),
+      add(fmt::format("{}{}{}_{}_ms", stage.way, *stage.stage == '\0' ? "" : "_", stage.stage,
+                      kRanks[i]),
           (*ranks)[i]);
     }
   }
-  for (std::size_t i = 0; i < kRanks.size(); ++i) add(fmt::format("echo_{}_ms", kRanks[i]), result.echo[i]);
+  for (std::size_t i = 0; i < kRanks.size(); ++i)
+    add(fmt::format("echo_{}_ms", kRanks[i]), result.echo[i]);
   add("remote_edits", result.edits);
   add("remote_never_meshed", result.never);
   add("clock_error_ms", result.clock_error_ms);
@@ -227,24 +234,26 @@ void add_figures(const CaseResult& result, LabFindings& findings) {
   add("forwarder_late_p99_us", result.passed->late_us_p99);
   add("forwarder_late_max_us", result.passed->late_us_max);
   add("forwarder_core_share", result.passed->busy);
-  add("packets_lost", static_cast<double>(result.passed->to_client.lost + result.passed->to_server.lost));
+  add("packets_lost",
+      static_cast<double>(result.passed->to_client.lost + result.passed->to_server.lost));
   add("packets_without_room",
       static_cast<double>(result.passed->to_client.no_room + result.passed->to_server.no_room));
 }
 
-void add_bars(const CaseResult& result, std::vector<Bar>& bars) {
+void add_targets(const CaseResult& result, std::vector<Target>& targets) {
   const auto judged = [&](std::string what, std::string wanted, std::string measured, bool met) {
-    bars.push_back(
-        {std::move(what), std::move(wanted), std::move(measured), met ? Verdict::met : Verdict::missed});
+    targets.push_back({std::move(what), std::move(wanted), std::move(measured),
+                       met ? Verdict::met : Verdict::missed});
   };
   const Ranks* remote = find(result, "another client's: meshed");
   const Ranks* own = find(result, "own, predicted: meshed");
   if (remote == nullptr || own == nullptr) return;
   if (result.profile.passes_all() && !result.load->streams) {
-    judged("remote edit, loopback, idle, submit to meshed: p50", "1 ms", number_text((*remote)[0]) + " ms",
-           (*remote)[0] <= 1);
+    judged("remote edit, loopback, idle, submit to meshed: p50", "1 ms",
+           number_text((*remote)[0]) + " ms", (*remote)[0] <= 1);
     judged("the same: p99, against that of a bare Asio echo in the same run", "3 ms above",
-           fmt::format("{} ms; the echo {} ms", number_text((*remote)[2]), number_text(result.echo[2])),
+           fmt::format("{} ms; the echo {} ms", number_text((*remote)[2]),
+                       number_text(result.echo[2])),
            (*remote)[2] <= result.echo[2] + 3);
   }
   if (!result.profile.passes_all() && result.load->streams && result.profile.loss == 0) {
@@ -259,20 +268,22 @@ void add_bars(const CaseResult& result, std::vector<Bar>& bars) {
 /// A row a case: what was there, and the ends of the way.
 void write_overview(const std::vector<CaseResult>& results, std::string& out) {
   const auto into = std::back_inserter(out);
-  fmt::format_to(
-      into,
-      "| link | load | terrain KB/s each | echo p50, p99 | own meshed p50, p99 | another's meshed p50, p99, "
-      "max | never | clocks off by | forwarder late p99, max µs |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::format_to(into,
+                 "| link | load | terrain KB/s each | echo p50, p99 | own meshed p50, p99 | "
+                 "another's meshed p50, p99, "
+                 "max | never | clocks off by | forwarder late p99, max µs "
+                 "|\n|---|---|---|---|---|---|---|---|---|\n");
   for (const CaseResult& result : results) {
     const Ranks* remote = find(result, "another client's: meshed");
     const Ranks* own = find(result, "own, predicted: meshed");
     if (remote == nullptr || own == nullptr) continue;
     fmt::format_to(
         into, "| {} ({}) | {} | {} | {}, {} | {}, {} | {}, {}, {} | {:.0f} of {:.0f} | {} | {} |\n",
-        result.profile.name, name_of(result.link), result.load->name, number_text(result.terrain_kb_s),
-        number_text(result.echo[0]), number_text(result.echo[2]), number_text((*own)[0]),
-        number_text((*own)[2]), number_text((*remote)[0]), number_text((*remote)[2]),
-        number_text((*remote)[3]), result.never, result.edits, number_text(result.clock_error_ms),
+        result.profile.name, name_of(result.link), result.load->name,
+        number_text(result.terrain_kb_s), number_text(result.echo[0]), number_text(result.echo[2]),
+        number_text((*own)[0]), number_text((*own)[2]), number_text((*remote)[0]),
+        number_text((*remote)[2]), number_text((*remote)[3]), result.never, result.edits,
+        number_text(result.clock_error_ms),
         result.passed ? fmt::format("{}, {}", number_text(result.passed->late_us_p99),
                                     number_text(result.passed->late_us_max))
                       : "–");
@@ -298,9 +309,9 @@ void write_stages(const std::vector<CaseResult>& results, std::string& out) {
       for (const CaseResult* result : of) {
         const Ranks* ranks = find(*result, stage.title);
         fmt::format_to(into, " {} |",
-                       ranks == nullptr
-                           ? "–"
-                           : fmt::format("{}, {}", number_text((*ranks)[0]), number_text((*ranks)[2])));
+                       ranks == nullptr ? "–"
+                                        : fmt::format("{}, {}", number_text((*ranks)[0]),
+                                                      number_text((*ranks)[2])));
       }
       fmt::format_to(into, "\n");
     }
@@ -328,7 +339,7 @@ Done measure_latency(Lab& lab, LabFindings& findings) {
       if (!load.streams) join_kb = result->terrain_kb;
       result->terrain_kb_s = (result->terrain_kb - join_kb) * kEditsPerSecond / lab.options().edits;
       add_figures(*result, findings);
-      add_bars(*result, findings.bars);
+      add_targets(*result, findings.targets);
       fmt::print(lab.progress(), "latency {}\n", what_of(*result));
       lab.progress().flush();
       results.push_back(*std::move(result));

@@ -48,7 +48,8 @@ struct Copies {
   std::int32_t radius_h = 0, radius_v = 0;
 };
 
-Result<Copies, std::string> lay_copies(const std::string& from, const std::string& to, unsigned cells) {
+Result<Copies, std::string> lay_copies(const std::string& from, const std::string& to,
+                                       unsigned cells) {
   auto source = open_world(from, StoreAccess::read_only);
   if (!source) return failure(source.error());
   const auto chunks = (*source)->base_chunks();
@@ -96,8 +97,8 @@ struct Growth {
   double bytes = 0, chunks = 0;
 };
 
-Result<Growth, std::string> load_view(Lab& lab, const std::string& world, std::vector<std::string> flags,
-                                      const Copies& copies) {
+Result<Growth, std::string> load_view(Lab& lab, const std::string& world,
+                                      std::vector<std::string> flags, const Copies& copies) {
   auto link = lab.make_link(test::link_profiles().front());
   if (!link) return failure(link.error());
   flags.insert(flags.end(), {"--view-radius-max", "64"});
@@ -107,12 +108,13 @@ Result<Growth, std::string> load_view(Lab& lab, const std::string& world, std::v
   const auto before = static_cast<double>(server->program->resident_bytes());
   const std::string script = lab.fresh("script.txt");
   write_text(script, fmt::format("wait loaded {}\nquit\n", kLoadSeconds));
-  auto client = lab.start_client(
-      **link, "runstone-client",
-      {"--connect", server->address, "--no-render", "--no-cache", "--view", fmt::to_string(copies.radius_h),
-       "--view-vertical", fmt::to_string(copies.radius_v), "--script", script});
+  auto client = lab.start_client(**link, "runstone-client",
+                                 {"--connect", server->address, "--no-render", "--no-cache",
+                                  "--view", fmt::to_string(copies.radius_h), "--view-vertical",
+                                  fmt::to_string(copies.radius_v), "--script", script});
   if (!client) return failure(client.error());
-  if (const auto ended = lab.finish(**client, 2 * kLoadSeconds); !ended) return failure(ended.error());
+  if (const auto ended = lab.finish(**client, 2 * kLoadSeconds); !ended)
+    return failure(ended.error());
   if (!pause_for(kSettleSeconds)) return failure("interrupted");
   Growth out;
   out.bytes = static_cast<double>(server->program->resident_bytes()) - before;
@@ -129,7 +131,8 @@ Result<Growth, std::string> load_view(Lab& lab, const std::string& world, std::v
 Done measure_memory(Lab& lab, LabFindings& findings) {
   const auto imported = lab.imported_world();
   if (!imported) return failure(imported.error());
-  const auto copies = lay_copies(*imported, lab.fresh("copies"), lab.options().quick ? kCellsQuick : kCells);
+  const auto copies =
+      lay_copies(*imported, lab.fresh("copies"), lab.options().quick ? kCellsQuick : kCells);
   if (!copies) return failure(copies.error());
   const auto real = load_view(lab, copies->world, {}, *copies);
   if (!real) return failure(real.error());
@@ -140,18 +143,19 @@ Done measure_memory(Lab& lab, LabFindings& findings) {
   const double uniform_kb = empty->bytes / kKb / empty->chunks;
   const double all_kb = (real->bytes / kKb - (real->chunks - cells) * uniform_kb) / cells;
   const double mixed_kb = (real->bytes / kKb - (real->chunks - mixed) * uniform_kb) / mixed;
-  fmt::format_to(std::back_inserter(findings.tables),
-                 "\n### Memory of the server\n\nResident set, before and after a client loaded the real "
-                 "world, laid side by "
-                 "side, and as large a view of an empty world.\n\n| cells of the real world | of several "
-                 "materials | chunks "
-                 "loaded | grew by MB | empty: chunks loaded | grew by MB | KB an empty chunk | KB a cell | "
-                 "KB a chunk of several "
-                 "materials |\n|---|---|---|---|---|---|---|---|---|\n| {} | {} | {:.0f} | {} | {:.0f} | {} "
-                 "| {} | {} | {} |\n",
-                 copies->cells, copies->mixed, real->chunks, number_text(real->bytes / 1e6), empty->chunks,
-                 number_text(empty->bytes / 1e6), number_text(uniform_kb), number_text(all_kb),
-                 number_text(mixed_kb));
+  fmt::format_to(
+      std::back_inserter(findings.tables),
+      "\n### Memory of the server\n\nResident set, before and after a client loaded the real "
+      "world, laid side by "
+      "side, and as large a view of an empty world.\n\n| cells of the real world | of several "
+      "materials | chunks "
+      "loaded | grew by MB | empty: chunks loaded | grew by MB | KB an empty chunk | KB a cell | "
+      "KB a chunk of several "
+      "materials |\n|---|---|---|---|---|---|---|---|---|\n| {} | {} | {:.0f} | {} | {:.0f} | {} "
+      "| {} | {} | {} |\n",
+      copies->cells, copies->mixed, real->chunks, number_text(real->bytes / 1e6), empty->chunks,
+      number_text(empty->bytes / 1e6), number_text(uniform_kb), number_text(all_kb),
+      number_text(mixed_kb));
   const auto add = [&](const char* name, double value) {
     findings.figures.push_back({"memory", "loopback", "loopback", "real world", name, value});
   };
@@ -162,12 +166,13 @@ Done measure_memory(Lab& lab, LabFindings& findings) {
   add("empty_loaded", empty->chunks);
   add("empty_grown_bytes", empty->bytes);
   if (lab.options().quick) return {};
-  const auto bar = [&](const char* name, double kb, double most) {
-    findings.bars.push_back({name, number_text(most) + " KB", number_text(kb) + " KB",
-                             kb <= most ? Verdict::met : Verdict::missed});
+  const auto target = [&](const char* name, double kb, double most) {
+    findings.targets.push_back({name, number_text(most) + " KB", number_text(kb) + " KB",
+                                kb <= most ? Verdict::met : Verdict::missed});
   };
-  bar("server memory a loaded chunk of the real world: of several materials", mixed_kb, kMixedKbMax);
-  bar("the same: all", all_kb, kAllKbMax);
+  target("server memory a loaded chunk of the real world: of several materials", mixed_kb,
+         kMixedKbMax);
+  target("the same: all", all_kb, kAllKbMax);
   return {};
 }
 

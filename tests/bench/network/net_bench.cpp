@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "tests/bench/network/attack_case.hpp"
-#include "tests/bench/network/crowd_case.hpp"
+#include "tests/bench/network/fleet_case.hpp"
 #include "tests/bench/network/join_case.hpp"
 #include "tests/bench/network/latency_case.hpp"
 #include "tests/bench/network/memory_case.hpp"
@@ -23,7 +23,7 @@ struct Experiment {
 constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
                                                      {"transfer", measure_transfers},
-                                                     {"crowd", measure_crowds},
+                                                     {"crowd", measure_fleets},
                                                      {"attack", measure_attacks},
                                                      {"memory", measure_memory}}};
 
@@ -43,11 +43,12 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   const std::string why = why_no_namespaces();
   if (options.link == "namespaces" && !why.empty()) return Unexpected<std::string>{why};
   const bool real = options.link != "shaper" && why.empty();
-  out.link =
-      real ? "real packets between two network namespaces, joined by a forwarder of ours over TUN devices"
-           : "a TCP proxy on loopback, in which loss is a segment that comes a round trip later and slows "
-             "nobody "
-             "down";
+  out.link = real ? "real packets between two network namespaces, joined by a forwarder of ours "
+                    "over TUN devices"
+                  : "a TCP proxy on loopback, in which loss is a segment that comes a round trip "
+                    "later and slows "
+                    "nobody "
+                    "down";
   if (!real && !why.empty()) out.link += " (" + why + ")";
   out.link += "; congestion control " + congestion_control();
   take_interrupts();
@@ -70,17 +71,20 @@ void write_tables(const NetResult& result, std::ostream& out) {
   for (const test::LinkProfile& profile : test::link_profiles()) {
     if (profile.passes_all()) continue;
     fmt::print(out, "| {} | {} | {} | {} | {} % | {} |\n", profile.name,
-               static_cast<double>(profile.round_trip_ns) / 1e6, static_cast<double>(profile.jitter_ns) / 1e6,
-               profile.bits_per_second / 1'000'000, profile.loss * 100, profile.queue_bytes() / 1024);
+               static_cast<double>(profile.round_trip_ns) / 1e6,
+               static_cast<double>(profile.jitter_ns) / 1e6, profile.bits_per_second / 1'000'000,
+               profile.loss * 100, profile.queue_bytes() / 1024);
   }
   fmt::print(out, "{}\n", result.findings.tables);
-  write_bars(result.findings.bars, out);
+  write_targets(result.findings.targets, out);
 }
 
-void write_csv(const NetResult& result, std::ostream& out) { write_csv(result.findings.figures, out); }
+void write_csv(const NetResult& result, std::ostream& out) {
+  write_csv(result.findings.figures, out);
+}
 
 void write_json(const NetResult& result, std::ostream& out) {
-  write_json(result.machine, result.findings.figures, result.findings.bars, out);
+  write_json(result.machine, result.findings.figures, result.findings.targets, out);
 }
 
 }  // namespace runstone::bench

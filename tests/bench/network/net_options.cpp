@@ -3,21 +3,22 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
-#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/bench/network/attack.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 
 CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
-  CLI::App* net = app.add_subcommand("net",
-                                     "the network lab: edits, joins, transfers and crowds over links with "
-                                     "delay, jitter, rate and loss, and memory");
+  CLI::App* net =
+      app.add_subcommand("net",
+                         "the network lab: edits, joins, transfers and crowds over links with "
+                         "delay, jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments, "which; all by default")
       ->delimiter(',')
-      ->check(
-          CLI::IsMember(std::set<std::string>{"latency", "join", "transfer", "crowd", "attack", "memory"}));
+      ->check(CLI::IsMember(
+          std::set<std::string>{"latency", "join", "transfer", "crowd", "attack", "memory"}));
   net->add_option("--profiles", options.profiles, "links; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(profiles));
@@ -30,7 +31,8 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--luanti", options.luanti, "folder of a Luanti world")
       ->capture_default_str()
       ->check(CLI::ExistingDirectory);
-  net->add_option("--edits", options.edits, "edits of each of the two clients of a latency case, 50 a second")
+  net->add_option("--edits", options.edits,
+                  "edits of each of the two clients of a latency case, 50 a second")
       ->capture_default_str()
       ->check(CLI::Range(10, 1'000'000));
   net->add_option("--min-runs", options.repetitions, "joins and transfers of each sort")
@@ -40,7 +42,7 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
       ->capture_default_str()
       ->delimiter(',')
       ->check(CLI::Range(1, 10'000));
-  net->add_option("--crowd-seconds", options.crowd_seconds, "for which a crowd edits")
+  net->add_option("--crowd-seconds", options.fleet_seconds, "for which a crowd edits")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
   std::set<std::string> attacks;
@@ -48,7 +50,8 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--attacks", options.attacks, "which; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(attacks));
-  net->add_option("--attack-seconds", options.attack_seconds, "of each attack, and before and after it")
+  net->add_option("--attack-seconds", options.attack_seconds,
+                  "of each attack, and before and after it")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 600.0));
   net->add_option("--attackers", options.attackers, "hostile clients, or threads that make many")
@@ -57,13 +60,15 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--attack-bots", options.attack_bots, "honest clients under attack")
       ->capture_default_str()
       ->check(CLI::Range(1, 200));
-  net->add_option("--seed", options.seed, "draws losses, jitter, places of edits and what attackers do")
+  net->add_option("--seed", options.seed,
+                  "draws losses, jitter, places of edits and what attackers do")
       ->capture_default_str();
   net->add_option("--csv", options.csv, "write all figures to this file");
   net->add_option("--json", options.json, "write all figures and bars to this file");
-  net->add_flag("--quick", options.quick,
-                "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, attacks of 2, unless "
-                "said otherwise");
+  net->add_flag(
+      "--quick", options.quick,
+      "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, attacks of 2, unless "
+      "said otherwise");
   return net;
 }
 
@@ -72,7 +77,7 @@ void finish_net_options(const CLI::App& command, NetOptions& options) {
   if (command.count("--edits") == 0) options.edits = 100;
   if (command.count("--min-runs") == 0) options.repetitions = 1;
   if (command.count("--clients") == 0) options.clients = {1, 20};
-  if (command.count("--crowd-seconds") == 0) options.crowd_seconds = 3;
+  if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
   if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
 }
 

@@ -14,7 +14,8 @@ class App;
 namespace runstone::bench {
 
 struct NetOptions {
-  std::vector<std::string> experiments = {"latency", "join", "transfer", "crowd", "attack", "memory"};
+  std::vector<std::string> experiments = {"latency", "join",   "transfer",
+                                          "crowd",   "attack", "memory"};
   std::vector<std::string> profiles;  // of the lab; empty: all
   std::vector<std::string> worlds;    // of the transfers; empty: all
   std::string luanti;                 // folder of the real world
@@ -22,7 +23,7 @@ struct NetOptions {
   unsigned edits = 1000;              // of each client of a latency case
   unsigned repetitions = 5;           // joins and transfers
   std::vector<unsigned> clients = {1, 10, 100, 300, 1000};  // of the crowds
-  double crowd_seconds = 20;
+  double fleet_seconds = 20;
   std::vector<std::string> attacks;  // empty: all
   double attack_seconds = 8;         // of each attack, and before and after it
   unsigned attackers = 8;            // threads with a hostile client each

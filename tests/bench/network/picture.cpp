@@ -13,12 +13,12 @@
 
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/reference/binary_greedy.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/reference/binary_greedy.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -51,7 +51,8 @@ void append_dense(const ChunkCoord& at, const RunChunk& chunk, bool compressed, 
     return;
   }
   Bytes body(ZSTD_compressBound(bytes));
-  const std::size_t size = ZSTD_compress(body.data(), body.size(), voxels.data(), bytes, kZstdLevel);
+  const std::size_t size =
+      ZSTD_compress(body.data(), body.size(), voxels.data(), bytes, kZstdLevel);
   RUNSTONE_ASSERT(ZSTD_isError(size) == 0);
   const DenseHeader header{static_cast<std::uint32_t>(size), at};
   append(out, &header, sizeof header);
@@ -96,7 +97,8 @@ class DenseReader {
       } else if (got == whole) {
         std::memcpy(voxels_.data(), body, whole);
       }
-      if (got != whole) return Unexpected<std::string>{"a dense chunk has not the size of its voxels"};
+      if (got != whole)
+        return Unexpected<std::string>{"a dense chunk has not the size of its voxels"};
       take(header.at, std::span<const Material>(voxels_));
       unpack_ns += now_ns() - start;
       at += sizeof header + header.body_bytes;
@@ -134,7 +136,8 @@ void fill_border(DenseGrid& grid, const DenseGrid* beside, Direction direction, 
   const Axis u = axis == axes[0] ? axes[1] : axes[0];
   const Axis v = axis == axes[2] ? axes[1] : axes[2];
   const std::ptrdiff_t side = edge;
-  const std::ptrdiff_t to = is_positive(direction) ? side : -1, from = is_positive(direction) ? 0 : side - 1;
+  const std::ptrdiff_t to = is_positive(direction) ? side : -1,
+                       from = is_positive(direction) ? 0 : side - 1;
   Material* const out = grid.line(0, 0);
   for (std::ptrdiff_t j = 0; j < side; ++j) {
     for (std::ptrdiff_t i = 0; i < side; ++i) {
@@ -161,9 +164,10 @@ Bytes encode_picture(const PictureScene& scene, Transfer transfer) {
       continue;
     }
     const Chunk chunk{voxels, {1, 1}, digest_of(voxels)};
-    frames.append(encode_snapshot({0, at}, chunk,
-                                  transfer == Transfer::raw ? ChunkEncoding::raw : ChunkEncoding::packed),
-                  out);
+    frames.append(
+        encode_snapshot({0, at}, chunk,
+                        transfer == Transfer::raw ? ChunkEncoding::raw : ChunkEncoding::packed),
+        out);
   }
   return out;
 }
@@ -177,11 +181,11 @@ struct PictureReceiver::Parts {
   Result<void, std::string> feed(ByteView bytes) {
     if (is_dense) {
       std::vector<ChunkCoord> came;
-      const auto fed =
-          dense.feed(bytes, times.unpack_ns, [&](const ChunkCoord& at, std::span<const Material> voxels) {
-            fill_inside(grids[at], scene.edge, voxels);
-            came.push_back(at);
-          });
+      const auto fed = dense.feed(bytes, times.unpack_ns,
+                                  [&](const ChunkCoord& at, std::span<const Material> voxels) {
+                                    fill_inside(grids[at], scene.edge, voxels);
+                                    came.push_back(at);
+                                  });
       for (const ChunkCoord& at : came) arrived(at);
       return fed;
     }
@@ -203,13 +207,16 @@ struct PictureReceiver::Parts {
     return {};
   }
 
-  bool is_here(const ChunkCoord& at) const { return is_dense ? grids.contains(at) : runs.contains(at); }
+  bool is_here(const ChunkCoord& at) const {
+    return is_dense ? grids.contains(at) : runs.contains(at);
+  }
 
   /// Meshes it and what is beside it where nothing is missing any more.
   void arrived(const ChunkCoord& at) {
     const std::uint64_t start = now_ns();
     mesh_if_ready(at);
-    for (unsigned d = 0; d < kDirectionCount; ++d) mesh_if_ready(neighbour(at, static_cast<Direction>(d)));
+    for (unsigned d = 0; d < kDirectionCount; ++d)
+      mesh_if_ready(neighbour(at, static_cast<Direction>(d)));
     times.mesh_ns += now_ns() - start;
   }
 
@@ -229,8 +236,8 @@ struct PictureReceiver::Parts {
     DenseGrid& grid = grids.at(at);
     for (unsigned d = 0; d < kDirectionCount; ++d) {
       const auto beside = grids.find(neighbour(at, static_cast<Direction>(d)));
-      fill_border(grid, beside == grids.end() ? nullptr : &beside->second, static_cast<Direction>(d),
-                  scene.edge);
+      fill_border(grid, beside == grids.end() ? nullptr : &beside->second,
+                  static_cast<Direction>(d), scene.edge);
     }
     mesh_binary_greedy(grid, *scene.visibility, binary, mesh);
   }
@@ -261,7 +268,9 @@ PictureReceiver::PictureReceiver(const PictureScene& scene, Transfer transfer)
     : parts_(std::make_unique<Parts>(scene, transfer)) {}
 PictureReceiver::~PictureReceiver() = default;
 Result<void, std::string> PictureReceiver::feed(ByteView bytes) { return parts_->feed(bytes); }
-bool PictureReceiver::complete() const { return parts_->meshed.size() == parts_->scene.chunks.size(); }
+bool PictureReceiver::complete() const {
+  return parts_->meshed.size() == parts_->scene.chunks.size();
+}
 const PictureTimes& PictureReceiver::times() const { return parts_->times; }
 
 }  // namespace runstone::bench

@@ -16,15 +16,18 @@ namespace {
 
 /// Empty if all went well.
 std::string enter_new_namespace() {
-  const auto failed = [](const char* what) { return std::string(what) + ": " + std::strerror(errno); };
+  const auto failed = [](const char* what) {
+    return std::string(what) + ": " + std::strerror(errno);
+  };
   if (::unshare(CLONE_NEWNET) != 0) return failed("cannot make a network namespace");
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return failed("cannot make a socket");
   ifreq request{};
   std::strncpy(request.ifr_name, "lo", IFNAMSIZ - 1);
   request.ifr_flags = IFF_UP | IFF_RUNNING;
-  const std::string why =
-      ::ioctl(socket, SIOCSIFFLAGS, &request) == 0 ? "" : failed("cannot bring the loopback device up");
+  const std::string why = ::ioctl(socket, SIOCSIFFLAGS, &request) == 0
+                              ? ""
+                              : failed("cannot bring the loopback device up");
   ::close(socket);
   return why;
 }

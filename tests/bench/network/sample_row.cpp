@@ -32,13 +32,15 @@ std::string histogram_table(std::span<const SampleRow> rows, double never) {
     all += row.samples;
     most = std::max(most, row.samples);
   }
-  std::string out = "| from, below ms | samples | share, % | so far, % | |\n|---|---|---|---|---|\n";
+  std::string out =
+      "| from, below ms | samples | share, % | so far, % | |\n|---|---|---|---|---|\n";
   const auto write = [&](const std::string& limits, double samples) {
     if (samples == 0) return;
     so_far += samples;
-    out += fmt::format("| {} | {:.0f} | {:.3f} | {:.3f} | {} |\n", limits, samples, 100 * samples / all,
-                       100 * so_far / all,
-                       std::string(static_cast<std::size_t>(std::ceil(kBarMax * samples / most)), '#'));
+    out += fmt::format(
+        "| {} | {:.0f} | {:.3f} | {:.3f} | {} |\n", limits, samples, 100 * samples / all,
+        100 * so_far / all,
+        std::string(static_cast<std::size_t>(std::ceil(kBarMax * samples / most)), '#'));
   };
   for (const SampleRow& row : rows) {
     write(fmt::format("{:.3f}, {:.3f}", row.from_ms, row.below_ms), row.samples);

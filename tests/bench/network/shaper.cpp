@@ -15,7 +15,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -38,7 +38,8 @@ std::chrono::steady_clock::time_point at(TimeNs ns) {
 
 /// Both sockets of a connection, closed together.
 struct Pair {
-  Pair(asio::io_context& io, tcp::socket from_client) : client(std::move(from_client)), server(io) {}
+  Pair(asio::io_context& io, tcp::socket from_client)
+      : client(std::move(from_client)), server(io) {}
   void close() {
     asio::error_code ignored;
     client.close(ignored);
@@ -50,8 +51,8 @@ struct Pair {
 /// One direction of a connection. Lives until nothing waits for it any more.
 class Pipe : public std::enable_shared_from_this<Pipe> {
  public:
-  Pipe(std::shared_ptr<Pair> pair, tcp::socket& from, tcp::socket& to, const test::LinkProfile& profile,
-       std::uint64_t seed)
+  Pipe(std::shared_ptr<Pair> pair, tcp::socket& from, tcp::socket& to,
+       const test::LinkProfile& profile, std::uint64_t seed)
       : pair_(std::move(pair)),
         from_(from),
         to_(to),
@@ -201,7 +202,8 @@ Shaper::~Shaper() {
 }
 
 Result<std::unique_ptr<Shaper>, std::string> Shaper::start(const test::LinkProfile& profile,
-                                                           std::uint64_t seed, std::uint16_t server_port) {
+                                                           std::uint64_t seed,
+                                                           std::uint16_t server_port) {
   auto parts = std::make_unique<Parts>(profile, seed, server_port);
   asio::error_code error;
   const auto then = [&error](auto&& step) {

@@ -18,7 +18,8 @@ class Shaper {
  public:
   /// Passes everything that comes to a free port of loopback on to `server_port` there. The error says what failed.
   static Result<std::unique_ptr<Shaper>, std::string> start(const test::LinkProfile& profile,
-                                                            std::uint64_t seed, std::uint16_t server_port);
+                                                            std::uint64_t seed,
+                                                            std::uint16_t server_port);
   /// Cuts all connections.
   ~Shaper();
   Shaper(const Shaper&) = delete;

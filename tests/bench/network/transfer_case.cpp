@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "common/generate/scenarios/scenario_model.hpp"
-#include "tests/bench/meshing/contestant.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
-#include "tests/bench/network/picture.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/network/picture.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::bench {
@@ -64,7 +64,8 @@ PictureScene scene_of(const VoxelWorld& world) {
   VoxelPos middle{};
   if (world.bounds) {
     const VoxelBox& box = *world.bounds;
-    middle = {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2};
+    middle = {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2,
+              (box.min.z + box.max.z) / 2};
   }
   const ChunkCoord at = chunk_of(middle, kEdge);
   for (std::int32_t x = at.x - kSide / 2; x < at.x + kSide / 2; ++x) {
@@ -86,7 +87,8 @@ struct Source {
 
 Done listen(LabLink& link, Source& source) {
   link.server_side().run([&] {
-    source.acceptor.emplace(source.io, tcp::endpoint(asio::ip::make_address(link.server_address()), 0));
+    source.acceptor.emplace(source.io,
+                            tcp::endpoint(asio::ip::make_address(link.server_address()), 0));
   });
   const auto port = link.entrance(source.acceptor->local_endpoint().port());
   if (!port) return Unexpected<std::string>{port.error()};
@@ -104,11 +106,13 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   socket.read_some(asio::buffer(&asked, 1), error);
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
-    socket.read_some(asio::buffer(&asked, 1), error);  // until the receiver has all of it, and closes
+    socket.read_some(asio::buffer(&asked, 1),
+                     error);  // until the receiver has all of it, and closes
 }
 
 struct Received {
-  double transfer_ms = 0, complete_ms = 0;  // last byte read, last chunk meshed, since it was asked for
+  double transfer_ms = 0,
+         complete_ms = 0;  // last byte read, last chunk meshed, since it was asked for
   PictureTimes times;
 };
 
@@ -117,7 +121,8 @@ Result<Received, std::string> receive_once(LabLink& link, Source& source, const 
   asio::error_code error;
   tcp::socket socket(source.io);
   link.client_side().run([&] { socket.open(tcp::v4(), error); });
-  if (!error) socket.connect({asio::ip::make_address(link.server_address()), source.entrance}, error);
+  if (!error)
+    socket.connect({asio::ip::make_address(link.server_address()), source.entrance}, error);
   if (!error) socket.set_option(tcp::no_delay(true), error);
   if (error) return Unexpected<std::string>{"cannot connect: " + error.message()};
   std::thread sender([&] { serve_once(*source.acceptor, bytes); });
@@ -141,16 +146,18 @@ Result<Received, std::string> receive_once(LabLink& link, Source& source, const 
   sender.join();
   if (error) return Unexpected<std::string>{"a transfer broke off: " + error.message()};
   if (!fed) return Unexpected<std::string>{fed.error()};
-  if (!receiver.complete()) return Unexpected<std::string>{scene.name + " did not become a whole picture"};
+  if (!receiver.complete())
+    return Unexpected<std::string>{scene.name + " did not become a whole picture"};
   return out;
 }
 
 /// One scene in one form through one link, until there are enough repetitions or they took long enough.
-Result<Cell, std::string> measure_cell(Lab& lab, LabLink& link, const PictureScene& scene, Transfer transfer,
-                                       std::uint64_t& faces) {
+Result<Cell, std::string> measure_cell(Lab& lab, LabLink& link, const PictureScene& scene,
+                                       Transfer transfer, std::uint64_t& faces) {
   const Bytes bytes = encode_picture(scene, transfer);
   Source source;
-  if (const auto listens = listen(link, source); !listens) return Unexpected<std::string>{listens.error()};
+  if (const auto listens = listen(link, source); !listens)
+    return Unexpected<std::string>{listens.error()};
   std::array<std::vector<double>, 4> samples;
   Cell out;
   const std::uint64_t start = now_ns();
@@ -202,7 +209,9 @@ Result<std::vector<PictureScene>, std::string> scenes_of(const NetOptions& optio
 /// The four forms of one scene over one link.
 using Four = std::array<const Cell*, kTransfers.size()>;
 
-const Cell& of(const Four& four, Transfer transfer) { return *four[static_cast<std::size_t>(transfer)]; }
+const Cell& of(const Four& four, Transfer transfer) {
+  return *four[static_cast<std::size_t>(transfer)];
+}
 bool is_scenario(const Four& four) { return four[0]->scene.starts_with("scenario"); }
 double ratio(const Four& four, Transfer against) {
   return of(four, against).complete_ms / of(four, Transfer::packed).complete_ms;
@@ -217,10 +226,10 @@ std::string millis(const std::vector<Four>& rows, Transfer transfer, double Cell
 /// A row a link, world and form; of the scenarios medians.
 void write_rows(const std::vector<Four>& all, std::string& out) {
   const auto into = std::back_inserter(out);
-  fmt::format_to(
-      into,
-      "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture complete ms | packed + RDM "
-      "is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::format_to(into,
+                 "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture "
+                 "complete ms | packed + RDM "
+                 "is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     std::vector<Four> rows = {all[i++]};
     while (is_scenario(rows[0]) && i < all.size() && is_scenario(all[i]) &&
@@ -234,11 +243,12 @@ void write_rows(const std::vector<Four>& all, std::string& out) {
         faster.push_back(ratio(four, transfer));
       }
       const Cell& first = *rows[0][0];
-      fmt::format_to(into, "| {} ({}) | {} | {} | {} | {} | {} | {} | {} | {:.2f}x |\n", first.profile,
-                     first.link, rows.size() == 1 ? first.scene : fmt::format("{} scenarios", rows.size()),
-                     name_of(transfer), number_text(median(kb)), millis(rows, transfer, &Cell::transfer_ms),
-                     millis(rows, transfer, &Cell::unpack_ms), millis(rows, transfer, &Cell::mesh_ms),
-                     millis(rows, transfer, &Cell::complete_ms), geometric_mean(faster));
+      fmt::format_to(
+          into, "| {} ({}) | {} | {} | {} | {} | {} | {} | {} | {:.2f}x |\n", first.profile,
+          first.link, rows.size() == 1 ? first.scene : fmt::format("{} scenarios", rows.size()),
+          name_of(transfer), number_text(median(kb)), millis(rows, transfer, &Cell::transfer_ms),
+          millis(rows, transfer, &Cell::unpack_ms), millis(rows, transfer, &Cell::mesh_ms),
+          millis(rows, transfer, &Cell::complete_ms), geometric_mean(faster));
     }
   }
 }
@@ -246,11 +256,12 @@ void write_rows(const std::vector<Four>& all, std::string& out) {
 /// When packed runs with RDM have the picture first, by how much, and when not.
 void write_answer(const std::vector<Four>& all, std::string& out) {
   const auto into = std::back_inserter(out);
-  fmt::format_to(
-      into,
-      "\nTime to the complete picture against packed runs and RDM, all scenes alike (geometric mean; lowest, "
-      "highest; how often packed is first, draws within 2 % apart):\n\n| link | dense | dense_zstd | raw "
-      "|\n|---|---|---|---|\n");
+  fmt::format_to(into,
+                 "\nTime to the complete picture against packed runs and RDM, all scenes alike "
+                 "(geometric mean; lowest, "
+                 "highest; how often packed is first, draws within 2 % apart):\n\n| link | dense | "
+                 "dense_zstd | raw "
+                 "|\n|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     const std::string& profile = all[i][0]->profile;
     std::vector<Four> rows;
@@ -262,8 +273,8 @@ void write_answer(const std::vector<Four>& all, std::string& out) {
       const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
       const auto wins =
           std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > kWinningMargin; });
-      const auto losses =
-          std::count_if(ratios.begin(), ratios.end(), [](double r) { return r < 1 / kWinningMargin; });
+      const auto losses = std::count_if(ratios.begin(), ratios.end(),
+                                        [](double r) { return r < 1 / kWinningMargin; });
       fmt::format_to(into, " {:.2f}x; {:.2f} to {:.2f}; first in {} of {}, last in {} |",
                      geometric_mean(ratios), *low, *high, wins, ratios.size(), losses);
     }
@@ -301,7 +312,8 @@ Done measure_transfers(Lab& lab, LabFindings& findings) {
       for (const Transfer transfer : kTransfers) {
         auto cell = measure_cell(lab, **link, scene, transfer, faces);
         if (!cell)
-          return Unexpected<std::string>{fmt::format("transfer, {}: {}", profile.name, cell.error())};
+          return Unexpected<std::string>{
+              fmt::format("transfer, {}: {}", profile.name, cell.error())};
         cell->profile = profile.name;
         cell->link = name_of((*link)->kind());
         add_figures(*cell, findings.figures);

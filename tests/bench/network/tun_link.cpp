@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
-#include "tests/bench/meshing/contestant.hpp"
-#include "tests/bench/network/descriptor.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/network/descriptor.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -36,7 +36,8 @@ using test::TimeNs;
 constexpr const char* kDevice = "rs0";
 constexpr int kBatch = 64;  // packets read from one side before the other has its turn
 constexpr std::size_t kLatesMax = 1'000'000;
-constexpr int kKernelPackets = 20'000;  // that wait for the forwarder: all waiting is to be the model's
+constexpr int kKernelPackets =
+    20'000;  // that wait for the forwarder: all waiting is to be the model's
 
 TimeNs now() { return static_cast<TimeNs>(now_ns()); }
 
@@ -128,7 +129,8 @@ void add(test::LinkCounts& sum, const test::LinkCounts& one) {
 }  // namespace
 
 struct TunLink::Forwarder {
-  Forwarder(const test::LinkProfile& link, std::uint64_t random_seed) : profile(link), seed(random_seed) {}
+  Forwarder(const test::LinkProfile& link, std::uint64_t random_seed)
+      : profile(link), seed(random_seed) {}
 
   void start() {
     thread = std::thread([this] { forward(); });
@@ -182,7 +184,8 @@ struct TunLink::Forwarder {
       if (late_ns < 0) return;
       std::pop_heap(under_way.begin(), under_way.end(), Later{});
       Packet& packet = under_way.back();
-      if (::write(tuns[packet.to].get(), packet.bytes.data(), packet.bytes.size()) < 0) ++counts.refused;
+      if (::write(tuns[packet.to].get(), packet.bytes.data(), packet.bytes.size()) < 0)
+        ++counts.refused;
       spare.push_back(std::move(packet.bytes));
       under_way.pop_back();
       if (lates_us.size() < kLatesMax) lates_us.push_back(static_cast<double>(late_ns) / 1000);
@@ -190,8 +193,9 @@ struct TunLink::Forwarder {
   }
 
   void wait() {
-    std::array<pollfd, 3> files = {
-        {{tuns[kServer].get(), POLLIN, 0}, {tuns[kClient].get(), POLLIN, 0}, {stopped.get(), POLLIN, 0}}};
+    std::array<pollfd, 3> files = {{{tuns[kServer].get(), POLLIN, 0},
+                                    {tuns[kClient].get(), POLLIN, 0},
+                                    {stopped.get(), POLLIN, 0}}};
     if (under_way.empty()) {
       ::ppoll(files.data(), files.size(), nullptr, nullptr);
       return;
@@ -206,7 +210,8 @@ struct TunLink::Forwarder {
     auto& all = links[from];
     const auto it = all.find(connection);
     if (it != all.end()) return it->second;
-    return all.emplace(connection, LinkModel(profile, mix64(seed + 2 * all.size() + from))).first->second;
+    return all.emplace(connection, LinkModel(profile, mix64(seed + 2 * all.size() + from)))
+        .first->second;
   }
 
   const test::LinkProfile profile;
@@ -215,7 +220,7 @@ struct TunLink::Forwarder {
   std::array<Descriptor, 2> tuns;
   Descriptor stopped;
   std::array<std::unordered_map<std::uint16_t, LinkModel>, 2> links;  // by where packets come from
-  std::vector<Packet> under_way;                                      // a heap, the next one due in front
+  std::vector<Packet> under_way;  // a heap, the next one due in front
   std::vector<std::vector<std::uint8_t>> spare;
   std::vector<double> lates_us;
   std::uint64_t next_number = 0;
@@ -234,8 +239,9 @@ Result<std::unique_ptr<TunLink>, std::string> TunLink::make(const test::LinkProf
     auto place = Place::make_namespace();
     if (!place) return Unexpected<std::string>{place.error()};
     std::string why;
-    (*place)->run(
-        [&] { forwarder->tuns[side] = open_tun(side == kServer ? kServerAddress : kClientAddress, why); });
+    (*place)->run([&] {
+      forwarder->tuns[side] = open_tun(side == kServer ? kServerAddress : kClientAddress, why);
+    });
     if (!why.empty()) return Unexpected<std::string>{why};
     forwarder->places[side] = *std::move(place);
   }

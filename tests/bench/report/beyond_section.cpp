@@ -19,7 +19,8 @@ using chart::Role;
 /// Worlds across, a column a mesher: geometric means of the times over each world's volumes.
 ReportFigure worlds(const Evidence& evidence, const char* step, const char* title) {
   const Rows rows = evidence.findings.rows(step);
-  chart::BarChart chart{rows.kinds("world"), {}, {"µs of a chunk of 32³", true}, "time of a chunk by world"};
+  chart::BarChart chart{
+      rows.kinds("world"), {}, {"µs of a chunk of 32³", true}, "time of a chunk by world"};
   for (const char* mesher : {"rdm", "decode_binary", "grid_binary", "culled"}) {
     chart::Series series{long_name_of(mesher), role_of(mesher), {}};
     if (mesher == std::string_view("grid_binary")) series.role = Role::other;
@@ -38,7 +39,8 @@ ReportFigure worlds(const Evidence& evidence, const char* step, const char* titl
     for (const std::string& mesher : rows.kinds("mesher")) {
       const Rows of = rows.where("world", world).where("mesher", mesher);
       out.data.add({world, mesher, static_cast<double>(of.size()),
-                    geometric_mean_of(of.numbers("median_ns")) / 1000, sum_of(of.numbers("quads"))});
+                    geometric_mean_of(of.numbers("median_ns")) / 1000,
+                    sum_of(of.numbers("quads"))});
     }
   }
   std::string ratios;
@@ -47,7 +49,8 @@ ReportFigure worlds(const Evidence& evidence, const char* step, const char* titl
                           format_value(chart.series[1].values[w] / chart.series[0].values[w]));
   }
   out.sentence = fmt::format(
-      "Decoding and meshing with the fastest dense mesher takes this many times as long as ours: {}.",
+      "Decoding and meshing with the fastest dense mesher takes this many times as long as ours: "
+      "{}.",
       ratios);
   out.picture = chart::frame_of(chart);
   return out;
@@ -55,7 +58,8 @@ ReportFigure worlds(const Evidence& evidence, const char* step, const char* titl
 
 ReportFigure orders(const Evidence& evidence) {
   const Rows rows = evidence.findings.rows("orders");
-  chart::BarChart runs{rows.kinds("world"), {}, {"runs of a chunk, mean", true}, "runs by axis order"};
+  chart::BarChart runs{
+      rows.kinds("world"), {}, {"runs of a chunk, mean", true}, "runs by axis order"};
   chart::BarChart time{runs.categories, {}, {"µs of a chunk, mean", true}, "time by axis order"};
   runs.series = {{"cheapest order", Role::ours, {}}, {"dearest order", Role::other, {}}};
   time.series = {{"ours, cheapest order", Role::ours, {}},
@@ -95,9 +99,11 @@ ReportFigure orders(const Evidence& evidence) {
   out.id = "axis-orders";
   out.title = "Axis orders: compression rotation (9.2)";
   out.sentence = fmt::format(
-      "The cheapest of the six orders has {} times fewer runs than the dearest (geometric mean over these "
+      "The cheapest of the six orders has {} times fewer runs than the dearest (geometric mean "
+      "over these "
       "worlds) and meshes {} "
-      "times faster; which one it is differs by chunk, so each holder picks it when a chunk is made.",
+      "times faster; which one it is differs by chunk, so each holder picks it when a chunk is "
+      "made.",
       format_value(geometric_mean_of(fewer)), format_value(geometric_mean_of(faster)));
   out.steps = {"orders"};
   out.picture = chart::frame_of(runs) + chart::frame_of(time);
@@ -107,7 +113,8 @@ ReportFigure orders(const Evidence& evidence) {
 ReportFigure dirty_layers(const Evidence& evidence) {
   const Rows rows = evidence.findings.rows("dirty-layers");
   chart::BarChart chart{{}, {}, {"µs"}, "an edit's mesh"};
-  chart.series = {{"changed layers only", Role::ours, {}}, {"the whole chunk again", Role::baseline, {}}};
+  chart.series = {{"changed layers only", Role::ours, {}},
+                  {"the whole chunk again", Role::baseline, {}}};
   ReportFigure out;
   out.data.columns = {"world", "edge", "changed layers us", "whole chunk us", "bytes a voxel"};
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -117,12 +124,14 @@ ReportFigure dirty_layers(const Evidence& evidence) {
     chart.categories.push_back(fmt::format("{} {}", row.text("world"), edge));
     chart.series[0].values.push_back(layers);
     chart.series[1].values.push_back(whole);
-    out.data.add({row.text("world"), edge, layers, whole, row.number("memory_bytes") / row.number("voxels")});
+    out.data.add({row.text("world"), edge, layers, whole,
+                  row.number("memory_bytes") / row.number("voxels")});
   }
   out.id = "dirty-layers";
   out.title = "Dirty layers: what an edit costs to mesh";
   out.sentence = fmt::format(
-      "After one voxel changed, the runs are spliced and only the layers it touched are meshed, neighbours "
+      "After one voxel changed, the runs are spliced and only the layers it touched are meshed, "
+      "neighbours "
       "included: {} µs on average "
       "where meshing the chunks whole takes {} µs.",
       format_value(mean_of(chart.series[0].values)), format_value(mean_of(chart.series[1].values)));
@@ -151,15 +160,16 @@ ReportFigure stacks(const Evidence& evidence) {
     chart::LineSeries line{name, role, {}};
     for (const double edits : {1.0, 10.0, 100.0, 1000.0}) {
       line.points.push_back({edits, at(key, edits)});
-      out.data.add(
-          {name, edits, at(key, edits), rows.where("case", key).where("edits", edits).number("p90_us")});
+      out.data.add({name, edits, at(key, edits),
+                    rows.where("case", key).where("edits", edits).number("p90_us")});
     }
     chart.lines.push_back(std::move(line));
   }
   out.id = "stacks";
   out.title = "Stacked edits (9.2): one sweep instead of many";
   out.sentence = fmt::format(
-      "A thousand edits of one chunk by hand take {} µs as one stack and {} µs one by one; by brush {} and "
+      "A thousand edits of one chunk by hand take {} µs as one stack and {} µs one by one; by "
+      "brush {} and "
       "{}.",
       format_value(at("mixed edits by hand as a stack", 1000)),
       format_value(at("mixed edits by hand one by one", 1000)),

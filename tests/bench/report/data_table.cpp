@@ -18,7 +18,9 @@ std::string field(const std::string& text) {
   return out + '"';
 }
 
-std::string field(double value) { return std::isnan(value) ? std::string() : fmt::format("{}", value); }
+std::string field(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
 
 void add_line(const auto& values, std::string& out) {
   bool is_first = true;

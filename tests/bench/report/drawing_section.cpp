@@ -22,7 +22,8 @@ using chart::Role;
 /// are too large, is left out of them.
 class Frames {
  public:
-  explicit Frames(const Findings& findings) : rows_(findings.rows("frames").where("path", "plain")) {
+  explicit Frames(const Findings& findings)
+      : rows_(findings.rows("frames").where("path", "plain")) {
     std::size_t most = 0;
     for (const std::string& mesher : rows_.kinds("mesher"))
       most = std::max(most, rows_.where("mesher", mesher).size());
@@ -33,9 +34,10 @@ class Frames {
     }
     for (const std::string& world : rows_.kinds("world")) {
       const Rows at = rows_.where("world", world);
-      const bool all_drew = std::all_of(meshers_.begin(), meshers_.end(), [&](const std::string& mesher) {
-        return at.where("mesher", mesher).number("vertices") > 0;
-      });
+      const bool all_drew =
+          std::all_of(meshers_.begin(), meshers_.end(), [&](const std::string& mesher) {
+            return at.where("mesher", mesher).number("vertices") > 0;
+          });
       if (all_drew) worlds_.push_back(world);
     }
   }
@@ -65,10 +67,10 @@ chart::RankChart ranked(const Frames& frames, const chart::Axis& axis, F&& value
 }
 
 DataTable all_columns(const Rows& rows) {
-  const std::array<const char*, 15> numbers = {"vertices", "triangles",   "upload_bytes",  "p50_ms",
-                                               "p90_ms",   "p99_ms",      "fps",           "t_junctions",
-                                               "thin_16",  "thin_100",    "overdraw",      "depth_complexity",
-                                               "lanes",    "seam_pixels", "pinhole_pixels"};
+  const std::array<const char*, 15> numbers = {
+      "vertices", "triangles",   "upload_bytes",  "p50_ms",   "p90_ms",   "p99_ms",
+      "fps",      "t_junctions", "thin_16",       "thin_100", "overdraw", "depth_complexity",
+      "lanes",    "seam_pixels", "pinhole_pixels"};
   DataTable out{{"world", "mesher", "path"}, {}};
   out.columns.insert(out.columns.end(), numbers.begin(), numbers.end());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -87,7 +89,8 @@ std::vector<std::string> marks_of(const Findings& findings, const Frames& frames
                                               format_value(setting.number("width")),
                                               format_value(setting.number("height")))};
   if (gl.number("software") == 1) {
-    out.push_back("The processor draws here, so a frame is bound by vertices far more than on a GPU.");
+    out.push_back(
+        "The processor draws here, so a frame is bound by vertices far more than on a GPU.");
   }
   if (!frames.left_out().empty()) {
     out.push_back(fmt::format("Too large to be drawn in most worlds, so not in the means: {}.",
@@ -97,7 +100,9 @@ std::vector<std::string> marks_of(const Findings& findings, const Frames& frames
 }
 
 ReportFigure frame_times(const Evidence& evidence, const Frames& frames) {
-  const auto ms = [&](const std::string& mesher) { return geometric_mean_of(frames.of(mesher, "p50_ms")); };
+  const auto ms = [&](const std::string& mesher) {
+    return geometric_mean_of(frames.of(mesher, "p50_ms"));
+  };
   ReportFigure out;
   out.id = "frames";
   out.title = "Frame time by mesher (8.5)";
@@ -108,7 +113,8 @@ ReportFigure frame_times(const Evidence& evidence, const Frames& frames) {
       format_value(ms("rdm")), frames.worlds().size(), format_value(ms("culled")),
       format_value(ms("rle_rdm")));
   out.steps = {"frames"};
-  out.picture = chart::frame_of(ranked(frames, {"ms a frame, p50, geometric mean over worlds"}, ms));
+  out.picture =
+      chart::frame_of(ranked(frames, {"ms a frame, p50, geometric mean over worlds"}, ms));
   out.data = all_columns(evidence.findings.rows("frames"));
   out.marks = marks_of(evidence.findings, frames);
   return out;
@@ -123,11 +129,15 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
                                            {"RLE", "rle_rdm", "RLE RDM"},
                                            {"VoxelPlugin", "culled", "culled (Voxel Plugin)"}}};
   chart::BarChart ours{{}, {}, {"frames a second, here", true}, "frames a second, ours"};
-  chart::BarChart theirs{{}, {}, {"frames a second, RTX 3050 in Unreal Engine"}, "frames a second, thesis"};
+  chart::BarChart theirs{
+      {}, {}, {"frames a second, RTX 3050 in Unreal Engine"}, "frames a second, thesis"};
   ReportFigure out;
   out.data.columns = {"scenario", "mesher", "fps here", "fps of the thesis"};
   const auto fps = [&](unsigned s, const char* mesher) {
-    return frames.rows().where("world", fmt::format("scenario_{}", s)).where("mesher", mesher).number("fps");
+    return frames.rows()
+        .where("world", fmt::format("scenario_{}", s))
+        .where("mesher", mesher)
+        .number("fps");
   };
   for (const unsigned s : scenarios) {
     ours.categories.push_back(std::to_string(s));
@@ -137,8 +147,9 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   for (const unsigned s : scenarios) ours.series.back().values.push_back(fps(s, "rdm"));
   for (const Pair& pair : kPairs) {
     ours.series.push_back({fmt::format("rebuilt {}", pair.name), Role::other, {}});
-    theirs.series.push_back(
-        {fmt::format("thesis: {}", pair.name), theirs.series.empty() ? Role::thesis : Role::other, {}});
+    theirs.series.push_back({fmt::format("thesis: {}", pair.name),
+                             theirs.series.empty() ? Role::thesis : Role::other,
+                             {}});
     for (const unsigned s : scenarios) {
       ours.series.back().values.push_back(fps(s, pair.ours));
       theirs.series.back().values.push_back(evidence.thesis.value(s, pair.thesis, "fps_mean"));
@@ -151,11 +162,12 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   out.id = "fps";
   out.title = "Frames a second in the thesis' four scenarios (figure 8.14)";
   out.sentence = fmt::format(
-      "Scenario 23 shows what merging and culling buy: {} frames a second with our mesh, {} with the rebuilt "
+      "Scenario 23 shows what merging and culling buy: {} frames a second with our mesh, {} with "
+      "the rebuilt "
       "Grid RDM, {} with culled "
       "faces; the thesis has {} with Grid RDM and {} with its RLE RDM.",
-      format_value(fps(23, "rdm")), format_value(fps(23, "grid_rdm")), format_value(fps(23, "culled")),
-      format_value(evidence.thesis.value(23, "Grid", "fps_mean")),
+      format_value(fps(23, "rdm")), format_value(fps(23, "grid_rdm")),
+      format_value(fps(23, "culled")), format_value(evidence.thesis.value(23, "Grid", "fps_mean")),
       format_value(evidence.thesis.value(23, "RLE", "fps_mean")));
   out.steps = {"frames"};
   out.picture = chart::frame_of(ours) + chart::frame_of(theirs);
@@ -172,15 +184,18 @@ ReportFigure seams(const Evidence& evidence, const Frames& frames) {
   const chart::RankChart pinholes =
       ranked(frames, {"pinholes a picture, pixels, mean over worlds"},
              [&](const std::string& mesher) { return mean(mesher, "pinhole_pixels"); });
-  const chart::RankChart lanes = ranked(frames, {"lanes of 2 x 2 blocks that shade, a fragment: 1 is ideal"},
-                                        [&](const std::string& mesher) { return mean(mesher, "lanes"); });
+  const chart::RankChart lanes =
+      ranked(frames, {"lanes of 2 x 2 blocks that shade, a fragment: 1 is ideal"},
+             [&](const std::string& mesher) { return mean(mesher, "lanes"); });
   ReportFigure out;
   out.id = "seams";
   out.title = "What T-junctions and thin triangles do on screen (4.2.1, 4.2.2)";
   out.sentence = fmt::format(
-      "Pixels inside a plane that differ from the picture of culled faces: {} a picture with our mesh, {} "
+      "Pixels inside a plane that differ from the picture of culled faces: {} a picture with our "
+      "mesh, {} "
       "with Poly2Tri. A GPU shades "
-      "in blocks of 2 x 2, so it shades more lanes than fragments along every edge: {} lanes a fragment with "
+      "in blocks of 2 x 2, so it shades more lanes than fragments along every edge: {} lanes a "
+      "fragment with "
       "our mesh, {} with culled "
       "faces.",
       format_value(mean("rdm", "pinhole_pixels")), format_value(mean("poly2tri", "pinhole_pixels")),
@@ -241,7 +256,8 @@ ReportFigure storage(const Evidence& evidence) {
   out.steps = {"storage"};
   out.picture = chart::frame_of(chart);
   out.marks = {
-      "Runs are ours, in their cheapest order. A brush is a sphere of radius 5; times are of a whole edit."};
+      "Runs are ours, in their cheapest order. A brush is a sphere of radius 5; times are of a "
+      "whole edit."};
   return out;
 }
 
@@ -251,9 +267,10 @@ ReportSection drawing_section(const Evidence& evidence) {
   const Frames frames(evidence.findings);
   ReportSection out;
   out.title = "Drawing and storing";
-  out.introduction = "What the meshes cost to draw, and what other ways to keep the same voxels cost.";
-  out.figures = {frame_times(evidence, frames), thesis_frames(evidence, frames), seams(evidence, frames),
-                 storage(evidence)};
+  out.introduction =
+      "What the meshes cost to draw, and what other ways to keep the same voxels cost.";
+  out.figures = {frame_times(evidence, frames), thesis_frames(evidence, frames),
+                 seams(evidence, frames), storage(evidence)};
   return out;
 }
 

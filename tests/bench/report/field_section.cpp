@@ -22,7 +22,9 @@ namespace {
 using chart::format_value;
 
 /// Short enough for a cell: "1.9k" of 1,940.
-std::string cell_text(double us) { return us < 1000 ? format_value(us) : fmt::format("{:.2g}k", us / 1000); }
+std::string cell_text(double us) {
+  return us < 1000 ? format_value(us) : fmt::format("{:.2g}k", us / 1000);
+}
 
 DataTable table_of(const std::vector<Ranked>& all, const char* column) {
   DataTable out{{"mesher", column}, {}};
@@ -39,20 +41,25 @@ class FieldFigures {
     auto ranked = each_mesher([](const MesherTotal& total) { return total.mean_ns / 1000; });
     const double ours = total_of(totals_, "rdm").mean_ns;
     for (Ranked& each : ranked) {
-      if (each.mesher != "rdm") each.note = fmt::format("{} × ours", format_value(each.value * 1000 / ours));
+      if (each.mesher != "rdm")
+        each.note = fmt::format("{} × ours", format_value(each.value * 1000 / ours));
     }
     ReportFigure out = figure("meshers-time", "All meshers: time", ranked,
                               {"µs of a chunk of 32³, geometric mean of 37 scenarios", true}, "us");
     out.sentence = fmt::format(
-        "From compressed runs ours takes {}. The fastest dense mesher takes {} from the same runs, and {} "
+        "From compressed runs ours takes {}. The fastest dense mesher takes {} from the same runs, "
+        "and {} "
         "where somebody has already "
-        "made it a dense grid. By the sum of all scenarios, in which the slowest weigh most, it is {} "
+        "made it a dense grid. By the sum of all scenarios, in which the slowest weigh most, it is "
+        "{} "
         "against {}.",
         time_text(ours), time_text(total_of(totals_, "decode_binary").mean_ns),
-        time_text(total_of(totals_, "grid_binary").mean_ns), time_text(total_of(totals_, "rdm").sum_ns),
+        time_text(total_of(totals_, "grid_binary").mean_ns),
+        time_text(total_of(totals_, "rdm").sum_ns),
         time_text(total_of(totals_, "decode_binary").sum_ns));
-    out.marks = {"The chunk in the middle of 27; one core; runs in their cheapest order.",
-                 "Meshers marked 'grid ready' are not charged for making the grid out of what is stored."};
+    out.marks = {
+        "The chunk in the middle of 27; one core; runs in their cheapest order.",
+        "Meshers marked 'grid ready' are not charged for making the grid out of what is stored."};
     return out;
   }
 
@@ -84,7 +91,8 @@ class FieldFigures {
       wins += ours < in.where("mesher", "decode_binary").number("median_ns") ? 1U : 0U;
     }
     out.sentence = fmt::format(
-        "In {} of 37 scenarios meshing from runs beats decoding and meshing with the fastest dense mesher.",
+        "In {} of 37 scenarios meshing from runs beats decoding and meshing with the fastest dense "
+        "mesher.",
         wins);
     out.steps = {"meshers"};
     out.picture = chart::frame_of(chart);
@@ -96,7 +104,8 @@ class FieldFigures {
     auto ranked = each_mesher([](const MesherTotal& total) { return total.triangles; });
     std::erase_if(ranked, [](const Ranked& each) { return is_variant(each.mesher); });
     const double optimum = total_of(totals_, "optimal_greedy").triangles;
-    for (Ranked& each : ranked) each.note = fmt::format("{} × optimum", ratio_text(each.value / optimum));
+    for (Ranked& each : ranked)
+      each.note = fmt::format("{} × optimum", ratio_text(each.value / optimum));
     ReportFigure out = figure("meshers-triangles", "All meshers: triangles", ranked,
                               {"triangles, sum over 37 scenarios", true}, "triangles");
     out.sentence = fmt::format(
@@ -104,7 +113,8 @@ class FieldFigures {
         "triangles; ours uses {} times that.",
         count_text(optimum), ratio_text(total_of(totals_, "rdm").triangles / optimum));
     out.marks = {
-        "Monotone and Poly2Tri draw polygons, not rectangles, and run strips over hidden faces draw more "
+        "Monotone and Poly2Tri draw polygons, not rectangles, and run strips over hidden faces "
+        "draw more "
         "than is exposed: the "
         "optimum does not bind them."};
     return out;
@@ -115,9 +125,12 @@ class FieldFigures {
     std::erase_if(ranked, [](const Ranked& each) { return is_variant(each.mesher); });
     ReportFigure out = figure("t-junctions", "All meshers: T-junctions (4.2.1)", ranked,
                               {"T-junctions, sum over 37 scenarios"}, "t_junctions");
-    const auto of = [this](const char* mesher) { return count_text(total_of(totals_, mesher).t_junctions); };
+    const auto of = [this](const char* mesher) {
+      return count_text(total_of(totals_, mesher).t_junctions);
+    };
     out.sentence = fmt::format(
-        "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours {}, the "
+        "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours "
+        "{}, the "
         "culled mesher {}; "
         "monotone ({}) and Poly2Tri ({}) lessen them within a plane and keep them between planes.",
         of("rdm"), of("culled"), of("monotone"), of("poly2tri"));
@@ -154,7 +167,8 @@ ReportSection field_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "The whole field";
   out.introduction =
-      "Every algorithm of the thesis' chapter 4.2, rebuilt and held to the same oracle, on the same chunks.";
+      "Every algorithm of the thesis' chapter 4.2, rebuilt and held to the same oracle, on the "
+      "same chunks.";
   out.figures = {figures.time(), figures.map(), figures.triangles(), figures.t_junctions()};
   return out;
 }

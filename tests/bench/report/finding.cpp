@@ -55,7 +55,8 @@ Result<Finding, std::string> read_finding(const std::string& folder, const std::
   try {
     const json content = json::parse(in);
     if (content.at("format") != kFormat) return broken(file, "it is of another format");
-    if (content.at("step") != step) return broken(file, "it is of the step " + content.at("step").dump());
+    if (content.at("step") != step)
+      return broken(file, "it is of the step " + content.at("step").dump());
     Finding out;
     out.step = step;
     content.at("quick").get_to(out.is_quick);
@@ -77,8 +78,8 @@ Result<Finding, std::string> read_finding(const std::string& folder, const std::
 
 bool is_comparable(const Finding& a, const Finding& b) {
   const auto of = [](const Finding& f) {
-    return std::tie(f.machine.cpu, f.machine.cores, f.machine.compiler, f.machine.commit, f.machine.simd,
-                    f.is_quick, f.luanti);
+    return std::tie(f.machine.cpu, f.machine.cores, f.machine.compiler, f.machine.commit,
+                    f.machine.simd, f.is_quick, f.luanti);
   };
   return of(a) == of(b);
 }

@@ -17,13 +17,15 @@ Findings Findings::read(const std::string& folder, const std::vector<std::string
     } else {
       out.missing_.emplace(step, found.error());
     }
-    if (const auto failed = failures.find(step); failed != failures.end()) out.failed_.insert(*failed);
+    if (const auto failed = failures.find(step); failed != failures.end())
+      out.failed_.insert(*failed);
   }
   std::ptrdiff_t most = 0;
   for (const auto& each : out.found_) {
     const Finding& one = each.second;
-    const auto alike = std::count_if(out.found_.begin(), out.found_.end(),
-                                     [&one](const auto& other) { return is_comparable(one, other.second); });
+    const auto alike =
+        std::count_if(out.found_.begin(), out.found_.end(),
+                      [&one](const auto& other) { return is_comparable(one, other.second); });
     if (alike > most) {
       most = alike;
       out.common_ = &one;
@@ -78,10 +80,11 @@ std::vector<std::string> Findings::doubts(const std::vector<std::string>& steps)
       out.push_back(fmt::format("{}: {}.", step, why->second));
     } else if (!is_comparable(*finding, *common_)) {
       const Machine& m = finding->machine;
-      out.push_back(fmt::format(
-          "{} was measured on something else than the rest: {}, {} cores; {}; commit {}; world {}; {}.", step,
-          m.cpu, m.cores, m.compiler, m.commit, finding->luanti,
-          finding->is_quick ? "a quick run" : "a full run"));
+      out.push_back(
+          fmt::format("{} was measured on something else than the rest: {}, {} cores; {}; commit "
+                      "{}; world {}; {}.",
+                      step, m.cpu, m.cores, m.compiler, m.commit, finding->luanti,
+                      finding->is_quick ? "a quick run" : "a full run"));
     }
   }
   if (!absent.empty()) out.push_back(fmt::format("Not measured: {}.", fmt::join(absent, ", ")));

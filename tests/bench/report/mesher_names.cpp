@@ -31,8 +31,8 @@ constexpr std::array kNames = {
 };
 
 const Name* find(std::string_view mesher) {
-  const auto* const found =
-      std::find_if(kNames.begin(), kNames.end(), [&](const Name& name) { return name.mesher == mesher; });
+  const auto* const found = std::find_if(kNames.begin(), kNames.end(),
+                                         [&](const Name& name) { return name.mesher == mesher; });
   return found == kNames.end() ? nullptr : found;
 }
 

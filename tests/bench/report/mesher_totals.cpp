@@ -36,7 +36,8 @@ std::vector<MesherTotal> mesher_totals(const Rows& rows) {
 MesherTotal total_of(const std::vector<MesherTotal>& totals, std::string_view mesher) {
   const auto found = std::find_if(totals.begin(), totals.end(),
                                   [&](const MesherTotal& total) { return total.mesher == mesher; });
-  return found == totals.end() ? MesherTotal{std::string(mesher), kNone, kNone, kNone, kNone} : *found;
+  return found == totals.end() ? MesherTotal{std::string(mesher), kNone, kNone, kNone, kNone}
+                               : *found;
 }
 
 }  // namespace runstone::bench

@@ -19,7 +19,8 @@ namespace {
 using chart::format_value;
 using chart::Role;
 
-constexpr std::array<const char*, 5> kProfiles = {"loopback", "lan", "broadband", "mobile", "lossy"};
+constexpr std::array<const char*, 5> kProfiles = {"loopback", "lan", "broadband", "mobile",
+                                                  "lossy"};
 
 std::vector<std::string> steps_of(const char* experiment) {
   std::vector<std::string> out;
@@ -43,13 +44,14 @@ ReportFigure bytes(const Evidence& evidence) {
     const char *form, *name;
     Role role;
   };
-  constexpr std::array<Form, 7> kForms = {{{"coded", "ours: coded (slow links)", Role::ours},
-                                           {"packed", "ours: packed", Role::ours},
-                                           {"raw", "ours: raw runs", Role::ours},
-                                           {"minecraft", "Minecraft's form + zlib", Role::other},
-                                           {"dense_zstd", "dense + zstd", Role::baseline},
-                                           {"luanti", "Luanti's form + zstd", Role::other},
-                                           {"luanti_light", "the same with its light", Role::other}}};
+  constexpr std::array<Form, 7> kForms = {
+      {{"coded", "ours: coded (slow links)", Role::ours},
+       {"packed", "ours: packed", Role::ours},
+       {"raw", "ours: raw runs", Role::ours},
+       {"minecraft", "Minecraft's form + zlib", Role::other},
+       {"dense_zstd", "dense + zstd", Role::baseline},
+       {"luanti", "Luanti's form + zstd", Role::other},
+       {"luanti_light", "the same with its light", Role::other}}};
   chart::RankChart chart;
   chart.x = {"bytes of a chunk of 32³, mean over a real world", false};
   chart.title = "bytes of a chunk";
@@ -66,10 +68,12 @@ ReportFigure bytes(const Evidence& evidence) {
   out.title = "A chunk on the wire";
   const auto of = [&](const char* form) { return rows.where("form", form).number("bytes"); };
   out.sentence = fmt::format(
-      "Packed runs take {} % of dense voxels under zstd, {} % of Luanti's form and {} % of Minecraft's; "
+      "Packed runs take {} % of dense voxels under zstd, {} % of Luanti's form and {} % of "
+      "Minecraft's; "
       "dense and plain "
       "they would be 65,536 bytes.",
-      format_value(100 * of("packed") / of("dense_zstd")), format_value(100 * of("packed") / of("luanti")),
+      format_value(100 * of("packed") / of("dense_zstd")),
+      format_value(100 * of("packed") / of("luanti")),
       format_value(100 * of("packed") / of("minecraft")));
   out.steps = {"bytes"};
   const Rows all = evidence.findings.rows("bytes");
@@ -90,7 +94,8 @@ ReportFigure transfers(const Evidence& evidence) {
   const auto ms = [&](const char* profile, const std::string& what) {
     return rows.where("profile", profile).where("case", what).number("value");
   };
-  chart::BarChart chart{{}, {}, {"ms until all 64 chunks are meshed, real world", true}, "transfer and mesh"};
+  chart::BarChart chart{
+      {}, {}, {"ms until all 64 chunks are meshed, real world", true}, "transfer and mesh"};
   chart.series = {{"packed runs + RDM", Role::ours, {}},
                   {"raw runs + RDM", Role::other, {}},
                   {"dense + zstd + binary greedy", Role::baseline, {}},
@@ -115,7 +120,8 @@ ReportFigure transfers(const Evidence& evidence) {
   out.id = "transfers";
   out.title = "Send, unpack, mesh: under each link (9.2)";
   out.sentence = fmt::format(
-      "Until everything is meshed, dense voxels under zstd take this many times as long as packed runs "
+      "Until everything is meshed, dense voxels under zstd take this many times as long as packed "
+      "runs "
       "(geometric mean of five "
       "worlds): {}. On slow links bytes decide, on fast ones the meshing.",
       ratios.empty() ? "not measured" : ratios);
@@ -132,8 +138,8 @@ ReportFigure latency(const Evidence& evidence) {
   chart.x = {"ms from the click to the mesh", true};
   chart.value_names = {"p50", "p50", "p99", "max"};
   chart.title = "latency";
-  const auto add = [&](const char* profile, const char* what, const char* figure, const std::string& name,
-                       Role role) {
+  const auto add = [&](const char* profile, const char* what, const char* figure,
+                       const std::string& name, Role role) {
     const auto value = [&](const char* percentile) {
       return rows.where("profile", profile)
           .where("case", what)
@@ -154,10 +160,14 @@ ReportFigure latency(const Evidence& evidence) {
   out.id = "latency";
   out.title = "Latency plus mesh, by link";
   const auto p = [&](const char* profile, const char* what, const char* figure) {
-    return rows.where("profile", profile).where("case", what).where("figure", figure).number("value");
+    return rows.where("profile", profile)
+        .where("case", what)
+        .where("figure", figure)
+        .number("value");
   };
   out.sentence = fmt::format(
-      "The own edit is predicted, so it is meshed after {} ms on loopback and {} on broadband alike (p50); "
+      "The own edit is predicted, so it is meshed after {} ms on loopback and {} on broadband "
+      "alike (p50); "
       "another player's takes the "
       "network's delay besides: {} and {}.",
       format_value(p("loopback", "idle", "own_predicted_meshed_p50_ms")),
@@ -176,7 +186,9 @@ ReportFigure crowds(const Evidence& evidence) {
   for (const unsigned clients : sizes) steps.push_back(fmt::format("crowd-{}", clients));
   const Rows rows = evidence.findings.figures(steps);
   const auto value = [&](unsigned clients, const char* figure) {
-    return rows.where("case", fmt::format("{} clients", clients)).where("figure", figure).number("value");
+    return rows.where("case", fmt::format("{} clients", clients))
+        .where("figure", figure)
+        .number("value");
   };
   chart::LineChart chart;
   chart.x = {"clients in one place, two edits a second each", true};
@@ -189,7 +201,8 @@ ReportFigure crowds(const Evidence& evidence) {
   for (const auto& [name, role, figure] : lines) {
     chart::LineSeries line{name, role, {}};
     for (const unsigned clients : sizes) {
-      if (clients > 1) line.points.push_back({static_cast<double>(clients), value(clients, figure)});
+      if (clients > 1)
+        line.points.push_back({static_cast<double>(clients), value(clients, figure)});
     }
     chart.lines.push_back(std::move(line));
   }
@@ -202,7 +215,8 @@ ReportFigure crowds(const Evidence& evidence) {
   out.id = "crowds";
   out.title = "Crowds: 1 to 1,000 clients";
   out.sentence = fmt::format(
-      "{} clients on one server beside their bots on {} cores see each other's edits after {} ms (p50), {} "
+      "{} clients on one server beside their bots on {} cores see each other's edits after {} ms "
+      "(p50), {} "
       "(p99); {} samples, {} never "
       "arrived, {} disconnects.",
       most, evidence.findings.common() == nullptr ? 0 : evidence.findings.common()->machine.cores,
@@ -222,7 +236,8 @@ ReportSection network_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "Under networked conditions";
   out.introduction =
-      "Real programs, links made by the lab: delay, jitter, rate and loss. Nothing here was asked of the "
+      "Real programs, links made by the lab: delay, jitter, rate and loss. Nothing here was asked "
+      "of the "
       "thesis' prototype.";
   out.figures = {bytes(evidence), transfers(evidence), latency(evidence), crowds(evidence)};
   return out;

@@ -45,7 +45,8 @@ std::string paragraphs(const char* css_class, const std::vector<std::string>& te
 }
 
 std::string html_of(const ReportFigure& figure, const Findings& findings) {
-  std::string out = fmt::format("<figure id=\"{}\">\n<h3>{}</h3>\n", figure.id, html_text(figure.title));
+  std::string out =
+      fmt::format("<figure id=\"{}\">\n<h3>{}</h3>\n", figure.id, html_text(figure.title));
   const auto doubts = findings.doubts(figure.steps);
   if (findings.is_missing(figure.steps)) {
     return out + paragraphs("doubt", doubts) + "</figure>\n";
@@ -54,13 +55,13 @@ std::string html_of(const ReportFigure& figure, const Findings& findings) {
   out += paragraphs("doubt", doubts);
   out += figure.picture + "\n";
   if (!figure.marks.empty()) {
-    out += "<details><summary>What to know about these data</summary>\n" + paragraphs("quiet", figure.marks) +
-           "</details>\n";
+    out += "<details><summary>What to know about these data</summary>\n" +
+           paragraphs("quiet", figure.marks) + "</details>\n";
   }
   const std::string csv = csv_of(figure.data);
   out += fmt::format(
-      "<p class=\"quiet csv\"><a download=\"{}.csv\" href=\"{}\">Data as CSV</a></p>\n</figure>\n", figure.id,
-      data_uri(csv));
+      "<p class=\"quiet csv\"><a download=\"{}.csv\" href=\"{}\">Data as CSV</a></p>\n</figure>\n",
+      figure.id, data_uri(csv));
   return out;
 }
 
@@ -70,7 +71,8 @@ std::string html_of(const Verdicts& verdicts, const Findings& findings) {
   if (verdicts.rows.empty()) return out;
   out +=
       "<table "
-      "class=\"verdicts\"><thead><tr><th>Question</th><th>Wins</th><th>Loses</th></tr></thead><tbody>\n";
+      "class=\"verdicts\"><thead><tr><th>Question</th><th>Wins</th><th>Loses</th></tr></"
+      "thead><tbody>\n";
   for (const ReportVerdict& row : verdicts.rows) {
     out += fmt::format(
         "<tr><td><a href=\"#{}\">{}</a></td><td data-head=\"wins\">{}</td><td "
@@ -85,7 +87,8 @@ std::string provenance(const Findings& findings) {
   if (common == nullptr) return "<p class=\"doubt\">Nothing was measured yet.</p>\n";
   const Machine& m = common->machine;
   return fmt::format(
-      "<p class=\"quiet\">{}, {} cores; {}; vectors {}; commit {}; real world {}; {}. Medians; the machine "
+      "<p class=\"quiet\">{}, {} cores; {}; vectors {}; commit {}; real world {}; {}. Medians; the "
+      "machine "
       "may be shared.</p>\n",
       html_text(m.cpu), m.cores, html_text(m.compiler), html_text(m.simd), html_text(m.commit),
       html_text(common->luanti),
@@ -103,14 +106,17 @@ std::string steps_table(const std::vector<Step>& steps, const Findings& findings
     out += fmt::format(
         "<tr><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n", html_text(step.name),
         finding == nullptr ? "not measured" : duration_text(finding->seconds),
-        html_text("runstone-bench " + (step.command.empty() ? "report --steps " + step.name : step.command)));
+        html_text("runstone-bench " +
+                  (step.command.empty() ? "report --steps " + step.name : step.command)));
   }
-  return out + fmt::format("</tbody></table>\n<p class=\"quiet\">{} in all.</p>\n", duration_text(sum));
+  return out +
+         fmt::format("</tbody></table>\n<p class=\"quiet\">{} in all.</p>\n", duration_text(sum));
 }
 
 }  // namespace
 
-Result<WrittenPage, std::string> write_page(const ReportOptions& options, const StepFailures& failures) {
+Result<WrittenPage, std::string> write_page(const ReportOptions& options,
+                                            const StepFailures& failures) {
   const std::vector<Step> steps = report_steps(options);
   std::vector<std::string> names;
   for (const Step& step : steps) names.push_back(step.name);
@@ -143,17 +149,21 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options, const 
   }
   nav += "<a href=\"#steps\">What was run</a></nav>\n";
   const std::string thesis_doubt =
-      thesis.doubt().empty() ? ""
-                             : paragraphs("doubt", {"The thesis' figures are missing: " + thesis.doubt()});
+      thesis.doubt().empty()
+          ? ""
+          : paragraphs("doubt", {"The thesis' figures are missing: " + thesis.doubt()});
   const std::string page = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<meta name=\"color-scheme\" "
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<meta "
+      "name=\"color-scheme\" "
       "content=\"light dark\">\n"
       "<title>Runstone: the evaluation</title>\n<style>\n{}\n{}</style>\n</head>\n<body>\n"
-      "<h1>Meshing voxels from compressed runs: the evaluation</h1>\n{}{}{}{}{}{}</body>\n</html>\n",
+      "<h1>Meshing voxels from compressed runs: the "
+      "evaluation</h1>\n{}{}{}{}{}{}</body>\n</html>\n",
       chart::chart_css(), kPageStyle, provenance(findings), thesis_doubt,
       html_of(verdicts_of(evidence), findings), nav, body, steps_table(steps, findings));
-  if (const auto done = write_text_file(out.file, page); !done) return Unexpected<std::string>{done.error()};
+  if (const auto done = write_text_file(out.file, page); !done)
+    return Unexpected<std::string>{done.error()};
   if (const auto done = write_text_file(options.out + "/summary.md", summary_of(evidence)); !done) {
     return Unexpected<std::string>{done.error()};
   }

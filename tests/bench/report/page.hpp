@@ -16,6 +16,7 @@ struct WrittenPage {
 
 /// Makes OUT/index.html, OUT/summary.md and OUT/csv/ of what lies in OUT/data. What is missing, broken, or of another machine or commit
 /// is said where it shows. The error names the file that could not be written.
-Result<WrittenPage, std::string> write_page(const ReportOptions& options, const StepFailures& failures);
+Result<WrittenPage, std::string> write_page(const ReportOptions& options,
+                                            const StepFailures& failures);
 
 }  // namespace runstone::bench

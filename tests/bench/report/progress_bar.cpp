@@ -18,7 +18,8 @@ std::string duration_text(double seconds) {
                        : fmt::format("{} h {} min", minutes / 60, minutes % 60);
 }
 
-ProgressBar::ProgressBar(std::ostream& out, bool is_terminal, std::size_t steps, double expected_seconds)
+ProgressBar::ProgressBar(std::ostream& out, bool is_terminal, std::size_t steps,
+                         double expected_seconds)
     : out_(out), is_terminal_(is_terminal), steps_(steps), expected_left_(expected_seconds) {}
 
 void ProgressBar::begin(const std::string& step) {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/network/child.hpp"
 #include "tests/bench/report/page.hpp"
 #include "tests/bench/report/progress_bar.hpp"
@@ -19,7 +19,9 @@
 namespace runstone::bench {
 namespace {
 
-std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
 
 /// The folder's own name and the size of what is in it, which tells worlds of one name apart.
 std::string world_name(const std::string& folder) {
@@ -50,7 +52,8 @@ bool is_there(const ReportOptions& options, const Step& step) {
   return found && is_comparable(*found, finding_of(options, step));
 }
 
-Result<double, std::string> measure(const ReportOptions& options, const Step& step, std::ostream& log) {
+Result<double, std::string> measure(const ReportOptions& options, const Step& step,
+                                    std::ostream& log) {
   fmt::print(log, "\n== {} ==\n", step.name);
   log.flush();
   const std::uint64_t start = now_ns();
@@ -79,7 +82,8 @@ std::string objection(const ReportOptions& options) {
     const auto found = read_finding(options.out, step.name);
     if (found && !found->is_quick) {
       return options.out +
-             " has figures of a full run, which a quick one would replace: take another folder, or say "
+             " has figures of a full run, which a quick one would replace: take another folder, or "
+             "say "
              "--again";
     }
   }
@@ -90,7 +94,8 @@ std::vector<Step> wanted_steps(const ReportOptions& options) {
   std::vector<Step> steps = report_steps(options);
   if (!options.steps.empty()) {
     std::erase_if(steps, [&](const Step& step) {
-      return std::find(options.steps.begin(), options.steps.end(), step.name) == options.steps.end();
+      return std::find(options.steps.begin(), options.steps.end(), step.name) ==
+             options.steps.end();
     });
   }
   return steps;
@@ -123,17 +128,20 @@ int run_report(const ReportOptions& options, std::ostream& out, std::ostream& er
         continue;
       }
       const auto took = measure(options, step, log);
-      if (interrupted()) return complain("interrupted: the same command goes on where this one stopped");
+      if (interrupted())
+        return complain("interrupted: the same command goes on where this one stopped");
       if (!took) failures[step.name] = took.error();
-      bar.end(took ? duration_text(*took) : "failed: " + took.error(), step.seconds, took ? *took : 0);
+      bar.end(took ? duration_text(*took) : "failed: " + took.error(), step.seconds,
+              took ? *took : 0);
       if (const auto made = make_page(); !made) return complain(made.error());
     }
   }
   const auto made = make_page();
   if (!made) return complain(made.error());
-  fmt::print(out, "{}: {} figures, {} of them without their measurements\n", made->file, made->figures,
-             made->missing);
-  for (const auto& [step, why] : failures) fmt::print(err, "runstone-bench: {} failed: {}\n", step, why);
+  fmt::print(out, "{}: {} figures, {} of them without their measurements\n", made->file,
+             made->figures, made->missing);
+  for (const auto& [step, why] : failures)
+    fmt::print(err, "runstone-bench: {} failed: {}\n", step, why);
   return failures.empty() ? 0 : 1;
 }
 

@@ -11,23 +11,27 @@ CLI::App* add_report_command(CLI::App& app, ReportOptions& options) {
   options.thesis = RUNSTONE_SOURCE_DIR "/tests/data/thesis";
   std::set<std::string> steps;
   for (const Step& step : report_steps(options)) steps.insert(step.name);
-  CLI::App* report =
-      app.add_subcommand("report", "measures everything and makes a page of it: tables, figures, verdicts");
+  CLI::App* report = app.add_subcommand(
+      "report", "measures everything and makes a page of it: tables, figures, verdicts");
   report
-      ->add_option("--out", options.out,
-                   "folder of the page (index.html), its tables (csv/) and what was measured (data/)")
+      ->add_option(
+          "--out", options.out,
+          "folder of the page (index.html), its tables (csv/) and what was measured (data/)")
       ->required();
-  report->add_flag("--quick", options.is_quick, "everything, but few repetitions: some five minutes");
+  report->add_flag("--quick", options.is_quick,
+                   "everything, but few repetitions: some five minutes");
   report->add_option("--steps", options.steps, "what to measure; all by default")
       ->delimiter(',')
       ->check(CLI::IsMember(steps));
   report->add_flag("--again", options.is_again,
                    "measure again what is there; otherwise a run goes on where it was cut off");
-  report->add_flag("--page-only", options.is_page_only, "measure nothing: make the page of what is there");
+  report->add_flag("--page-only", options.is_page_only,
+                   "measure nothing: make the page of what is there");
   report->add_option("--luanti", options.luanti, "folder of a Luanti world")
       ->capture_default_str()
       ->check(CLI::ExistingDirectory);
-  report->add_option("--thesis", options.thesis, "folder of the thesis' tables")->capture_default_str();
+  report->add_option("--thesis", options.thesis, "folder of the thesis' tables")
+      ->capture_default_str();
   return report;
 }
 

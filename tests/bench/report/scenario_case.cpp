@@ -10,9 +10,9 @@
 #include "common/core/assert.hpp"
 #include "common/generate/scenarios/scenario_model.hpp"
 #include "common/runs/reorder.hpp"
+#include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/meshing/cell.hpp"
 #include "tests/bench/meshing/order_name.hpp"
-#include "tests/bench/harness/statistics.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::bench {
@@ -104,18 +104,19 @@ json scenario_times(unsigned repetitions, std::ostream& progress) {
     std::array<Times, kMeshers.size()> times;
     for_each_chunk([&](ChunkCoord at) {
       const Volume volume{{}, kEdge, test::scenario_scene(*world, at, kEdge, false)};
-      std::vector<Contestant> contestants;
+      std::vector<MesherCase> mesher_cases;
       for (const std::string_view mesher : kMeshers) {
-        auto contestant = make_contestant(mesher, volume, test::scenario_visibility());
-        RUNSTONE_ASSERT(contestant.has_value());
-        contestants.push_back(*std::move(contestant));
+        auto mesher_case = make_mesher_case(mesher, volume, test::scenario_visibility());
+        RUNSTONE_ASSERT(mesher_case.has_value());
+        mesher_cases.push_back(*std::move(mesher_case));
       }
-      const auto measured = measure_cell(contestants, repetitions);
+      const auto measured = measure_cell(mesher_cases, repetitions);
       for (std::size_t i = 0; i < measured.size(); ++i) {
         if (!measured[i]) continue;
         times[i].ns.push_back(measured[i]->median_ns);
         times[i].vertices.push_back(4 * static_cast<double>(measured[i]->quads));
-        for (std::size_t p = 0; p < kPhaseCount; ++p) times[i].phases[p].push_back(measured[i]->phase_ns[p]);
+        for (std::size_t p = 0; p < kPhaseCount; ++p)
+          times[i].phases[p].push_back(measured[i]->phase_ns[p]);
       }
     });
     for (std::size_t i = 0; i < kMeshers.size(); ++i) {

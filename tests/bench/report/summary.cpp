@@ -25,7 +25,8 @@ std::string meshers_table(const Rows& rows) {
             [](const MesherTotal& a, const MesherTotal& b) { return a.mean_ns < b.mean_ns; });
   const double optimum = total_of(totals, "optimal_greedy").triangles;
   std::string out =
-      "| mesher, the thesis' 37 scenarios, 32³ | µs a chunk (geometric mean) | triangles (sum) | of the "
+      "| mesher, the thesis' 37 scenarios, 32³ | µs a chunk (geometric mean) | triangles (sum) | "
+      "of the "
       "optimum | T-junctions (sum) "
       "|\n|---|---|---|---|---|\n";
   for (const MesherTotal& total : totals) {
@@ -45,9 +46,11 @@ std::string summary_of(const Evidence& evidence) {
   const Finding& finding = *evidence.findings.find("meshers");
   const Machine& m = finding.machine;
   std::string out = verdicts.answer + "\n\n" + meshers_table(meshers) + "\n";
-  for (const std::string& doubt : evidence.findings.doubts(verdicts.steps)) out += "Doubt: " + doubt + "\n\n";
+  for (const std::string& doubt : evidence.findings.doubts(verdicts.steps))
+    out += "Doubt: " + doubt + "\n\n";
   out += fmt::format("{}, one core; {}; vectors {}; commit {}; real world {}; a {} run.\n\n", m.cpu,
-                     m.compiler, m.simd, m.commit, finding.luanti, finding.is_quick ? "quick" : "full");
+                     m.compiler, m.simd, m.commit, finding.luanti,
+                     finding.is_quick ? "quick" : "full");
   out += "| question | wins | loses |\n|---|---|---|\n";
   for (const ReportVerdict& row : verdicts.rows) {
     out += fmt::format("| {} | {} | {} |\n", row.question, row.winner, row.loser);

@@ -59,7 +59,8 @@ ThesisData ThesisData::read(const std::string& folder) {
   return out;
 }
 
-double ThesisData::value(unsigned scenario, std::string_view mesher, std::string_view metric) const {
+double ThesisData::value(unsigned scenario, std::string_view mesher,
+                         std::string_view metric) const {
   const auto found = results_.find(std::tuple(scenario, mesher, metric));
   return found == results_.end() ? kNone : found->second;
 }

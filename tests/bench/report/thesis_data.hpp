@@ -35,15 +35,18 @@ struct ThesisDefect {
   const char* what;
 };
 inline constexpr ThesisDefect kThesisDefects[] = {
-    {12, "Its maps pointed at gap count 2 when it was measured: its figures are those of scenario 10."},
+    {12,
+     "Its maps pointed at gap count 2 when it was measured: its figures are those of scenario 10."},
     {18,
-     "Threads shared one random stream: only the centre chunk can be made again. Voxel Plugin's time is ten "
+     "Threads shared one random stream: only the centre chunk can be made again. Voxel Plugin's "
+     "time is ten "
      "times "
      "the usual per vertex, likely another model's."},
     {19, "Threads shared one random stream: only the centre chunk can be made again."},
     {20, "Threads shared one random stream: only the centre chunk can be made again."},
     {21,
-     "Threads shared one random stream: only the centre chunk can be made again. The RLE meshing file holds "
+     "Threads shared one random stream: only the centre chunk can be made again. The RLE meshing "
+     "file holds "
      "events "
      "of other sessions; its phases are left out."},
     {22, "Threads shared one random stream: only the centre chunk can be made again."},
@@ -52,15 +55,18 @@ inline constexpr ThesisDefect kThesisDefects[] = {
     {31, "Voxel Plugin's map pointed at scenario 32: its vertices and times are of that model."},
 };
 inline constexpr const char* kThesisMeans =
-    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half; here its raw "
+    "The thesis averages by v = round((v + new) / 2), in which the last chunk weighs half; here "
+    "its raw "
     "events are averaged "
     "plainly. Scenarios whose data contradict each other (12, 18, 31) are in these means.";
 inline constexpr const char* kVoxelPluginChunks =
-    "Voxel Plugin: the mean over its chunks with voxels, some 27 of the 484 events it logs a scenario; the "
+    "Voxel Plugin: the mean over its chunks with voxels, some 27 of the 484 events it logs a "
+    "scenario; the "
     "thesis drew the mean over "
     "all events, about a seventh of that.";
 inline constexpr const char* kVoxelPluginEvents =
-    "Voxel Plugin: phases are means over all 484 events it logs a scenario, of which some 27 are chunks with "
+    "Voxel Plugin: phases are means over all 484 events it logs a scenario, of which some 27 are "
+    "chunks with "
     "voxels.";
 
 }  // namespace runstone::bench

@@ -94,10 +94,12 @@ class ThesisFigures {
 
   ReportFigure memory(unsigned group) const {
     const auto scenarios = scenarios_of(group);
-    chart::BarChart bytes{names_of(scenarios), {}, {"bytes of a chunk of 32³", true}, "memory of a chunk"};
+    chart::BarChart bytes{
+        names_of(scenarios), {}, {"bytes of a chunk of 32³", true}, "memory of a chunk"};
     bytes.series = {
         {"thesis: RLE, 12 B a run, as logged", Role::thesis,
-         each(scenarios, [&](unsigned s) { return thesis_.value(s, "RLE", "model_memory_logged_mean"); })},
+         each(scenarios,
+              [&](unsigned s) { return thesis_.value(s, "RLE", "model_memory_logged_mean"); })},
         {"ours: runs, cheapest axis order", Role::ours,
          each(scenarios, [&](unsigned s) { return fact(s, "run_bytes"); })}};
     chart::BarChart solid{names_of(scenarios), {}, {"solid voxels, %"}, "share of solid voxels"};
@@ -106,10 +108,12 @@ class ThesisFigures {
                      })}};
     ReportFigure out;
     out.id = fmt::format("memory-group-{}", group);
-    out.title = fmt::format("Memory of group {}, {} (figures 8.4 to 8.9)", group, kGroupNames[group - 1]);
+    out.title =
+        fmt::format("Memory of group {}, {} (figures 8.4 to 8.9)", group, kGroupNames[group - 1]);
     const double ours = mean_of(bytes.series[1].values), theirs = mean_of(bytes.series[0].values);
     out.sentence = fmt::format(
-        "A chunk takes {} bytes of runs on average: {} % less than a flat array of ours (2 bytes a voxel). "
+        "A chunk takes {} bytes of runs on average: {} % less than a flat array of ours (2 bytes a "
+        "voxel). "
         "The thesis' RLE takes {}, {} % "
         "less than its own flat array (8 bytes a voxel).",
         format_value(ours), format_value(100 * (1 - ours / kOurGridBytes)), format_value(theirs),
@@ -130,20 +134,25 @@ class ThesisFigures {
         names_of(scenarios), {}, {"vertices of a chunk, mean of 27", true}, "vertices of a chunk"};
     for (const Rebuilt& mesher : kRebuilt) {
       chart.series.push_back(
-          {mesher.thesis_name, mesher.thesis == std::string_view("Grid") ? Role::thesis : Role::other,
+          {mesher.thesis_name,
+           mesher.thesis == std::string_view("Grid") ? Role::thesis : Role::other,
            each(scenarios, [&](unsigned s) { return thesis_vertices(s, mesher.thesis); })});
     }
-    chart.series.push_back({"ours: RDM from runs", Role::ours,
-                            each(scenarios, [&](unsigned s) { return time(s, "rdm", "vertices"); })});
+    chart.series.push_back({"ours: RDM from runs", Role::ours, each(scenarios, [&](unsigned s) {
+                              return time(s, "rdm", "vertices");
+                            })});
     ReportFigure out;
     out.id = fmt::format("vertices-group-{}", group);
-    out.title = fmt::format("Vertices of group {}, {} (figures 8.11 to 8.13)", group, kGroupNames[group - 1]);
+    out.title = fmt::format("Vertices of group {}, {} (figures 8.11 to 8.13)", group,
+                            kGroupNames[group - 1]);
     out.sentence = fmt::format(
-        "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, its RLE RDM {} and Voxel Plugin "
+        "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, its RLE RDM {} and "
+        "Voxel Plugin "
         "{}. {}",
-        format_value(mean_of(chart.series[3].values)), format_value(mean_of(chart.series[0].values)),
-        format_value(mean_of(chart.series[1].values)), format_value(mean_of(chart.series[2].values)),
-        agreement(scenarios));
+        format_value(mean_of(chart.series[3].values)),
+        format_value(mean_of(chart.series[0].values)),
+        format_value(mean_of(chart.series[1].values)),
+        format_value(mean_of(chart.series[2].values)), agreement(scenarios));
     out.steps = {"thesis"};
     out.data = table_of("scenario", chart);
     for (const Rebuilt& mesher : kRebuilt) {
@@ -168,7 +177,8 @@ class ThesisFigures {
                     {"other", Role::other, {}}};
     for (const Rebuilt& mesher : kRebuilt) {
       theirs.names.push_back(mesher.thesis_name);
-      const std::array<const char*, 4> metrics = {"octree_mean", "meshing_mean", "buffer_mean", "other_mean"};
+      const std::array<const char*, 4> metrics = {"octree_mean", "meshing_mean", "buffer_mean",
+                                                  "other_mean"};
       for (std::size_t p = 0; p < metrics.size(); ++p) {
         theirs.parts[p].values.push_back(
             mean([&](unsigned s) { return thesis_.value(s, mesher.thesis, metrics[p]); }));
@@ -180,8 +190,8 @@ class ThesisFigures {
     const auto add = [&](const std::string& name, const char* mesher) {
       ours.names.push_back(name);
       for (std::size_t p = 0; p < phases.size(); ++p) {
-        ours.parts[p].values.push_back(
-            mean([&](unsigned s) { return time(s, mesher, fmt::format("{}_ns", phases[p])) / 1000; }));
+        ours.parts[p].values.push_back(mean(
+            [&](unsigned s) { return time(s, mesher, fmt::format("{}_ns", phases[p])) / 1000; }));
       }
     };
     add("ours: RDM from runs", "rdm");
@@ -195,11 +205,14 @@ class ThesisFigures {
       return mean([&](unsigned s) { return time(s, mesher, "mean_ns") / 1000; });
     };
     out.sentence = fmt::format(
-        "Ours meshes a chunk in {} µs, with no phase before it and none after: quads are what the GPU reads. "
+        "Ours meshes a chunk in {} µs, with no phase before it and none after: quads are what the "
+        "GPU reads. "
         "On the same machine "
-        "the rebuilt Grid RDM takes {} µs, RLE RDM {}, and decoding first and meshing with the fastest dense "
+        "the rebuilt Grid RDM takes {} µs, RLE RDM {}, and decoding first and meshing with the "
+        "fastest dense "
         "mesher {}. "
-        "Compare the thesis' milliseconds by their shares only: another machine, and an engine around them.",
+        "Compare the thesis' milliseconds by their shares only: another machine, and an engine "
+        "around them.",
         format_value(total("rdm")), format_value(total("grid_rdm")), format_value(total("rle_rdm")),
         format_value(total("decode_binary")));
     out.steps = {"thesis"};
@@ -207,8 +220,8 @@ class ThesisFigures {
     for (const auto* chart : {&theirs, &ours}) {
       for (const chart::Series& part : chart->parts) {
         for (std::size_t i = 0; i < chart->names.size(); ++i) {
-          out.data.add(
-              {chart == &theirs ? "thesis, ms" : "ours, us", chart->names[i], part.name, part.values[i]});
+          out.data.add({chart == &theirs ? "thesis, ms" : "ours, us", chart->names[i], part.name,
+                        part.values[i]});
         }
       }
     }
@@ -228,27 +241,31 @@ class ThesisFigures {
     out.data.columns = {"scenario", "mesher", "least us", "median us", "mean us", "greatest us"};
     double ours_sum = 0, theirs_sum = 0;
     for (const unsigned s : scenarios) {
-      const auto thesis_us = [&](const char* metric) { return 1000 * thesis_.value(s, "RLE", metric); };
+      const auto thesis_us = [&](const char* metric) {
+        return 1000 * thesis_.value(s, "RLE", metric);
+      };
       const auto our_us = [&](const char* column) { return time(s, "rdm", column) / 1000; };
-      const auto add = [&](const std::string& name, Role role, double low, double middle, double average,
-                           double high) {
+      const auto add = [&](const std::string& name, Role role, double low, double middle,
+                           double average, double high) {
         chart.names.push_back(fmt::format("{} {}", s, name));
         chart.roles.push_back(role);
         chart.ranges.push_back({low, middle, high, kNone});
         out.data.add({std::to_string(s), name, low, middle, average, high});
       };
-      add("ours", Role::ours, our_us("min_ns"), our_us("median_ns"), our_us("mean_ns"), our_us("max_ns"));
-      add("thesis", Role::thesis, thesis_us("total_min"), thesis_us("total_median"), thesis_us("total_mean"),
-          thesis_us("total_max"));
+      add("ours", Role::ours, our_us("min_ns"), our_us("median_ns"), our_us("mean_ns"),
+          our_us("max_ns"));
+      add("thesis", Role::thesis, thesis_us("total_min"), thesis_us("total_median"),
+          thesis_us("total_mean"), thesis_us("total_max"));
       ours_sum += our_us("mean_ns");
       theirs_sum += thesis_us("total_mean");
     }
     out.id = fmt::format("timing-group-{}", group);
-    out.title =
-        fmt::format("Meshing from runs in group {}, {}: least, median, greatest (figures 8.20 and 8.21)",
-                    group, kGroupNames[group - 1]);
+    out.title = fmt::format(
+        "Meshing from runs in group {}, {}: least, median, greatest (figures 8.20 and 8.21)", group,
+        kGroupNames[group - 1]);
     out.sentence = fmt::format(
-        "The thesis' RLE RDM took {} times as long as ours over the group, on another machine and with "
+        "The thesis' RLE RDM took {} times as long as ours over the group, on another machine and "
+        "with "
         "Unreal's buffers: look at "
         "how both rise and fall with the model.",
         format_value(theirs_sum / ours_sum));
@@ -260,8 +277,9 @@ class ThesisFigures {
 
   ReportFigure chunk_sizes(unsigned scenario) const {
     const bool is_noise = scenario == 5;
-    const Rows rows = is_noise ? findings_.rows("chunk-sizes-terrain")
-                               : findings_.rows("chunk-sizes").where("part", std::to_string(scenario));
+    const Rows rows = is_noise
+                          ? findings_.rows("chunk-sizes-terrain")
+                          : findings_.rows("chunk-sizes").where("part", std::to_string(scenario));
     chart::LineChart chart;
     chart.x = {"side of the chunk, voxels", true};
     chart.y = {"ms of a chunk", true};
@@ -296,23 +314,29 @@ class ThesisFigures {
     out.id = fmt::format("chunk-size-{}", scenario);
     out.title = fmt::format("Side of the chunk, scenario {} (figures 8.23 to 8.25)", scenario);
     out.sentence = fmt::format(
-        "A chunk of 128³ takes ours {}; the thesis called that side unsuitable for real time ({} with Grid "
+        "A chunk of 128³ takes ours {}; the thesis called that side unsuitable for real time ({} "
+        "with Grid "
         "RDM, {} with RLE RDM). "
         "From 32 to 128 the voxels grow 64 times, our time {} times.",
         time_text(at(128)), time_text(kNsPerMs * thesis_.chunk_size_ms(scenario, 128, "Grid")),
-        time_text(kNsPerMs * thesis_.chunk_size_ms(scenario, 128, "RLE")), format_value(at(128) / at(32)));
+        time_text(kNsPerMs * thesis_.chunk_size_ms(scenario, 128, "RLE")),
+        format_value(at(128) / at(32)));
     out.marks.push_back(is_noise ? "Ours: one chunk of our noise terrain."
                                  : "Ours: the chunk in the middle; the thesis: the mean of 27.");
     if (is_noise) {
       out.marks.push_back(
-          "Scenario 5 is data of side 32 whose generator is not public; ours is measured on our own noise "
+          "Scenario 5 is data of side 32 whose generator is not public; ours is measured on our "
+          "own noise "
           "terrain instead.");
     }
     if (scenario == 1)
       out.marks.push_back(
-          "Ours draws nothing of the chunk in the middle of 27 full ones and knows that from one run.");
-    out.marks.push_back("Voxel Plugin always uses chunks of 32³ to draw: its line is no test of the side.");
-    if (scenario == 17) out.marks.push_back("At 128 the thesis has 5 (Grid) and 12 (RLE) of 27 chunks.");
+          "Ours draws nothing of the chunk in the middle of 27 full ones and knows that from one "
+          "run.");
+    out.marks.push_back(
+        "Voxel Plugin always uses chunks of 32³ to draw: its line is no test of the side.");
+    if (scenario == 17)
+      out.marks.push_back("At 128 the thesis has 5 (Grid) and 12 (RLE) of 27 chunks.");
     out.steps = {is_noise ? "chunk-sizes-terrain" : "chunk-sizes"};
     out.picture = chart::frame_of(chart);
     return out;
@@ -333,11 +357,13 @@ class ThesisFigures {
     const auto all = scenarios_of_all();
     for (const Rebuilt& mesher : kRebuilt) {
       add(mesher.thesis_name, Role::thesis,
-          mean_of(each(all, [&](unsigned s) { return thesis_.value(s, mesher.thesis, total_of(mesher)); })),
+          mean_of(each(
+              all, [&](unsigned s) { return thesis_.value(s, mesher.thesis, total_of(mesher)); })),
           mean_of(each(all, [&](unsigned s) { return thesis_vertices(s, mesher.thesis); })));
     }
     const auto add_ours = [&](const std::string& name, Role role, const char* mesher) {
-      add(name, role, mean_of(each(all, [&](unsigned s) { return time(s, mesher, "mean_ns") / kNsPerMs; })),
+      add(name, role,
+          mean_of(each(all, [&](unsigned s) { return time(s, mesher, "mean_ns") / kNsPerMs; })),
           mean_of(each(all, [&](unsigned s) { return time(s, mesher, "vertices"); })));
     };
     for (const Rebuilt& mesher : kRebuilt) add_ours(mesher.our_name, Role::other, mesher.ours);
@@ -349,13 +375,15 @@ class ThesisFigures {
     const auto& dense = chart.points[chart.points.size() - 2];
     const auto& rle = chart.points[4];
     out.sentence = fmt::format(
-        "The good corner is the lower left. Meshing from runs takes {} µs and {} vertices over all 37 "
+        "The good corner is the lower left. Meshing from runs takes {} µs and {} vertices over all "
+        "37 "
         "scenarios; the same machine "
-        "needs {} µs to decode and mesh with the fastest dense mesher ({} vertices), and {} µs for the "
+        "needs {} µs to decode and mesh with the fastest dense mesher ({} vertices), and {} µs for "
+        "the "
         "rebuilt RLE RDM of the thesis ({} "
         "vertices).",
-        format_value(us.x * 1000), format_value(us.y), format_value(dense.x * 1000), format_value(dense.y),
-        format_value(rle.x * 1000), format_value(rle.y));
+        format_value(us.x * 1000), format_value(us.y), format_value(dense.x * 1000),
+        format_value(dense.y), format_value(rle.x * 1000), format_value(rle.y));
     out.steps = {"thesis"};
     out.picture = chart::frame_of(chart);
     out.marks = {kThesisMeans, kVoxelPluginChunks,
@@ -372,7 +400,8 @@ class ThesisFigures {
   }
   /// Voxel Plugin logs 484 events a scenario, of which some 27 are chunks with voxels.
   static const char* total_of(const Rebuilt& mesher) {
-    return mesher.thesis == std::string_view("VoxelPlugin") ? "total_mean_nonempty_chunks" : "total_mean";
+    return mesher.thesis == std::string_view("VoxelPlugin") ? "total_mean_nonempty_chunks"
+                                                            : "total_mean";
   }
   /// Mean over the 27 chunks; chunks without faces log no line for Voxel Plugin.
   double thesis_vertices(unsigned scenario, std::string_view mesher) const {
@@ -388,11 +417,12 @@ class ThesisFigures {
     std::string out = "Our rebuilt meshers give the thesis' own mean:";
     for (std::size_t i = 0; i < 2; ++i) {
       const auto agrees = [&](unsigned s) {
-        return std::abs(time(s, kRebuilt[i].ours, "vertices") - thesis_vertices(s, kRebuilt[i].thesis)) <
-               0.01;
+        return std::abs(time(s, kRebuilt[i].ours, "vertices") -
+                        thesis_vertices(s, kRebuilt[i].thesis)) < 0.01;
       };
-      out += fmt::format("{} {} in {} of {}", i == 0 ? "" : ",", kRebuilt[i].thesis,
-                         std::count_if(scenarios.begin(), scenarios.end(), agrees), scenarios.size());
+      out +=
+          fmt::format("{} {} in {} of {}", i == 0 ? "" : ",", kRebuilt[i].thesis,
+                      std::count_if(scenarios.begin(), scenarios.end(), agrees), scenarios.size());
     }
     return out + ".";
   }
@@ -409,7 +439,8 @@ ReportSection thesis_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "The thesis' figures, again";
   out.introduction =
-      "The 37 scenarios of the thesis, every one of their 27 chunks of 32³ but where the side of the chunk "
+      "The 37 scenarios of the thesis, every one of their 27 chunks of 32³ but where the side of "
+      "the chunk "
       "varies. Its own figures are hatched, "
       "dashed or hollow.";
   out.figures.push_back(figures.efficiency());
@@ -417,7 +448,8 @@ ReportSection thesis_section(const Evidence& evidence) {
   for (const unsigned group : {1U, 2U, 3U}) out.figures.push_back(figures.vertices(group));
   for (const unsigned group : {1U, 2U, 3U}) out.figures.push_back(figures.phases(group));
   for (const unsigned group : {2U, 3U}) out.figures.push_back(figures.timing(group));
-  for (const unsigned scenario : {1U, 5U, 17U}) out.figures.push_back(figures.chunk_sizes(scenario));
+  for (const unsigned scenario : {1U, 5U, 17U})
+    out.figures.push_back(figures.chunk_sizes(scenario));
   return out;
 }
 

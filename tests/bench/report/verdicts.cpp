@@ -26,8 +26,8 @@ struct Candidate {
 };
 
 /// The least wins, the greatest loses; equals share. No row where fewer than two were measured.
-void judge(Verdicts& out, const char* question, const char* figure, std::vector<Candidate> candidates,
-           const std::function<std::string(double)>& text) {
+void judge(Verdicts& out, const char* question, const char* figure,
+           std::vector<Candidate> candidates, const std::function<std::string(double)>& text) {
   std::erase_if(candidates, [](const Candidate& each) { return !std::isfinite(each.value); });
   if (candidates.size() < 2) return;
   const auto [least, most] =
@@ -44,9 +44,11 @@ void judge(Verdicts& out, const char* question, const char* figure, std::vector<
 }
 
 std::vector<Candidate> of_meshers(const std::vector<MesherTotal>& totals,
-                                  const std::vector<const char*>& meshers, double MesherTotal::* figure) {
+                                  const std::vector<const char*>& meshers,
+                                  double MesherTotal::* figure) {
   std::vector<Candidate> out;
-  for (const char* mesher : meshers) out.push_back({long_name_of(mesher), total_of(totals, mesher).*figure});
+  for (const char* mesher : meshers)
+    out.push_back({long_name_of(mesher), total_of(totals, mesher).*figure});
   return out;
 }
 
@@ -87,18 +89,21 @@ std::string answer_of(const Evidence& evidence) {
   const std::string sums =
       format_value(total_of(totals, "decode_binary").sum_ns / total_of(totals, "rdm").sum_ns);
   std::string out = fmt::format(
-      "{} is {}: over the thesis' 37 scenarios (the chunk in the middle), decoding and meshing with the "
+      "{} is {}: over the thesis' 37 scenarios (the chunk in the middle), decoding and meshing "
+      "with the "
       "fastest dense mesher, binary "
-      "greedy, takes {} times as long as meshing straight from runs by the geometric mean and {} times by "
+      "greedy, takes {} times as long as meshing straight from runs by the geometric mean and {} "
+      "times by "
       "the sum, and runs are faster "
       "in {} of {}{}{}. ",
       "Counted from what is stored, the fastest mesher",
-      pays ? "Run Directional Meshing from compressed runs" : "binary greedy", format_value(scenarios.gain),
-      sums, scenarios.wins, scenarios.parts, scenarios.lost.empty() ? "" : ", not in number ",
-      scenarios.lost);
+      pays ? "Run Directional Meshing from compressed runs" : "binary greedy",
+      format_value(scenarios.gain), sums, scenarios.wins, scenarios.parts,
+      scenarios.lost.empty() ? "" : ", not in number ", scenarios.lost);
   if (!std::isnan(real.gain)) {
     out += fmt::format(
-        "In a real world, made by another program, decoding and meshing takes {} times as long, and runs are "
+        "In a real world, made by another program, decoding and meshing takes {} times as long, "
+        "and runs are "
         "faster in "
         "{} of {} volumes. ",
         format_value(real.gain), real.wins, real.parts);
@@ -106,11 +111,12 @@ std::string answer_of(const Evidence& evidence) {
   const double kept = mean_of(evidence.findings.rows("facts").numbers("run_bytes")) / kDenseBytes;
   if (!std::isnan(kept)) {
     out += fmt::format(
-        "So meshing from compressed data {}: a chunk of the scenarios takes {} % less memory than a dense "
+        "So meshing from compressed data {}: a chunk of the scenarios takes {} % less memory than "
+        "a dense "
         "array of two "
         "bytes a voxel, nothing is unpacked, and on the whole it costs {} time, not {}.",
-        pays ? "pays" : "saves memory and does not pay in time here", format_value(100 * (1 - kept)),
-        pays ? "less" : "more", pays ? "more" : "less");
+        pays ? "pays" : "saves memory and does not pay in time here",
+        format_value(100 * (1 - kept)), pays ? "less" : "more", pays ? "more" : "less");
   }
   return out;
 }
@@ -124,10 +130,12 @@ Verdicts verdicts_of(const Evidence& evidence) {
     return [name](double value) { return fmt::format("{} {}", format_value(value), name); };
   };
   Verdicts out;
-  out.steps = {"meshers", "landscapes", "facts", "bytes", "transfer-loopback", "transfer-broadband"};
+  out.steps = {"meshers", "landscapes",        "facts",
+               "bytes",   "transfer-loopback", "transfer-broadband"};
   out.answer = answer_of(evidence);
   judge(out, "Fastest mesher from what is stored (37 scenarios)", "meshers-time",
-        of_meshers(totals, {"rdm", "decode_binary", "rle_rdm", "culled"}, &MesherTotal::mean_ns), time_text);
+        of_meshers(totals, {"rdm", "decode_binary", "rle_rdm", "culled"}, &MesherTotal::mean_ns),
+        time_text);
   judge(out, "Fewest triangles without searching for the optimum", "meshers-triangles",
         of_meshers(totals,
                    {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "culled", "simple", "greedy",
@@ -136,8 +144,8 @@ Verdicts verdicts_of(const Evidence& evidence) {
         count_text);
   judge(out, "Fewest T-junctions among meshers that merge", "t-junctions",
         of_meshers(totals,
-                   {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "greedy", "naive_greedy", "run_strips",
-                    "run_strips_hidden", "optimal_greedy", "monotone", "poly2tri"},
+                   {"rdm", "decode_binary", "grid_rdm", "rle_rdm", "greedy", "naive_greedy",
+                    "run_strips", "run_strips_hidden", "optimal_greedy", "monotone", "poly2tri"},
                    &MesherTotal::t_junctions),
         count_text);
   std::vector<Candidate> forms;
@@ -151,10 +159,11 @@ Verdicts verdicts_of(const Evidence& evidence) {
                                                            {"minecraft", "Minecraft's form"}}}) {
     forms.push_back({name, bytes.where("form", form).number("bytes")});
   }
-  judge(out, "Fewest bytes of a chunk of a real world on the wire", "bytes", std::move(forms), unit("B"));
+  judge(out, "Fewest bytes of a chunk of a real world on the wire", "bytes", std::move(forms),
+        unit("B"));
   for (const char* profile : {"loopback", "broadband"}) {
-    const Rows at =
-        findings.rows(fmt::format("transfer-{}", profile), "figures").where("figure", "complete_ms");
+    const Rows at = findings.rows(fmt::format("transfer-{}", profile), "figures")
+                        .where("figure", "complete_ms");
     std::vector<Candidate> ways;
     for (const auto& [form, name] :
          std::array<std::pair<const char*, const char*>, 4>{{{"packed", "packed + RDM"},

@@ -30,7 +30,9 @@ class FlatArray {
   void walk(F&& stretch) const {
     for (const Material material : voxels_) stretch(1u, material);
   }
-  std::size_t byte_size() const { return sizeof *this + heap_bytes(voxels_.capacity() * sizeof(Material)); }
+  std::size_t byte_size() const {
+    return sizeof *this + heap_bytes(voxels_.capacity() * sizeof(Material));
+  }
 
  private:
   Extent extent_;

@@ -28,7 +28,8 @@ inline std::vector<Material> in_morton_order(const RunChunk& chunk) {
 template <class Code>
 class MortonArray {
  public:
-  explicit MortonArray(const RunChunk& chunk) : extent_(chunk.extent), voxels_(in_morton_order(chunk)) {}
+  explicit MortonArray(const RunChunk& chunk)
+      : extent_(chunk.extent), voxels_(in_morton_order(chunk)) {}
 
   Material at(LocalPos at) const { return voxels_[Code::code(at)]; }
   void set(LocalPos at, Material material) { voxels_[Code::code(at)] = material; }
@@ -42,7 +43,9 @@ class MortonArray {
   void walk(F&& stretch) const {
     for (const Material material : voxels_) stretch(1u, material);
   }
-  std::size_t byte_size() const { return sizeof *this + heap_bytes(voxels_.capacity() * sizeof(Material)); }
+  std::size_t byte_size() const {
+    return sizeof *this + heap_bytes(voxels_.capacity() * sizeof(Material));
+  }
 
  private:
   Extent extent_;

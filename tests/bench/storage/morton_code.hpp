@@ -20,14 +20,17 @@ struct MortonByTable {
     }
     return out;
   }();
-  static std::uint32_t code(LocalPos at) { return kSpread[at.x] | kSpread[at.y] << 1 | kSpread[at.z] << 2; }
+  static std::uint32_t code(LocalPos at) {
+    return kSpread[at.x] | kSpread[at.y] << 1 | kSpread[at.z] << 2;
+  }
 };
 
 #if defined(__x86_64__)
 /// Spreads bits by the instruction pdep. Requires a processor with BMI2 (morton_by_pdep()).
 struct MortonByPdep {
   static std::uint32_t code(LocalPos at) {
-    return deposit(at.x, kMortonAxis[0]) | deposit(at.y, kMortonAxis[1]) | deposit(at.z, kMortonAxis[2]);
+    return deposit(at.x, kMortonAxis[0]) | deposit(at.y, kMortonAxis[1]) |
+           deposit(at.z, kMortonAxis[2]);
   }
 
  private:

@@ -12,10 +12,10 @@
 
 #include "common/core/assert.hpp"
 #include "common/runs/dense.hpp"
-#include "tests/bench/wire/packed_longs.hpp"
 #include "tests/bench/storage/heap_bytes.hpp"
 #include "tests/bench/storage/row_pieces.hpp"
 #include "tests/bench/storage/voxel_store.hpp"
+#include "tests/bench/wire/packed_longs.hpp"
 
 namespace runstone::bench::storage {
 

@@ -33,7 +33,8 @@ class RunStore {
     scratch.areas.clear();
     scratch.runs.clear();
     plan_patch(chunk_, scratch.changes, scratch.areas, scratch.runs);
-    write_patch(chunk_, scratch.areas, scratch.runs, cheaper_write(chunk_, scratch.areas), scratch.whole);
+    write_patch(chunk_, scratch.areas, scratch.runs, cheaper_write(chunk_, scratch.areas),
+                scratch.whole);
   }
   template <class F>
   void walk(F&& stretch) const {

@@ -4,11 +4,11 @@
 
 #include <bit>
 
-#include "tests/bench/meshing/contestant.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/bench/harness/shuffled.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/storage/stores.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -38,7 +38,8 @@ void measure_volume(const storage::StoreCase& asked, unsigned repetitions, const
 
 }  // namespace
 
-Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options, std::ostream& progress) {
+Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options,
+                                                     std::ostream& progress) {
   for (const unsigned edge : options.edges) {
     if (!std::has_single_bit(edge)) {
       return Unexpected<std::string>{
@@ -69,8 +70,8 @@ Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options
         shared.brush_voxels = asked.brush_voxels;
         measure_volume(asked, options.repetitions, shared, result.rows);
       }
-      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge, world.volumes.size(),
-                 static_cast<double>(now_ns() - start) * 1e-9);
+      fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
+                 world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);
       progress.flush();
     }
   }

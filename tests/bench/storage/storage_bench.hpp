@@ -12,6 +12,7 @@ namespace runstone::bench {
 
 /// Progress goes to `progress`, a line a world and edge. Fails if a world cannot be read. Requires edges that
 /// are powers of two.
-Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options, std::ostream& progress);
+Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options,
+                                                     std::ostream& progress);
 
 }  // namespace runstone::bench

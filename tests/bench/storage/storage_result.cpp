@@ -6,17 +6,18 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/bench/harness/machine_json.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 namespace {
 
 nlohmann::ordered_json json_of(const StorageRow& row) {
-  return {{"world", row.world},       {"part", row.part},         {"edge", row.edge},
-          {"store", row.store},       {"runs", row.runs},         {"bytes", row.bytes},
-          {"build_ns", row.build_ns}, {"read_ns", row.read_ns},   {"walk_ns", row.walk_ns},
-          {"edit_ns", row.edit_ns},   {"brush_ns", row.brush_ns}, {"brush_voxels", row.brush_voxels}};
+  return {
+      {"world", row.world},       {"part", row.part},         {"edge", row.edge},
+      {"store", row.store},       {"runs", row.runs},         {"bytes", row.bytes},
+      {"build_ns", row.build_ns}, {"read_ns", row.read_ns},   {"walk_ns", row.walk_ns},
+      {"edit_ns", row.edit_ns},   {"brush_ns", row.brush_ns}, {"brush_voxels", row.brush_voxels}};
 }
 
 std::string group_of(const std::string& world) {
@@ -55,8 +56,8 @@ std::vector<Group> groups_of(const std::vector<StorageRow>& rows) {
                               [&](const Group& g) { return g.name == name && g.edge == row.edge; });
     if (group == out.end()) group = out.insert(out.end(), Group{name, row.edge, {}});
     auto& stores = group->stores;
-    auto store =
-        std::find_if(stores.begin(), stores.end(), [&](const Samples& s) { return s.store == row.store; });
+    auto store = std::find_if(stores.begin(), stores.end(),
+                              [&](const Samples& s) { return s.store == row.store; });
     if (store == stores.end()) {
       store = stores.insert(stores.end(), Samples{});
       store->store = row.store;
@@ -69,12 +70,13 @@ std::vector<Group> groups_of(const std::vector<StorageRow>& rows) {
 }  // namespace
 
 void write_csv(const StorageResult& result, std::ostream& out) {
-  fmt::print(out,
-             "world,part,edge,store,runs,bytes,build_ns,read_ns,walk_ns,edit_ns,brush_ns,brush_voxels\n");
+  fmt::print(
+      out,
+      "world,part,edge,store,runs,bytes,build_ns,read_ns,walk_ns,edit_ns,brush_ns,brush_voxels\n");
   for (const StorageRow& row : result.rows) {
-    fmt::print(out, "{},{},{},{},{},{},{:.1f},{:.3f},{:.6f},{:.2f},{:.1f},{:.1f}\n", row.world, row.part,
-               row.edge, row.store, row.runs, row.bytes, row.build_ns, row.read_ns, row.walk_ns, row.edit_ns,
-               row.brush_ns, row.brush_voxels);
+    fmt::print(out, "{},{},{},{},{},{},{:.1f},{:.3f},{:.6f},{:.2f},{:.1f},{:.1f}\n", row.world,
+               row.part, row.edge, row.store, row.runs, row.bytes, row.build_ns, row.read_ns,
+               row.walk_ns, row.edit_ns, row.brush_ns, row.brush_voxels);
   }
 }
 
@@ -91,15 +93,18 @@ void write_json(const StorageResult& result, std::ostream& out) {
 void write_tables(const StorageResult& result, std::ostream& out) {
   for (const Group& group : groups_of(result.rows)) {
     const std::size_t volumes = group.stores.front().bytes.size();
-    fmt::print(out,
-               "\n**{}**, edge {}, {} volume{}\n\n| store | bytes | B/voxel | build µs | read ns | walk "
-               "ns/voxel | edit ns | brush µs | brush ns/voxel |\n|---|---|---|---|---|---|---|---|---|\n",
-               group.name, group.edge, volumes, volumes == 1 ? "" : "s");
+    fmt::print(
+        out,
+        "\n**{}**, edge {}, {} volume{}\n\n| store | bytes | B/voxel | build µs | read ns | walk "
+        "ns/voxel | edit ns | brush µs | brush ns/voxel |\n|---|---|---|---|---|---|---|---|---|\n",
+        group.name, group.edge, volumes, volumes == 1 ? "" : "s");
     for (const Samples& s : group.stores) {
-      fmt::print(out, "| {} | {:.0f} | {:.4f} | {:.2f} | {:.2f} | {:.4f} | {:.1f} | {:.2f} | {:.2f} |\n",
+      fmt::print(out,
+                 "| {} | {:.0f} | {:.4f} | {:.2f} | {:.2f} | {:.4f} | {:.1f} | {:.2f} | {:.2f} |\n",
                  s.store, geometric_mean(s.bytes), geometric_mean(s.bytes_per_voxel),
                  geometric_mean(s.build) / 1000, geometric_mean(s.read), geometric_mean(s.walk),
-                 geometric_mean(s.edit), geometric_mean(s.brush) / 1000, geometric_mean(s.brush_per_voxel));
+                 geometric_mean(s.edit), geometric_mean(s.brush) / 1000,
+                 geometric_mean(s.brush_per_voxel));
     }
   }
 }

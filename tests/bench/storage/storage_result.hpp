@@ -25,7 +25,9 @@ struct StorageRow {
   double brush_ns = 0;      // one ball painted
   double brush_voxels = 0;  // of a ball that lie in the volume: mean
 
-  double bytes_per_voxel() const { return static_cast<double>(bytes) / (double{1} * edge * edge * edge); }
+  double bytes_per_voxel() const {
+    return static_cast<double>(bytes) / (double{1} * edge * edge * edge);
+  }
   double brush_ns_per_voxel() const { return brush_ns / brush_voxels; }
 };
 

@@ -28,12 +28,16 @@ std::vector<Material> palette_of(const RunChunk& chunk) {
 StoreCase make_store_case(const RunChunk& chunk, std::uint64_t seed) {
   SplitMix64 rng(seed);
   const auto place = [&] {
-    const auto along = [&](std::uint8_t side) { return static_cast<std::uint8_t>(rng.below(side)); };
+    const auto along = [&](std::uint8_t side) {
+      return static_cast<std::uint8_t>(rng.below(side));
+    };
     const std::uint8_t x = along(chunk.extent.x), y = along(chunk.extent.y);
     return LocalPos{x, y, along(chunk.extent.z)};
   };
   const std::vector<Material> palette = palette_of(chunk);
-  const auto material = [&] { return palette[rng.below(static_cast<std::uint32_t>(palette.size()))]; };
+  const auto material = [&] {
+    return palette[rng.below(static_cast<std::uint32_t>(palette.size()))];
+  };
 
   StoreCase out{chunk, {}, {}, {}, 0};
   for (std::size_t i = 0; i < kReads; ++i) out.reads.push_back(place());

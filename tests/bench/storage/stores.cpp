@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/storage/flat_array.hpp"
 #include "tests/bench/storage/interval_map.hpp"
 #include "tests/bench/storage/morton_array.hpp"
@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kNames = {"flat",         "morton", "palette", "runs",
                                                     "interval_map", "octree", "dag"};
 
-constexpr double kBlockNs = 50'000;              // of calls timed together, or one call if that takes longer
+constexpr double kBlockNs = 50'000;  // of calls timed together, or one call if that takes longer
 constexpr std::size_t kBatchBytes = 256 * 1024;  // of stores that are built or painted in one go,
 constexpr std::size_t kBatchMax = 16;            // and how many at most
 
@@ -72,8 +72,9 @@ template <VoxelStore Store>
 double walk_ns(const Store& store, const StoreCase& asked) {
   return block_ns([&] {
            std::uint64_t sum = 0;
-           store.walk(
-               [&](std::uint32_t count, Material material) { sum += std::uint64_t{count} * material; });
+           store.walk([&](std::uint32_t count, Material material) {
+             sum += std::uint64_t{count} * material;
+           });
            benchmark::DoNotOptimize(sum);
            benchmark::ClobberMemory();
          }) /
@@ -129,7 +130,7 @@ double brush_ns(const Store& store, const StoreCase& asked) {
 }
 
 template <VoxelStore Store>
-StoreContestant contestant(std::string_view name, const StoreCase& asked) {
+StoreContestant mesher_case(std::string_view name, const StoreCase& asked) {
   const auto store = std::make_shared<const Store>(asked.chunk);
   return {name, store->byte_size(), [store, &asked] {
             std::vector<double> out(kStoreFigureCount);
@@ -151,14 +152,14 @@ std::span<const std::string_view> store_names() { return kNames; }
 
 std::vector<StoreContestant> make_stores(const StoreCase& asked) {
   std::vector<StoreContestant> out;
-  out.push_back(contestant<FlatArray>(kNames[0], asked));
-  out.push_back(morton_by_pdep() ? contestant<MortonArray<MortonByPdep>>(kNames[1], asked)
-                                 : contestant<MortonArray<MortonByTable>>(kNames[1], asked));
-  out.push_back(contestant<PaletteStore>(kNames[2], asked));
-  out.push_back(contestant<RunStore>(kNames[3], asked));
-  out.push_back(contestant<IntervalMap>(kNames[4], asked));
-  out.push_back(contestant<SparseOctree>(kNames[5], asked));
-  out.push_back(contestant<VoxelDag>(kNames[6], asked));
+  out.push_back(mesher_case<FlatArray>(kNames[0], asked));
+  out.push_back(morton_by_pdep() ? mesher_case<MortonArray<MortonByPdep>>(kNames[1], asked)
+                                 : mesher_case<MortonArray<MortonByTable>>(kNames[1], asked));
+  out.push_back(mesher_case<PaletteStore>(kNames[2], asked));
+  out.push_back(mesher_case<RunStore>(kNames[3], asked));
+  out.push_back(mesher_case<IntervalMap>(kNames[4], asked));
+  out.push_back(mesher_case<SparseOctree>(kNames[5], asked));
+  out.push_back(mesher_case<VoxelDag>(kNames[6], asked));
   return out;
 }
 

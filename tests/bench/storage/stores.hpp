@@ -1,4 +1,4 @@
-// The stores as contestants: each set before one volume, ready to be measured.
+// The stores as mesher_cases: each set before one volume, ready to be measured.
 //   flat           a material a voxel, in the axis order of the runs (flat_array.hpp)
 //   morton         the same by Morton code (morton_array.hpp)
 //   palette        sections of 16³ with a palette, as Minecraft (palette_store.hpp)

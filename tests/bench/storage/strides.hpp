@@ -21,6 +21,8 @@ class Strides {
 };
 
 /// Index of a voxel by its ordered coordinates.
-constexpr VoxelIndex index_of(OrderedPos at, OrderedExtent e) { return at.f + e.f * (at.m + e.m * at.s); }
+constexpr VoxelIndex index_of(OrderedPos at, OrderedExtent e) {
+  return at.f + e.f * (at.m + e.m * at.s);
+}
 
 }  // namespace runstone::bench::storage

@@ -21,14 +21,15 @@
 namespace runstone::bench::storage {
 
 template <class S>
-concept VoxelStore = std::copyable<S> && std::constructible_from<S, const RunChunk&> &&
-                     requires(S store, const S& kept, LocalPos at, Material material, const Ball& ball) {
-                       { kept.at(at) } -> std::same_as<Material>;
-                       { store.set(at, material) } -> std::same_as<void>;
-                       { store.paint(ball, material) } -> std::same_as<void>;
-                       kept.walk([](std::uint32_t, Material) {});
-                       { kept.byte_size() } -> std::same_as<std::size_t>;
-                     };
+concept VoxelStore =
+    std::copyable<S> && std::constructible_from<S, const RunChunk&> &&
+    requires(S store, const S& kept, LocalPos at, Material material, const Ball& ball) {
+      { kept.at(at) } -> std::same_as<Material>;
+      { store.set(at, material) } -> std::same_as<void>;
+      { store.paint(ball, material) } -> std::same_as<void>;
+      kept.walk([](std::uint32_t, Material) {});
+      { kept.byte_size() } -> std::same_as<std::size_t>;
+    };
 
 /// A cube with an edge of 8, 16, 32, 64 or 128.
 constexpr bool storable(Extent extent) {

@@ -39,7 +39,9 @@ class VoxelTree {
   void set(LocalPos where, Material material) {
     if (at(where) != material) root_ = set(root_, height_, where, material);
   }
-  void paint(const Ball& ball, Material material) { root_ = paint(root_, height_, {}, ball, material); }
+  void paint(const Ball& ball, Material material) {
+    root_ = paint(root_, height_, {}, ball, material);
+  }
   template <class F>
   void walk(F&& stretch) const {
     walk(root_, chunk_volume(), stretch);

@@ -7,10 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "tests/bench/meshing/contestant.hpp"
-#include "tests/bench/worlds/lit_chunk.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/wire/transfer_form.hpp"
+#include "tests/bench/worlds/lit_chunk.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -53,7 +53,8 @@ Samples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progr
   }
   Samples out;
   for (std::size_t f = 0; f < forms.size(); ++f) {
-    out[forms[f].name] = {static_cast<double>(forms[f].bytes()), median(encode[f]), median(decode[f])};
+    out[forms[f].name] = {static_cast<double>(forms[f].bytes()), median(encode[f]),
+                          median(decode[f])};
   }
   return out;
 }
@@ -103,42 +104,45 @@ void add_rows(const ByteWorld& world, unsigned repetitions, std::vector<BytesRow
 }
 
 /// A bar holds for all chunks and for the mixed ones alone.
-Bar judged(const std::vector<BytesRow>& rows, const std::string& what, const std::string& world,
-           const std::string& form, double BytesRow::* ratio, double wanted) {
-  Bar bar{what, fmt::format("{:.2f}x", wanted), "", Verdict::not_measured};
+Target judged(const std::vector<BytesRow>& rows, const std::string& what, const std::string& world,
+              const std::string& form, double BytesRow::* ratio, double wanted) {
+  Target target{what, fmt::format("{:.2f}x", wanted), "", Verdict::not_measured};
   bool met = true;
   for (const BytesRow& row : rows) {
     if (row.world != world || row.form != form) continue;
-    bar.measured += fmt::format("{}{:.3f}x {}", bar.measured.empty() ? "" : "; ", row.*ratio,
-                                row.mixed ? "without uniform chunks" : "of all chunks");
+    target.measured += fmt::format("{}{:.3f}x {}", target.measured.empty() ? "" : "; ", row.*ratio,
+                                   row.mixed ? "without uniform chunks" : "of all chunks");
     met = met && row.*ratio <= wanted;
   }
-  if (!bar.measured.empty()) bar.verdict = met ? Verdict::met : Verdict::missed;
-  return bar;
+  if (!target.measured.empty()) target.verdict = met ? Verdict::met : Verdict::missed;
+  return target;
 }
 
 /// A stretch is wanted of the best coder only.
-std::vector<Bar> bars_of(const std::vector<BytesRow>& rows) {
+std::vector<Target> targets_of(const std::vector<BytesRow>& rows) {
   const auto luanti = &BytesRow::of_luanti, minecraft = &BytesRow::of_minecraft;
-  std::vector<Bar> bars;
+  std::vector<Target> targets;
   for (const char* form : {"packed", "coded"}) {
-    const auto add = [&](const char* what, const char* world, double BytesRow::* ratio, double wanted) {
-      bars.push_back(judged(rows, fmt::format(fmt::runtime(what), form), world, form, ratio, wanted));
+    const auto add = [&](const char* what, const char* world, double BytesRow::* ratio,
+                         double wanted) {
+      targets.push_back(
+          judged(rows, fmt::format(fmt::runtime(what), form), world, form, ratio, wanted));
     };
     add("noise terrain, {} against Luanti's layout with light", "noise_terrain", luanti, 0.35);
     add("real world, {} against Luanti's layout with light", "luanti", luanti, 0.48);
     add("real world, {} against Minecraft's palette + zlib", "luanti", minecraft, 0.90);
   }
-  bars.push_back(judged(rows, "real world, coded against Luanti's layout with light: stretch", "luanti",
-                        "coded", luanti, 0.38));
-  bars.push_back(judged(rows, "real world, coded against Minecraft's palette + zlib: stretch", "luanti",
-                        "coded", minecraft, 0.70));
-  return bars;
+  targets.push_back(judged(rows, "real world, coded against Luanti's layout with light: stretch",
+                           "luanti", "coded", luanti, 0.38));
+  targets.push_back(judged(rows, "real world, coded against Minecraft's palette + zlib: stretch",
+                           "luanti", "coded", minecraft, 0.70));
+  return targets;
 }
 
 }  // namespace
 
-Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options, std::ostream& progress) {
+Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
+                                                std::ostream& progress) {
   BytesBench out;
   out.machine = this_machine();
   out.repetitions = options.repetitions;
@@ -151,31 +155,32 @@ Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options, std
     fmt::print(progress, "{}\n", name);
     progress.flush();
   }
-  out.bars = bars_of(out.rows);
+  out.targets = targets_of(out.rows);
   return out;
 }
 
 void write_table(const BytesBench& bench, std::ostream& out) {
-  fmt::print(
-      out,
-      "\n| world | chunks | form | bytes | x Luanti with light | geometric mean | x Minecraft | encode "
-      "µs | decode µs |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(out,
+             "\n| world | chunks | form | bytes | x Luanti with light | geometric mean | x "
+             "Minecraft | encode "
+             "µs | decode µs |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const BytesRow& row : bench.rows) {
-    fmt::print(out, "| {} | {} {} | {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n", row.world,
-               row.chunks, row.mixed ? "not uniform" : "all", row.form, row.bytes, row.of_luanti,
-               row.of_luanti_mean, row.of_minecraft, row.encode_us, row.decode_us);
+    fmt::print(out, "| {} | {} {} | {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n",
+               row.world, row.chunks, row.mixed ? "not uniform" : "all", row.form, row.bytes,
+               row.of_luanti, row.of_luanti_mean, row.of_minecraft, row.encode_us, row.decode_us);
   }
   fmt::print(out, "\n");
-  write_bars(bench.bars, out);
+  write_targets(bench.targets, out);
 }
 
 void write_csv(const BytesBench& bench, std::ostream& out) {
   fmt::print(out,
-             "world,chunks,set,form,bytes,of_luanti,of_luanti_geometric,of_minecraft,encode_us,decode_us\n");
+             "world,chunks,set,form,bytes,of_luanti,of_luanti_geometric,of_minecraft,encode_us,"
+             "decode_us\n");
   for (const BytesRow& row : bench.rows) {
-    fmt::print(out, "{},{},{},{},{:.2f},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f}\n", row.world, row.chunks,
-               row.mixed ? "mixed" : "all", row.form, row.bytes, row.of_luanti, row.of_luanti_mean,
-               row.of_minecraft, row.encode_us, row.decode_us);
+    fmt::print(out, "{},{},{},{},{:.2f},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f}\n", row.world,
+               row.chunks, row.mixed ? "mixed" : "all", row.form, row.bytes, row.of_luanti,
+               row.of_luanti_mean, row.of_minecraft, row.encode_us, row.decode_us);
   }
 }
 
@@ -193,12 +198,12 @@ void write_json(const BytesBench& bench, std::ostream& out) {
                     {"encode_us", row.encode_us},
                     {"decode_us", row.decode_us}});
   }
-  auto bars = nlohmann::ordered_json::array();
-  for (const Bar& bar : bench.bars) {
-    bars.push_back({{"case", bar.what},
-                    {"bar", bar.wanted},
-                    {"measured", bar.measured},
-                    {"verdict", name_of(bar.verdict)}});
+  auto targets = nlohmann::ordered_json::array();
+  for (const Target& target : bench.targets) {
+    targets.push_back({{"case", target.what},
+                       {"bar", target.wanted},
+                       {"measured", target.measured},
+                       {"verdict", name_of(target.verdict)}});
   }
   const nlohmann::ordered_json document = {{"cpu", bench.machine.cpu},
                                            {"cores", bench.machine.cores},
@@ -206,7 +211,7 @@ void write_json(const BytesBench& bench, std::ostream& out) {
                                            {"commit", bench.machine.commit},
                                            {"repetitions", bench.repetitions},
                                            {"rows", rows},
-                                           {"bars", bars}};
+                                           {"bars", targets}};
   out << document.dump(1) << '\n';
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/harness/bar.hpp"
 #include "tests/bench/app/bench_options.hpp"
 #include "tests/bench/harness/machine.hpp"
+#include "tests/bench/harness/target.hpp"
 
 namespace runstone::bench {
 
@@ -28,12 +28,13 @@ struct BytesBench {
   Machine machine;
   unsigned repetitions = 0;
   std::vector<BytesRow> rows;
-  std::vector<Bar> bars;
+  std::vector<Target> targets;
 };
 
 /// Every form is decoded once for each chunk and held to its voxels and light: a difference ends the program.
 /// Single-threaded. Fails if the Luanti world is asked for and cannot be read.
-Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options, std::ostream& progress);
+Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
+                                                std::ostream& progress);
 
 void write_table(const BytesBench& bench, std::ostream& out);
 void write_csv(const BytesBench& bench, std::ostream& out);

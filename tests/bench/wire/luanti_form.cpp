@@ -52,13 +52,15 @@ Result<Stream> decompress(ByteView in, Scratch& s) {
   ZSTD_inBuffer source{in.data(), in.size(), 0};
   ZSTD_outBuffer target{s.received.data(), s.received.size(), 0};
   const std::size_t left = ZSTD_decompressStream(s.decompressor.get(), &target, &source);
-  if (ZSTD_isError(left) != 0 || left != 0) return fail(ErrorCode::bad_value, "not one whole zstd stream");
+  if (ZSTD_isError(left) != 0 || left != 0)
+    return fail(ErrorCode::bad_value, "not one whole zstd stream");
   return Stream{ByteView(s.received).first(target.pos), source.pos};
 }
 
 /// What follows the head of a block in both of its forms.
 Result<void> read_nodes(ByteReader& in, LuantiNodes& out) {
-  if (in.u8() != 2 || in.u8() != 2) in.reject(ErrorCode::bad_value, "ids or parameters of another width");
+  if (in.u8() != 2 || in.u8() != 2)
+    in.reject(ErrorCode::bad_value, "ids or parameters of another width");
   const ByteView planes = in.bytes(4 * kLuantiNodes);
   if (!in.ok()) return Unexpected<Error>{in.error()};
   for (std::size_t i = 0; i < kLuantiNodes; ++i) {

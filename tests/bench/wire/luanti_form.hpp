@@ -19,7 +19,8 @@ inline constexpr std::size_t kLuantiNodes = 4096;
 /// 16^3 nodes, x fastest, then y, then z.
 struct LuantiNodes {
   std::array<std::uint16_t, kLuantiNodes> id{};
-  std::array<std::uint8_t, kLuantiNodes> param1{};  // light: low nibble by day, high nibble at night
+  std::array<std::uint8_t, kLuantiNodes>
+      param1{};  // light: low nibble by day, high nibble at night
   std::array<std::uint8_t, kLuantiNodes> param2{};
   friend bool operator==(const LuantiNodes&, const LuantiNodes&) = default;
 };

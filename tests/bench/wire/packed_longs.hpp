@@ -65,7 +65,8 @@ class PackedLongs {
     std::size_t left = count_;
     for (std::uint64_t word : longs_) {
       const std::size_t here = std::min<std::size_t>(per_long_, left);
-      for (std::size_t k = 0; k < here; ++k, word >>= bits_) take(static_cast<std::uint32_t>(word) & mask());
+      for (std::size_t k = 0; k < here; ++k, word >>= bits_)
+        take(static_cast<std::uint32_t>(word) & mask());
       left -= here;
     }
   }

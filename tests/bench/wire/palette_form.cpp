@@ -18,7 +18,8 @@ struct Scratch {
   std::vector<Material> names;    // of the section read last
   PackedLongs numbers;            // of the section at hand: places in its palette, or ids
   Bytes received;
-  std::vector<std::uint16_t> index_of = std::vector<std::uint16_t>(65536, 0xffff);  // by id; 0xffff: absent
+  std::vector<std::uint16_t> index_of =
+      std::vector<std::uint16_t>(65536, 0xffff);  // by id; 0xffff: absent
 };
 
 Scratch& scratch() {
@@ -104,7 +105,8 @@ Result<void> read_section(ByteReader& in, Scratch& s, PaletteSection& out) {
     out[i++] = static_cast<Material>(value);
   });
   if (bits > kPaletteBitsMax) return {};
-  if (highest >= s.names.size()) return fail(ErrorCode::bad_value, "index behind the palette of a section");
+  if (highest >= s.names.size())
+    return fail(ErrorCode::bad_value, "index behind the palette of a section");
   for (Material& voxel : out) voxel = s.names[voxel];
   return {};
 }
@@ -128,7 +130,8 @@ Result<void> decode_palette_sections(ByteView stream, std::span<PaletteSection> 
   Scratch& s = scratch();
   s.received.resize(out.size() * kSectionBytesMax);
   auto size = static_cast<uLongf>(s.received.size());
-  if (uncompress(s.received.data(), &size, stream.data(), static_cast<uLong>(stream.size())) != Z_OK) {
+  if (uncompress(s.received.data(), &size, stream.data(), static_cast<uLong>(stream.size())) !=
+      Z_OK) {
     return fail(ErrorCode::bad_value, "not a zlib stream of so many sections");
   }
   ByteReader in(ByteView(s.received).first(size));

@@ -22,8 +22,8 @@ constexpr int kZstdLevel = 3;
 // Luanti's id of air; the others follow it, so that every material has one.
 constexpr std::uint16_t kLuantiAir = 126;
 
-constexpr std::array<std::string_view, 8> kNames = {"dense",     "dense_zstd", "luanti_light", "luanti",
-                                                    "minecraft", "raw",        "packed",       "coded"};
+constexpr std::array<std::string_view, 8> kNames = {
+    "dense", "dense_zstd", "luanti_light", "luanti", "minecraft", "raw", "packed", "coded"};
 
 void check(bool good) {
   if (!good) std::abort();  // a form that cannot read its own bytes measures nothing
@@ -91,13 +91,13 @@ TransferForm dense_zstd_form(const LitChunk& chunk) {
   s->received.resize(chunk.voxels.size());
   return {"dense_zstd",
           [s, &chunk, dense] {
-            s->size = ZSTD_compressCCtx(s->compressor, s->bytes.data(), s->bytes.size(), chunk.voxels.data(),
-                                        dense, kZstdLevel);
+            s->size = ZSTD_compressCCtx(s->compressor, s->bytes.data(), s->bytes.size(),
+                                        chunk.voxels.data(), dense, kZstdLevel);
             check(ZSTD_isError(s->size) == 0);
           },
           [s, dense] {
-            check(ZSTD_decompressDCtx(s->decompressor, s->received.data(), dense, s->bytes.data(), s->size) ==
-                  dense);
+            check(ZSTD_decompressDCtx(s->decompressor, s->received.data(), dense, s->bytes.data(),
+                                      s->size) == dense);
           },
           [s] { return s->size; },
           [s] { return s->received; },
@@ -132,7 +132,8 @@ TransferForm luanti_form(const LitChunk& chunk, bool lit) {
   const auto voxels = [s] {
     std::vector<Material> out(kBlocks * kLuantiNodes);
     each_voxel([&](std::size_t b, std::size_t to, std::size_t x, std::size_t y, std::size_t z) {
-      out[to] = static_cast<Material>(s->received[b].id[x + kBlockSide * (y + kBlockSide * z)] - kLuantiAir);
+      out[to] = static_cast<Material>(s->received[b].id[x + kBlockSide * (y + kBlockSide * z)] -
+                                      kLuantiAir);
     });
     return out;
   };
@@ -158,21 +159,22 @@ TransferForm minecraft_form(const LitChunk& chunk) {
   each_voxel([&](std::size_t b, std::size_t from, std::size_t x, std::size_t y, std::size_t z) {
     s->sections[b][x + kBlockSide * (z + kBlockSide * y)] = chunk.voxels[from];
   });
-  return {"minecraft",
-          [s] {
-            s->bytes.clear();
-            encode_palette_sections(s->sections, s->bytes);
-          },
-          [s] { check(decode_palette_sections(s->bytes, s->received).has_value()); },
-          [s] { return s->bytes.size(); },
-          [s] {
-            std::vector<Material> out(kBlocks * kLuantiNodes);
-            each_voxel([&](std::size_t b, std::size_t to, std::size_t x, std::size_t y, std::size_t z) {
-              out[to] = s->received[b][x + kBlockSide * (z + kBlockSide * y)];
-            });
-            return out;
-          },
-          no_light};
+  return {
+      "minecraft",
+      [s] {
+        s->bytes.clear();
+        encode_palette_sections(s->sections, s->bytes);
+      },
+      [s] { check(decode_palette_sections(s->bytes, s->received).has_value()); },
+      [s] { return s->bytes.size(); },
+      [s] {
+        std::vector<Material> out(kBlocks * kLuantiNodes);
+        each_voxel([&](std::size_t b, std::size_t to, std::size_t x, std::size_t y, std::size_t z) {
+          out[to] = s->received[b][x + kBlockSide * (z + kBlockSide * y)];
+        });
+        return out;
+      },
+      no_light};
 }
 
 TransferForm our_form(std::string_view name, const LitChunk& chunk, ChunkEncoding encoding) {

@@ -19,10 +19,10 @@ namespace runstone::bench {
 
 struct TransferForm {
   std::string_view name;
-  std::function<void()> encode;                      // into its own bytes
-  std::function<void()> decode;                      // of those bytes into what a receiver would keep
-  std::function<std::size_t()> bytes;                // of the last encode
-  std::function<std::vector<Material>()> voxels;     // of the last decode, x fastest, then y, then z
+  std::function<void()> encode;                   // into its own bytes
+  std::function<void()> decode;                   // of those bytes into what a receiver would keep
+  std::function<std::size_t()> bytes;             // of the last encode
+  std::function<std::vector<Material>()> voxels;  // of the last decode, x fastest, then y, then z
   std::function<std::vector<std::uint8_t>()> light;  // likewise; empty if the form carries none
 };
 

@@ -14,7 +14,8 @@ double noise(double x, double y, double z, std::uint32_t seed) {
   const std::array<double, 3> low = {std::floor(x), std::floor(y), std::floor(z)};
   const std::array<double, 3> t = {fade(x - low[0]), fade(y - low[1]), fade(z - low[2])};
   const auto at = [&](int i, int j, int k) {
-    return lattice_value(static_cast<std::int32_t>(low[0]) + i, static_cast<std::int32_t>(low[1]) + j,
+    return lattice_value(static_cast<std::int32_t>(low[0]) + i,
+                         static_cast<std::int32_t>(low[1]) + j,
                          static_cast<std::int32_t>(low[2]) + k, seed);
   };
   const auto mix = [](double a, double b, double share) { return a + (b - a) * share; };
@@ -26,8 +27,11 @@ double noise(double x, double y, double z, std::uint32_t seed) {
 }  // namespace
 
 double lattice_value(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t seed) {
-  const auto word = [](std::int32_t v) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v)); };
-  const std::uint64_t hash = mix64(mix64(word(x) | word(y) << 32) ^ (word(z) | std::uint64_t{seed} << 32));
+  const auto word = [](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v));
+  };
+  const std::uint64_t hash =
+      mix64(mix64(word(x) | word(y) << 32) ^ (word(z) | std::uint64_t{seed} << 32));
   return static_cast<double>(hash >> 11) * 0x1p-52 - 1;
 }
 

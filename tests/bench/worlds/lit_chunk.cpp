@@ -19,8 +19,9 @@ namespace {
 
 constexpr auto kSide = static_cast<std::int32_t>(kByteEdge);
 constexpr std::uint8_t kSun = 15;
-constexpr std::int32_t kSkyAbove = static_cast<std::int32_t>(kSideMax) -
-                                   kSide;  // how far above a chunk something may shade it: columns end there
+constexpr std::int32_t kSkyAbove =
+    static_cast<std::int32_t>(kSideMax) -
+    kSide;  // how far above a chunk something may shade it: columns end there
 constexpr VoxelBox kTerrainBox = {{-160, -64, -160}, {160, 96, 160}};
 constexpr VoxelBox kSeededBox = {{0, -64, 0}, {128, 64, 128}};
 
@@ -56,7 +57,8 @@ std::vector<LitChunk> each_chunk(const VoxelBox& box, Make&& make) {
   std::vector<LitChunk> out;
   for (std::int32_t z = box.min.z; z + kSide <= box.max.z; z += kSide) {
     for (std::int32_t y = box.min.y; y + kSide <= box.max.y; y += kSide) {
-      for (std::int32_t x = box.min.x; x + kSide <= box.max.x; x += kSide) out.push_back(make({x, y, z}));
+      for (std::int32_t x = box.min.x; x + kSide <= box.max.x; x += kSide)
+        out.push_back(make({x, y, z}));
     }
   }
   return out;
@@ -75,12 +77,13 @@ Result<std::vector<LitChunk>, std::string> noise_terrain() {
 std::vector<LitChunk> seeded(const VoxelWorld& world) {
   return each_chunk(kSeededBox, [&](VoxelPos origin) {
     std::vector<Material> column(static_cast<std::size_t>(kSide + kSkyAbove));
-    return sunlit(chunk_of_world(world, origin, kByteEdge), origin, [&](std::int32_t x, std::int32_t z) {
-      world.column({x, origin.y, z}, column);
-      const auto highest =
-          std::find_if(column.rbegin(), column.rend(), [](Material m) { return m != kEmpty; });
-      return origin.y + static_cast<std::int32_t>(column.rend() - highest);
-    });
+    return sunlit(
+        chunk_of_world(world, origin, kByteEdge), origin, [&](std::int32_t x, std::int32_t z) {
+          world.column({x, origin.y, z}, column);
+          const auto highest =
+              std::find_if(column.rbegin(), column.rend(), [](Material m) { return m != kEmpty; });
+          return origin.y + static_cast<std::int32_t>(column.rend() - highest);
+        });
   });
 }
 
@@ -91,8 +94,9 @@ std::vector<LitChunk> scenarios(const MeasuredWorlds& worlds) {
     const RunChunk& chunk = volume.scene.chunk;
     out.push_back(sunlit(chunk, {}, [&](std::int32_t x, std::int32_t z) {
       std::int32_t y = kSide;
-      while (y > 0 && material_at(chunk, {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y - 1),
-                                          static_cast<std::uint8_t>(z)}) == kEmpty) {
+      while (y > 0 &&
+             material_at(chunk, {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y - 1),
+                                 static_cast<std::uint8_t>(z)}) == kEmpty) {
         --y;
       }
       return y;
@@ -112,17 +116,18 @@ std::optional<BlockPlace> place_of(const ChunkCoord& block, const VoxelBox& box)
   const std::int32_t x = at.x - box.min.x, y = at.y - box.min.y, z = at.z - box.min.z;
   const std::int32_t across = (box.max.x - box.min.x) / kSide, up = (box.max.y - box.min.y) / kSide,
                      deep = (box.max.z - box.min.z) / kSide;
-  if (std::min({x, y, z}) < 0 || x / kSide >= across || y / kSide >= up || z / kSide >= deep) return {};
-  return BlockPlace{static_cast<std::size_t>(x / kSide + across * (y / kSide + up * (z / kSide))), x % kSide,
-                    y % kSide, z % kSide};
+  if (std::min({x, y, z}) < 0 || x / kSide >= across || y / kSide >= up || z / kSide >= deep)
+    return {};
+  return BlockPlace{static_cast<std::size_t>(x / kSide + across * (y / kSide + up * (z / kSide))),
+                    x % kSide, y % kSide, z % kSide};
 }
 
 Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   const auto world = luanti_world(folder, PlantsKept::yes);
   if (!world) return Unexpected<std::string>{world.error()};
   const VoxelBox box = *world->bounds;
-  std::vector<LitChunk> out =
-      each_chunk(box, [&](VoxelPos origin) { return unlit(chunk_of_world(*world, origin, kByteEdge)); });
+  std::vector<LitChunk> out = each_chunk(
+      box, [&](VoxelPos origin) { return unlit(chunk_of_world(*world, origin, kByteEdge)); });
   auto map = LuantiMap::open(folder + "/map.sqlite");
   if (!map) return Unexpected<std::string>{map.error()};
   LuantiNodes nodes;
@@ -138,8 +143,8 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
     for (std::int32_t z = 0; z < kLuantiBlockEdge; ++z) {
       for (std::int32_t y = 0; y < kLuantiBlockEdge; ++y) {
         std::copy_n(nodes.param1.begin() + 256 * z + 16 * y, kLuantiBlockEdge,
-                    chunk.light.begin() +
-                        static_cast<std::ptrdiff_t>(voxel_index(place->x, place->y + y, place->z + z)));
+                    chunk.light.begin() + static_cast<std::ptrdiff_t>(
+                                              voxel_index(place->x, place->y + y, place->z + z)));
       }
     }
   });
@@ -148,7 +153,8 @@ Result<std::vector<LitChunk>, std::string> luanti(const std::string& folder) {
   return out;
 }
 
-Result<std::vector<LitChunk>, std::string> chunks_of(const std::string& name, const std::string& folder) {
+Result<std::vector<LitChunk>, std::string> chunks_of(const std::string& name,
+                                                     const std::string& folder) {
   if (name == "noise_terrain") return noise_terrain();
   if (name == "luanti") return luanti(folder);
   const auto worlds = MeasuredWorlds::open({name}, folder);
@@ -165,7 +171,8 @@ std::vector<std::string> byte_world_names() {
   return out;
 }
 
-Result<ByteWorld, std::string> byte_world(const std::string& name, const std::string& luanti_folder) {
+Result<ByteWorld, std::string> byte_world(const std::string& name,
+                                          const std::string& luanti_folder) {
   auto chunks = chunks_of(name, luanti_folder);
   if (!chunks) return Unexpected<std::string>{chunks.error()};
   return ByteWorld{name, std::move(*chunks)};

@@ -14,9 +14,10 @@ namespace runstone::bench {
 inline constexpr unsigned kByteEdge = 32;  // of the chunks: eight blocks of 16^3 each
 
 struct LitChunk {
-  RunChunk runs;                    // in the cheapest order, as a holder keeps it
-  std::vector<Material> voxels;     // x fastest, then y, then z
-  std::vector<std::uint8_t> light;  // at the same index, as Luanti keeps it: low nibble by day, high at night
+  RunChunk runs;                 // in the cheapest order, as a holder keeps it
+  std::vector<Material> voxels;  // x fastest, then y, then z
+  std::vector<std::uint8_t>
+      light;  // at the same index, as Luanti keeps it: low nibble by day, high at night
 };
 
 struct ByteWorld {
@@ -32,6 +33,7 @@ std::vector<std::string> byte_world_names();
 /// computed. Scenarios: the chunk in the middle of each. Others: 320 x 160 x 320 or 128^3 voxels around the
 /// ground. Their light is plain sunlight: 15 in every voxel that has none but empty ones above it, else 0; it does
 /// not spread. Requires a known name.
-Result<ByteWorld, std::string> byte_world(const std::string& name, const std::string& luanti_folder);
+Result<ByteWorld, std::string> byte_world(const std::string& name,
+                                          const std::string& luanti_folder);
 
 }  // namespace runstone::bench

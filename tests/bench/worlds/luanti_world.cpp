@@ -39,8 +39,9 @@ void write_chunk(const ChunkCoord& at, const RunChunk& chunk, DenseBox& into) {
   };
   for (std::int32_t z = part.min.z; z < part.max.z; ++z) {
     for (std::int32_t x = part.min.x; x < part.max.x; ++x) {
-      std::copy_n(dense.begin() + local(x, z), part.max.y - part.min.y,
-                  into.voxels.begin() + static_cast<std::ptrdiff_t>(into.index({x, part.min.y, z})));
+      std::copy_n(
+          dense.begin() + local(x, z), part.max.y - part.min.y,
+          into.voxels.begin() + static_cast<std::ptrdiff_t>(into.index({x, part.min.y, z})));
     }
   }
 }
@@ -55,7 +56,8 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
                                 return true;
                               },
                               {}};
-  const auto report = import_luanti(folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes}, sink);
+  const auto report =
+      import_luanti(folder, {.edge = kEdge, .keep_all = plants == PlantsKept::yes}, sink);
   if (!report) return Unexpected<std::string>{report.error().message()};
   DenseBox dense{report->bounds, {}};
   const VoxelBox& box = dense.box;
@@ -64,16 +66,18 @@ Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKe
   if (volume > kVoxelsMax / (box.max.z - box.min.z)) {
     return Unexpected<std::string>{folder + ": more than 2^28 voxels"};
   }
-  dense.voxels.resize(static_cast<std::size_t>(volume) * static_cast<std::size_t>(box.max.z - box.min.z));
+  dense.voxels.resize(static_cast<std::size_t>(volume) *
+                      static_cast<std::size_t>(box.max.z - box.min.z));
   for (const auto& [at, chunk] : chunks) write_chunk(at, chunk, dense);
 
   VoxelWorld out;
   out.name = "luanti";
   out.visibility = std::make_shared<const VisibilityTable>(report->materials);
   out.bounds = dense.box;
-  out.column = [dense = std::make_shared<const DenseBox>(std::move(dense))](VoxelPos at,
-                                                                            std::span<Material> to) {
-    std::copy_n(dense->voxels.begin() + static_cast<std::ptrdiff_t>(dense->index(at)), to.size(), to.begin());
+  out.column = [dense = std::make_shared<const DenseBox>(std::move(dense))](
+                   VoxelPos at, std::span<Material> to) {
+    std::copy_n(dense->voxels.begin() + static_cast<std::ptrdiff_t>(dense->index(at)), to.size(),
+                to.begin());
   };
   return out;
 }

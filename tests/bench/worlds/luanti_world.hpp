@@ -13,6 +13,7 @@ enum class PlantsKept : bool { no, yes };
 
 /// Reads `folder`/map.sqlite. The world is called "luanti". Fails with the importer's message, or if it is
 /// empty or too large.
-Result<VoxelWorld, std::string> luanti_world(const std::string& folder, PlantsKept plants = PlantsKept::no);
+Result<VoxelWorld, std::string> luanti_world(const std::string& folder,
+                                             PlantsKept plants = PlantsKept::no);
 
 }  // namespace runstone::bench

@@ -22,7 +22,9 @@ struct HeightMap {
 };
 constexpr HeightMap kGentle = {16, 3}, kRough = {20, 4};
 
-Block hills_plain(std::int32_t y, std::int32_t ground) { return y < ground ? Block::stone : Block::air; }
+Block hills_plain(std::int32_t y, std::int32_t ground) {
+  return y < ground ? Block::stone : Block::air;
+}
 
 Block hills(std::int32_t y, std::int32_t ground) {
   if (y >= ground) return Block::air;
@@ -51,21 +53,29 @@ void overhangs_column(VoxelPos at, std::span<Material> out) {
 }
 
 Block caves(VoxelPos at) {
-  if (std::abs(fractal_noise(at.x / 18.0, at.y / 14.0, at.z / 18.0, 51, 2)) < 0.12) return Block::air;
+  if (std::abs(fractal_noise(at.x / 18.0, at.y / 14.0, at.z / 18.0, 51, 2)) < 0.12)
+    return Block::air;
   return fractal_noise(at.x / 9.0, at.y / 9.0, at.z / 9.0, 71, 1) > 0.6 ? Block::ore : Block::stone;
 }
 
-Block noise(VoxelPos at) { return lattice_value(at.x, at.y, at.z, 5) < 0 ? Block::stone : Block::air; }
+Block noise(VoxelPos at) {
+  return lattice_value(at.x, at.y, at.z, 5) < 0 ? Block::stone : Block::air;
+}
 
 Block noise_mixed(VoxelPos at) {
-  constexpr std::array kMixed = {Block::stone, Block::dirt, Block::brick, Block::glass, Block::water};
+  constexpr std::array kMixed = {Block::stone, Block::dirt, Block::brick, Block::glass,
+                                 Block::water};
   const double value = lattice_value(at.x, at.y, at.z, 6);
   return value < 0 ? Block::air : kMixed[static_cast<std::size_t>(value * kMixed.size())];
 }
 
-Block sparse(VoxelPos at) { return lattice_value(at.x, at.y, at.z, 7) < -0.9 ? Block::stone : Block::air; }
+Block sparse(VoxelPos at) {
+  return lattice_value(at.x, at.y, at.z, 7) < -0.9 ? Block::stone : Block::air;
+}
 
-Block checkerboard(VoxelPos at) { return (at.x + at.y + at.z) % 2 == 0 ? Block::stone : Block::air; }
+Block checkerboard(VoxelPos at) {
+  return (at.x + at.y + at.z) % 2 == 0 ? Block::stone : Block::air;
+}
 
 /// A column of a formula of places.
 template <class Formula>
@@ -92,8 +102,8 @@ auto by_ground(HeightMap map, Formula formula) {
 const MaterialTable& seeded_materials() {
   static const MaterialTable table = [] {
     MaterialTable t;
-    for (const char* name :
-         {"stone", "dirt", "grass", "sand", "water", "glass", "wood", "brick", "leaves", "ore", "tiles"}) {
+    for (const char* name : {"stone", "dirt", "grass", "sand", "water", "glass", "wood", "brick",
+                             "leaves", "ore", "tiles"}) {
       MaterialInfo info;
       info.name = name;
       const bool clear = info.name == "water" || info.name == "glass";

@@ -20,7 +20,20 @@
 namespace runstone::bench {
 
 /// Materials of seeded worlds.
-enum class Block : Material { air, stone, dirt, grass, sand, water, glass, wood, brick, leaves, ore, tiles };
+enum class Block : Material {
+  air,
+  stone,
+  dirt,
+  grass,
+  sand,
+  water,
+  glass,
+  wood,
+  brick,
+  leaves,
+  ore,
+  tiles
+};
 constexpr Material id_of(Block block) { return static_cast<Material>(block); }
 
 /// Water and glass are transparent, the rest is opaque.

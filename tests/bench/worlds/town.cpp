@@ -44,7 +44,8 @@ Block tree(const Lot& lot, std::int32_t x, std::int32_t y, std::int32_t z) {
 }
 
 Block house(const Lot& lot, std::int32_t x, std::int32_t y, std::int32_t z) {
-  const std::int32_t inside = std::min({x - kHouseLow, kHouseHigh - x, z - kHouseLow, kHouseHigh - z});
+  const std::int32_t inside =
+      std::min({x - kHouseLow, kHouseHigh - x, z - kHouseLow, kHouseHigh - z});
   const std::int32_t top = lot.storeys * kStorey;
   if (inside < 0) return Block::air;
   if (y == top) return Block::tiles;
@@ -53,8 +54,8 @@ Block house(const Lot& lot, std::int32_t x, std::int32_t y, std::int32_t z) {
   if (inside > 0) return in_storey == 0 ? Block::wood : Block::air;
   if (x == 9 && z == kHouseLow && y < 3) return Block::air;  // the door
   const std::int32_t along = x == kHouseLow || x == kHouseHigh ? z : x;
-  const bool pane =
-      in_storey >= 1 && in_storey <= 2 && along % 3 != 0 && along > kHouseLow + 1 && along < kHouseHigh - 1;
+  const bool pane = in_storey >= 1 && in_storey <= 2 && along % 3 != 0 && along > kHouseLow + 1 &&
+                    along < kHouseHigh - 1;
   return pane ? Block::glass : lot.walls;
 }
 

@@ -40,7 +40,8 @@ RunChunk chunk_of_world(const VoxelWorld& world, VoxelPos origin, unsigned edge)
       const VoxelPos low = {origin.x + x, known.min.y, origin.z + z};
       if (known.contains(low)) {
         const auto height = static_cast<std::size_t>(known.max.y - known.min.y);
-        world.column(low, std::span(column).subspan(static_cast<std::size_t>(low.y - origin.y), height));
+        world.column(low,
+                     std::span(column).subspan(static_cast<std::size_t>(low.y - origin.y), height));
       }
       for (unsigned y = 0; y < edge; ++y) builder.append(1, column[y]);
     }
@@ -53,7 +54,8 @@ Volume cut_volume(const VoxelWorld& world, VoxelPos origin, unsigned edge) {
   Volume out{origin, edge, {chunk_of_world(world, origin, edge), {}}};
   for (unsigned d = 0; d < kDirectionCount; ++d) {
     const ChunkCoord step = neighbour({}, static_cast<Direction>(d));
-    const VoxelPos beside = {origin.x + step.x * side, origin.y + step.y * side, origin.z + step.z * side};
+    const VoxelPos beside = {origin.x + step.x * side, origin.y + step.y * side,
+                             origin.z + step.z * side};
     if (knows(world, cube_at(beside, side))) {
       out.scene.neighbours[d] = chunk_of_world(world, beside, edge);
     }

@@ -4,10 +4,10 @@
 #include <map>
 #include <string>
 
-#include "tests/reference/poly2tri_mesher.hpp"
-#include "tests/bench/meshing/contestant.hpp"
-#include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/bench/meshing/mesh_figures.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/reference/poly2tri_mesher.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::test {
@@ -47,12 +47,12 @@ TEST_CASE("the field over the 37 scenarios: triangles, vertices, T-junctions, th
     bench::Volume volume;
     volume.edge = kEdge;
     volume.scene = scenario_scene(*scenario_generator(number, kEdge), {0, 0, 0}, kEdge, true);
-    for (const std::string_view name : bench::contestant_names()) {
-      const auto contestant = bench::make_contestant(name, volume, scenario_visibility());
-      REQUIRE(contestant.has_value());
+    for (const std::string_view name : bench::mesher_case_names()) {
+      const auto mesher_case = bench::make_mesher_case(name, volume, scenario_visibility());
+      REQUIRE(mesher_case.has_value());
       bench::PhaseTimes phases{};
-      contestant->mesh(phases);
-      contestant->surface(surface);
+      mesher_case->mesh(phases);
+      mesher_case->surface(surface);
       const bench::MeshFigures figures = bench::figures_of(surface);
       Sums& sums = found[std::string(name)];
       sums.triangles += figures.triangles;
@@ -94,16 +94,19 @@ TEST_CASE("the regions that Poly2Tri's original refuses", "[mesh][scenarios][gol
   CHECK(scenarios.touching == 76);
   CHECK(scenarios.corners == 411);
 
-  const std::map<std::string, std::array<std::size_t, 3>> pinned = {
-      {"hills", {1238, 0, 0}}, {"caves", {16096, 4, 4}}, {"town", {3104, 0, 0}}, {"luanti", {10649, 59, 97}}};
-  const auto worlds = bench::MeasuredWorlds::open({"hills", "caves", "town", "luanti"},
-                                                  RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
+  const std::map<std::string, std::array<std::size_t, 3>> pinned = {{"hills", {1238, 0, 0}},
+                                                                    {"caves", {16096, 4, 4}},
+                                                                    {"town", {3104, 0, 0}},
+                                                                    {"luanti", {10649, 59, 97}}};
+  const auto worlds = bench::MeasuredWorlds::open(
+      {"hills", "caves", "town", "luanti"}, RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
   REQUIRE(worlds.has_value());
   for (std::size_t w = 0; w < worlds->size(); ++w) {
     const bench::MeasuredWorld world = worlds->at_edge(w, kEdge);
-    const auto volumes = world.name == "luanti"
-                             ? world.volumes
-                             : bench::volumes_in(*worlds->voxels(w), {{-32, -32, -32}, {32, 32, 32}}, kEdge);
+    const auto volumes =
+        world.name == "luanti"
+            ? world.volumes
+            : bench::volumes_in(*worlds->voxels(w), {{-32, -32, -32}, {32, 32, 32}}, kEdge);
     TouchingRegions found;
     for (const bench::Volume& volume : volumes) found.add(volume.scene, *world.visibility);
     CAPTURE(world.name, found.regions, found.touching, found.corners);

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/culled_mesher.hpp"
 #include "tests/reference/greedy_mesher.hpp"
@@ -11,7 +12,6 @@
 #include "tests/reference/naive_greedy_mesher.hpp"
 #include "tests/reference/optimal_greedy_mesher.hpp"
 #include "tests/reference/run_strip_mesher.hpp"
-#include "tests/bench/worlds/seeded_worlds.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::test {
@@ -30,8 +30,8 @@ struct Counts {
 
 std::string text_of(const Counts& c) {
   std::string out;
-  for (const std::size_t count : {c.optimal, c.greedy, c.binary, c.naive, c.rdm, c.grid_rdm, c.strips,
-                                  c.strips_hidden, c.culled, c.hidden_faces}) {
+  for (const std::size_t count : {c.optimal, c.greedy, c.binary, c.naive, c.rdm, c.grid_rdm,
+                                  c.strips, c.strips_hidden, c.culled, c.hidden_faces}) {
     out += std::to_string(count) + ", ";
   }
   return out;
@@ -80,7 +80,8 @@ class Field {
   Counts counts_{};
 };
 
-TEST_CASE("the field over the 37 scenarios makes the quads that the page says", "[mesh][scenarios][golden]") {
+TEST_CASE("the field over the 37 scenarios makes the quads that the page says",
+          "[mesh][scenarios][golden]") {
   Field field;
   for (unsigned number = 1; number <= 37; ++number) {
     field.add(scenario_scene(*scenario_generator(number, kEdge), {0, 0, 0}, kEdge, true),
@@ -103,7 +104,8 @@ TEST_CASE("the field over seeded worlds makes the quads that the page says", "[m
     if (expected == pinned.end()) continue;
     ++met;
     Field field;
-    for (const bench::Volume& volume : bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kEdge)) {
+    for (const bench::Volume& volume :
+         bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kEdge)) {
       field.add(volume.scene, *world.visibility);
     }
     INFO(world.name << ": " << text_of(field.counts()));

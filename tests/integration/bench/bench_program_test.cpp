@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/bench/meshing/contestant.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/storage/stores.hpp"
 #include "tests/bench/wire/transfer_form.hpp"
 #include "tests/integration/bench/bench_output.hpp"
@@ -55,8 +55,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   const test::TempFolder folder;
   const std::string csv = folder / "mesh.csv", json = folder / "mesh.json";
   const BenchOutput output =
-      run_bench({"mesh", "--quick", "--worlds", "hills,town,checkerboard,uniform,scenarios,luanti", "--edges",
-                 "32", "--csv", csv, "--json", json});
+      run_bench({"mesh", "--quick", "--worlds", "hills,town,checkerboard,uniform,scenarios,luanti",
+                 "--edges", "32", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
 
@@ -64,7 +64,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   std::map<std::string, std::set<std::string>> meshers;  // by world and part
   std::map<std::string, std::set<std::string>> parts;    // by world
   std::map<std::string, std::map<std::string, std::size_t>> quads;
-  std::map<std::string, std::set<std::string>> triangles;  // of meshers of polygons: all of them the same
+  std::map<std::string, std::set<std::string>>
+      triangles;  // of meshers of polygons: all of them the same
   std::size_t t_junctions = 0;
   for (const CsvRow& row : rows) {
     const std::string cell = row.at("world") + " " + row.at("part");
@@ -96,9 +97,10 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   }
   CHECK(parts["scenarios"].size() == 37);
   CHECK(parts["luanti"].size() > 20);
-  for (const char* world : {"hills", "town", "checkerboard", "uniform"}) CHECK(parts[world].size() == 1);
+  for (const char* world : {"hills", "town", "checkerboard", "uniform"})
+    CHECK(parts[world].size() == 1);
 
-  const auto all = contestant_names();
+  const auto all = mesher_case_names();
   std::map<std::string, std::size_t> sums;
   for (const auto& [cell, names] : meshers) {
     CAPTURE(cell);
@@ -110,7 +112,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
     CHECK(of.at("decode_binary") == of.at("mask_binary"));
     CHECK(of.at("rdm") <= of.at("culled"));
     CHECK(of.at("culled") <= of.at("simple"));
-    for (const char* merged : {"rdm", "decode_binary", "greedy", "naive_greedy", "run_strips", "grid_rdm"}) {
+    for (const char* merged :
+         {"rdm", "decode_binary", "greedy", "naive_greedy", "run_strips", "grid_rdm"}) {
       CHECK(of.at("optimal_greedy") <= of.at(merged));
     }
     CHECK(of.at("run_strips_hidden") <= of.at("run_strips"));
@@ -129,21 +132,22 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
 }
 
 TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
-  const BenchOutput output = run_bench({"mesh", "--quick", "--worlds", "empty,scenarios", "--edges", "65,8",
-                                        "--meshers", "rdm,decode_binary"});
+  const BenchOutput output = run_bench({"mesh", "--quick", "--worlds", "empty,scenarios", "--edges",
+                                        "65,8", "--meshers", "rdm,decode_binary"});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
-  for (const char* cell : {"skipped: empty 0 -32 0 edge 65 order xyz decode_binary: sides above 64",
-                           "skipped: scenarios edge 65: the models have edges of 8, 16, 32, 64 and 128",
-                           "skipped: scenarios edge 8: scenario 5 is data of edge 32"}) {
+  for (const char* cell :
+       {"skipped: empty 0 -32 0 edge 65 order xyz decode_binary: sides above 64",
+        "skipped: scenarios edge 65: the models have edges of 8, 16, 32, 64 and 128",
+        "skipped: scenarios edge 8: scenario 5 is data of edge 32"}) {
     CAPTURE(cell);
     CHECK(output.out.find(cell) != std::string::npos);
   }
 }
 
 TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[bench]") {
-  const BenchOutput output = run_bench(
-      {"mesh-once", "--worlds", "town,checkerboard", "--edges", "16", "--mesher", "culled", "--times", "3"});
+  const BenchOutput output = run_bench({"mesh-once", "--worlds", "town,checkerboard", "--edges",
+                                        "16", "--mesher", "culled", "--times", "3"});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::istringstream lines(output.out);
@@ -165,9 +169,9 @@ TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[be
 TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "orders.csv";
-  REQUIRE(
-      run_bench({"mesh", "--quick", "--worlds", "hills", "--orders", "all", "--meshers", "rdm", "--csv", csv})
-          .exit_code == 0);
+  REQUIRE(run_bench({"mesh", "--quick", "--worlds", "hills", "--orders", "all", "--meshers", "rdm",
+                     "--csv", csv})
+              .exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
   REQUIRE(rows.size() == 6);
   std::set<std::string> orders;
@@ -186,7 +190,8 @@ TEST_CASE("runstone-bench mesh takes any axis order", "[bench]") {
 TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edges.csv";
-  const BenchOutput output = run_bench({"chunk-edge", "--worlds", "town", "--edges", "32,64", "--csv", csv});
+  const BenchOutput output =
+      run_bench({"chunk-edge", "--worlds", "town", "--edges", "32,64", "--csv", csv});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
@@ -208,7 +213,8 @@ TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
   CHECK(run_bench({"mesh", "--edges", "7"}).exit_code == 2);
   CHECK(run_bench({"mesh", "--help"}).exit_code == 0);
   const test::TempFolder folder;
-  const BenchOutput nothing = run_bench({"mesh", "--quick", "--worlds", "luanti", "--luanti", folder.path()});
+  const BenchOutput nothing =
+      run_bench({"mesh", "--quick", "--worlds", "luanti", "--luanti", folder.path()});
   CHECK(nothing.exit_code == 1);
   CHECK(nothing.err.find("map.sqlite") != std::string::npos);
   const BenchOutput odd = run_bench({"chunk-edge", "--worlds", "town", "--edges", "62"});
@@ -234,15 +240,17 @@ TEST_CASE("runstone-bench edits has a row for every case and judges every bar", 
   }
   CHECK(edits.size() == 11);
   CHECK(edits["mixed edits by hand as a stack"] == 1111);
-  const auto bars = nlohmann::json::parse(text_of(json)).at("bars");
-  CHECK(bars.size() == 6);
-  for (const auto& bar : bars) CHECK(bar.at("verdict") != "not measured");
+  const auto targets = nlohmann::json::parse(text_of(json)).at("bars");
+  CHECK(targets.size() == 6);
+  for (const auto& target : targets) CHECK(target.at("verdict") != "not measured");
 }
 
-TEST_CASE("runstone-bench log opens moments with keyframes and without, and previews a rollback", "[bench]") {
+TEST_CASE("runstone-bench log opens moments with keyframes and without, and previews a rollback",
+          "[bench]") {
   const test::TempFolder folder;
   const std::string json = folder / "log.json";
-  const BenchOutput output = run_bench({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
+  const BenchOutput output =
+      run_bench({"log", "--edits", "70000", "--min-runs", "2", "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const auto document = nlohmann::json::parse(text_of(json));
@@ -264,8 +272,9 @@ TEST_CASE("runstone-bench log opens moments with keyframes and without, and prev
 TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "bytes.csv", json = folder / "bytes.json";
-  const BenchOutput output = run_bench({"bytes", "--min-runs", "1", "--worlds",
-                                        "luanti,hills,scenarios,uniform", "--csv", csv, "--json", json});
+  const BenchOutput output =
+      run_bench({"bytes", "--min-runs", "1", "--worlds", "luanti,hills,scenarios,uniform", "--csv",
+                 csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::map<std::string, std::map<std::string, double>> bytes;  // by world and set, then form
@@ -286,18 +295,21 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
     CHECK(forms.at("dense") == 65536);
     CHECK(forms.at("luanti") < forms.at("luanti_light") + 0.5);
   }
-  CHECK(bytes["luanti all"]["luanti_light"] > 1.05 * bytes["luanti all"]["luanti"]);  // the game's own light
+  CHECK(bytes["luanti all"]["luanti_light"] >
+        1.05 * bytes["luanti all"]["luanti"]);  // the game's own light
   CHECK(bytes["uniform all"]["raw"] == 16);
-  const auto bars = nlohmann::json::parse(text_of(json)).at("bars");
-  for (const auto& bar : bars) {
-    const bool terrain = bar.at("case").get<std::string>().find("noise terrain") != std::string::npos;
-    CHECK((bar.at("verdict") == "not measured") == terrain);
+  const auto targets = nlohmann::json::parse(text_of(json)).at("bars");
+  for (const auto& target : targets) {
+    const bool terrain =
+        target.at("case").get<std::string>().find("noise terrain") != std::string::npos;
+    CHECK((target.at("verdict") == "not measured") == terrain);
   }
 }
 
 TEST_CASE("report: a step is measured once, a run goes on, and the page is there") {
   const test::TempFolder folder;
-  const std::vector<std::string> words = {"report", "--out", folder / "r", "--quick", "--steps", "facts"};
+  const std::vector<std::string> words = {"report",  "--out",   folder / "r",
+                                          "--quick", "--steps", "facts"};
   const BenchOutput first = run_bench(words);
   INFO(first.err);
   REQUIRE(first.exit_code == 0);
@@ -334,8 +346,9 @@ TEST_CASE("report: a step is measured once, a run goes on, and the page is there
 TEST_CASE("runstone-bench storage has a row for every store on every volume", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "storage.csv", json = folder / "storage.json";
-  const BenchOutput output = run_bench({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios",
-                                        "--edges", "16,32", "--min-runs", "1", "--csv", csv, "--json", json});
+  const BenchOutput output =
+      run_bench({"storage", "--worlds", "hills,checkerboard,empty,luanti,scenarios", "--edges",
+                 "16,32", "--min-runs", "1", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   const std::vector<CsvRow> rows = read_csv(csv);
@@ -384,7 +397,8 @@ TEST_CASE("runstone-bench storage has a row for every store on every volume", "[
       CHECK(output.out.find(std::string("**") + group + "**, edge " + edge) != std::string::npos);
     }
   }
-  CHECK(output.out.find("skipped: scenarios edge 16: scenario 5 is data of edge 32") != std::string::npos);
+  CHECK(output.out.find("skipped: scenarios edge 16: scenario 5 is data of edge 32") !=
+        std::string::npos);
 
   const BenchOutput odd = run_bench({"storage", "--worlds", "hills", "--edges", "62"});
   CHECK(odd.exit_code == 1);

@@ -73,7 +73,8 @@ double trip_ms(LabLink& link, std::size_t bytes) {
     const auto start = std::chrono::steady_clock::now();
     std::thread writer([&] { asio::write(socket, asio::buffer(sent)); });
     asio::read(socket, asio::buffer(back));
-    ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     writer.join();
     CHECK(back == sent);
   }
@@ -109,7 +110,8 @@ TEST_CASE("what a shaper loses comes later, and nothing is missing", "[lab]") {
   CHECK(trip_ms(**link, 200'000) >= 20);
 }
 
-TEST_CASE("namespaces joined by a link delay and slow what passes, and leave nothing behind", "[lab]") {
+TEST_CASE("namespaces joined by a link delay and slow what passes, and leave nothing behind",
+          "[lab]") {
   const std::string why = why_no_namespaces();
   if (!why.empty()) {
     WARN("skipped: " + why);

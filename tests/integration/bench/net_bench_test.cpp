@@ -26,7 +26,8 @@ json run_lab(std::vector<std::string> arguments, std::string& tables) {
   ::setenv("RUNSTONE_BOT", RUNSTONE_BOT_PROGRAM, 1);
   const test::TempFolder folder;
   const std::string file = folder / "lab.json", csv = folder / "lab.csv";
-  arguments.insert(arguments.begin(), {"net", "--quick", "--edits", "20", "--json", file, "--csv", csv});
+  arguments.insert(arguments.begin(),
+                   {"net", "--quick", "--edits", "20", "--json", file, "--csv", csv});
   std::vector<const char*> argv = {"runstone-bench"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   std::ostringstream out, err;
@@ -58,7 +59,8 @@ TEST_CASE("the lab measures joins and edits over a link", "[lab]") {
   std::string tables;
   const json lab = run_lab({"--experiments", "join,latency", "--profiles", "lan"}, tables);
   CHECK(figure(lab, "join", "median", "near_most_ms") > 0);
-  CHECK(figure(lab, "join", "median", "near_most_ms") <= figure(lab, "join", "median", "view_all_ms"));
+  CHECK(figure(lab, "join", "median", "near_most_ms") <=
+        figure(lab, "join", "median", "view_all_ms"));
   for (const char* load : {"idle", "streaming", "streaming 20 clients"}) {
     CAPTURE(load);
     CHECK(figure(lab, "latency", load, "remote_edits") > 0);
@@ -75,9 +77,11 @@ TEST_CASE("the lab measures joins and edits over a link", "[lab]") {
 TEST_CASE("the lab measures transfers without privileges", "[lab]") {
   std::string tables;
   const json lab = run_lab(
-      {"--experiments", "transfer", "--profiles", "lan", "--worlds", "terrain", "--link", "shaper"}, tables);
+      {"--experiments", "transfer", "--profiles", "lan", "--worlds", "terrain", "--link", "shaper"},
+      tables);
   CHECK(figure(lab, "transfer", "terrain dense", "bytes") > 64 * 65536);
-  CHECK(figure(lab, "transfer", "terrain packed", "bytes") < figure(lab, "transfer", "terrain raw", "bytes"));
+  CHECK(figure(lab, "transfer", "terrain packed", "bytes") <
+        figure(lab, "transfer", "terrain raw", "bytes"));
   CHECK(figure(lab, "transfer", "terrain packed", "complete_ms") >= 0.4);
   CHECK(lab["figures"][0]["link"] == "shaper");
   CHECK(tables.find("a TCP proxy on loopback") != std::string::npos);
@@ -85,7 +89,8 @@ TEST_CASE("the lab measures transfers without privileges", "[lab]") {
 
 TEST_CASE("the lab measures crowds", "[lab]") {
   std::string tables;
-  const json lab = run_lab({"--experiments", "crowd", "--clients", "3", "--crowd-seconds", "1"}, tables);
+  const json lab =
+      run_lab({"--experiments", "crowd", "--clients", "3", "--crowd-seconds", "1"}, tables);
   CHECK(figure(lab, "crowd", "3 clients", "samples") > 0);
   CHECK(figure(lab, "crowd", "3 clients", "disconnects") == 0);
   CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
@@ -93,10 +98,12 @@ TEST_CASE("the lab measures crowds", "[lab]") {
   CHECK(figure(lab, "crowd", "3 clients", "enqueue_us_per_receiver") > 0);
   double in_rows = figure(lab, "crowd", "3 clients", "never");
   for (const json& it : lab["figures"]) {
-    if (it["figure"].get<std::string>().rfind("samples_", 0) == 0) in_rows += it["value"].get<double>();
+    if (it["figure"].get<std::string>().rfind("samples_", 0) == 0)
+      in_rows += it["value"].get<double>();
   }
   CHECK(in_rows == figure(lab, "crowd", "3 clients", "samples"));
-  CHECK(tables.find("These latencies of 3 clients:\n\n| from, below ms | samples |") != std::string::npos);
+  CHECK(tables.find("These latencies of 3 clients:\n\n| from, below ms | samples |") !=
+        std::string::npos);
 }
 
 TEST_CASE("the lab measures what loaded chunks take of the server's memory", "[lab]") {
@@ -110,7 +117,8 @@ TEST_CASE("the lab measures what loaded chunks take of the server's memory", "[l
 }
 
 TEST_CASE(
-    "attacks are answered by name, and honest clients neither lose their connection nor see a broken rule",
+    "attacks are answered by name, and honest clients neither lose their connection nor see a "
+    "broken rule",
     "[lab]") {
   std::string tables;
   const json lab = run_lab({"--experiments", "attack", "--attacks",
@@ -127,7 +135,8 @@ TEST_CASE(
       CHECK(figure(lab, "attack", attack, phase + "_violations") == 0);
       CHECK(figure(lab, "attack", attack, phase + "_server_resident_mb") > 0);
     }
-    CHECK(figure(lab, "attack", attack, "joins_open") == figure(lab, "attack", attack, "joins_tried"));
+    CHECK(figure(lab, "attack", attack, "joins_open") ==
+          figure(lab, "attack", attack, "joins_tried"));
   }
   CHECK(figure(lab, "attack", "absurd-views", "told malformed_message") > 0);
   CHECK(figure(lab, "attack", "absurd-views", "logged malformed_message") > 0);

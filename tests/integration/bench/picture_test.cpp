@@ -16,7 +16,8 @@ PictureScene scene_of(SplitMix64& rng) {
   out.name = "random";
   out.edge = 16;
   out.visibility = std::make_shared<const VisibilityTable>(test::mesh_visibility());
-  for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {5, 0, 0}}) {
+  for (const ChunkCoord at :
+       {ChunkCoord{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {5, 0, 0}}) {
     out.chunks[at] = test::scene_of_extent(rng, Extent::cube(16), AxisOrder::yxz).chunk;
   }
   return out;

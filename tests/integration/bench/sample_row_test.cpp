@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/bench/network/crowd.hpp"
+#include "tests/bench/network/fleet.hpp"
 
 using namespace runstone::bench;
 using nlohmann::json;
@@ -24,7 +24,7 @@ TEST_CASE("a histogram's table has all samples, and those that never came below"
 }
 
 TEST_CASE("what a crowd saw is read from its bots' report, infinite latencies as such", "[lab]") {
-  const CrowdSight seen = sight_of(json::parse(
+  const FleetSight seen = sight_of(json::parse(
       R"({"seen_us": {"count": 5, "infinite": 1, "p50": 1500, "p90": "infinite", "p99": "infinite", "max": "infinite",
                       "rows": [[1024, 1536, 3], [16384, 24576, 1]]}})"));
   CHECK(seen.rows == std::vector<SampleRow>{{1.024, 1.536, 3}, {16.384, 24.576, 1}});

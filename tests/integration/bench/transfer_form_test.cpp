@@ -45,7 +45,8 @@ TEST_CASE("every form of a chunk comes back as it went", "[bench]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (int step = 0; step < 24; ++step) {
     CAPTURE(Catch::rngSeed(), step);
-    const LitChunk chunk = random_lit(rng, step % 3 == 0 ? 1000 : 1 + static_cast<unsigned>(rng.below(20)));
+    const LitChunk chunk =
+        random_lit(rng, step % 3 == 0 ? 1000 : 1 + static_cast<unsigned>(rng.below(20)));
     const auto forms = make_transfer_forms(chunk);
     REQUIRE(forms.size() == transfer_form_names().size());
     for (std::size_t f = 0; f < forms.size(); ++f) {
@@ -60,7 +61,8 @@ TEST_CASE("every form of a chunk comes back as it went", "[bench]") {
   }
 }
 
-TEST_CASE("a Luanti block on the wire is the game's row without what only the disk has", "[bench]") {
+TEST_CASE("a Luanti block on the wire is the game's row without what only the disk has",
+          "[bench]") {
   auto map = LuantiMap::open(RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small/map.sqlite");
   REQUIRE(map);
   std::size_t rows = 0, smaller = 0;

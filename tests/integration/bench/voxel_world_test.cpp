@@ -12,7 +12,9 @@ using namespace runstone::bench;
 
 namespace {
 
-Material material_of(VoxelPos at) { return static_cast<Material>(1 + (at.x * 7 + at.y * 5 + at.z * 3) % 3); }
+Material material_of(VoxelPos at) {
+  return static_cast<Material>(1 + (at.x * 7 + at.y * 5 + at.z * 3) % 3);
+}
 
 VoxelWorld bounded_world(const VoxelBox& bounds) {
   VoxelWorld out;
@@ -44,7 +46,8 @@ TEST_CASE("volumes cover their world to its upper corner", "[bench]") {
       for (std::uint8_t y = 0; y < 16; ++y) {
         for (std::uint8_t x = 0; x < 16; ++x) {
           const VoxelPos at{volume.origin.x + x, volume.origin.y + y, volume.origin.z + z};
-          right &= bounds.contains(at) && material_at(volume.scene.chunk, {x, y, z}) == material_of(at);
+          right &=
+              bounds.contains(at) && material_at(volume.scene.chunk, {x, y, z}) == material_of(at);
           covered.insert(at);
         }
       }

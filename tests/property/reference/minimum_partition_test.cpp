@@ -36,7 +36,8 @@ FacePlane random_plane(SplitMix64& rng, unsigned side_max, unsigned materials) {
     const std::uint32_t width = 1 + rng.below(plane.width - u);
     const std::uint32_t height = 1 + rng.below(plane.height - v);
     const auto material = static_cast<Material>(rng.below(materials));
-    for (std::uint32_t row = v; row < v + height; ++row) std::fill_n(plane.row(row) + u, width, material);
+    for (std::uint32_t row = v; row < v + height; ++row)
+      std::fill_n(plane.row(row) + u, width, material);
   }
   const std::uint32_t noise = rng.below(4) == 0 ? rng.below(100) : 0;
   for (Material& face : plane.faces) {
@@ -45,8 +46,9 @@ FacePlane random_plane(SplitMix64& rng, unsigned side_max, unsigned materials) {
   return plane;
 }
 
-TEST_CASE("every region of 4 x 5 and of 5 x 3 cells falls apart into as few rectangles as there can be",
-          "[mesh][property][reference]") {
+TEST_CASE(
+    "every region of 4 x 5 and of 5 x 3 cells falls apart into as few rectangles as there can be",
+    "[mesh][property][reference]") {
   for (const auto& [width, height] : {std::pair{4u, 5u}, std::pair{5u, 3u}}) {
     LeastRectangles least(width, height);
     MinimumPartition partition;
@@ -84,8 +86,9 @@ TEST_CASE("random regions of 6 x 6 cells fall apart into as few rectangles as th
   }
 }
 
-TEST_CASE("planes of several materials have as many rectangles as their corners, chords and holes demand",
-          "[mesh][property][reference]") {
+TEST_CASE(
+    "planes of several materials have as many rectangles as their corners, chords and holes demand",
+    "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 32);
   MinimumPartition partition;
   std::vector<PlaneRectangle> rectangles;
@@ -124,7 +127,8 @@ TEST_CASE("an independent set leaves no edge and is as large as a matching allow
         joined += set.has_left(left) && set.has_right(graph.edges[e]) ? 1 : 0;
       }
     }
-    for (std::uint32_t right = 0; right < graph.right_count; ++right) size += set.has_right(right) ? 1u : 0u;
+    for (std::uint32_t right = 0; right < graph.right_count; ++right)
+      size += set.has_right(right) ? 1u : 0u;
     CAPTURE(Catch::rngSeed(), round);
     REQUIRE(joined == 0);
     REQUIRE(size == left_count + graph.right_count - matching_size(graph));

@@ -2,7 +2,7 @@
 // and direction, each covered once, and no vertices but corners of the faces' outlines.
 #include <catch2/catch.hpp>
 
-#include "tests/support/polygon_jury.hpp"
+#include "tests/support/polygon_checks.hpp"
 #include "tests/support/random_chunk.hpp"
 #include "tests/support/scenario_scene.hpp"
 
@@ -30,11 +30,12 @@ TEST_CASE("random scenes: meshers of polygons cover exactly the exposed faces",
   CHECK(touching > 500);
 }
 
-TEST_CASE("the largest and the flattest extents: meshers of polygons", "[mesh][property][polygons]") {
+TEST_CASE("the largest and the flattest extents: meshers of polygons",
+          "[mesh][property][polygons]") {
   SplitMix64 rng(Catch::rngSeed() + 52);
   PolygonJury jury;
-  for (const Extent extent :
-       {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{128, 128, 8}, Extent{65, 64, 63}}) {
+  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128},
+                              Extent{128, 128, 8}, Extent{65, 64, 63}}) {
     const MeshScene scene = scene_of_extent(rng, extent, random_order(rng));
     CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z);
     REQUIRE(fault_of(jury, scene) == "");
@@ -58,8 +59,8 @@ TEST_CASE("noise and checkerboards: meshers of polygons", "[mesh][property][poly
   for (int round = 0; round < 10; ++round) {
     CAPTURE(Catch::rngSeed(), round);
     const MeshScene scene = scene_of_many_materials(rng, Extent{12, 9, 11});
-    REQUIRE(jury.fault(scene, many_visibility(), many_materials(), expected_faces(scene, many_materials())) ==
-            "");
+    REQUIRE(jury.fault(scene, many_visibility(), many_materials(),
+                       expected_faces(scene, many_materials())) == "");
   }
 }
 
@@ -69,7 +70,8 @@ TEST_CASE("scenarios: meshers of polygons", "[mesh][property][polygons][scenario
     for (unsigned number = 1; number <= 37; ++number) {
       if (number == 5 && edge != 32) continue;
       for (const bool alone : {true, false}) {
-        const MeshScene scene = scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, alone);
+        const MeshScene scene =
+            scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, alone);
         CAPTURE(edge, number, alone);
         REQUIRE(fault_of(jury, scene) == "");
       }

@@ -8,7 +8,7 @@
 #include "tests/reference/material_octree.hpp"
 #include "tests/support/dense_chunk.hpp"
 #include "tests/support/mesh_scene.hpp"
-#include "tests/support/mesher_jury.hpp"
+#include "tests/support/mesher_checks.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -42,11 +42,13 @@ TEST_CASE("random scenes: every reference mesher covers exactly the faces it owe
   CHECK(with_transparent > kScenes / 4);
 }
 
-TEST_CASE("the largest and the flattest extents: every reference mesher", "[mesh][property][reference]") {
+TEST_CASE("the largest and the flattest extents: every reference mesher",
+          "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 22);
   MesherJury jury;
-  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
-                              Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
+  for (const Extent extent :
+       {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
+        Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders) {
       const MeshScene scene = scene_of_extent(rng, extent, order);
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
@@ -121,8 +123,10 @@ TEST_CASE("samples from an octree are the voxels around a chunk", "[mesh][proper
     MaterialOctree octree(origin, 2);
     std::vector<DenseChunk> chunks;
     for (int i = 0; i < 8; ++i) {
-      const VoxelPos first{origin.x + 32 * (i & 1), origin.y + 32 * (i >> 1 & 1), origin.z + 32 * (i >> 2)};
-      const RunChunk chunk = random_chunk(rng, Extent::cube(32), random_order(rng), kMeshMaterialCount);
+      const VoxelPos first{origin.x + 32 * (i & 1), origin.y + 32 * (i >> 1 & 1),
+                           origin.z + 32 * (i >> 2)};
+      const RunChunk chunk =
+          random_chunk(rng, Extent::cube(32), random_order(rng), kMeshMaterialCount);
       octree.insert(first, chunk);
       chunks.push_back(DenseChunk::of(chunk));
     }
@@ -131,8 +135,8 @@ TEST_CASE("samples from an octree are the voxels around a chunk", "[mesh][proper
     CHECK(octree.byte_size() <= loose_bytes);
     const auto at = [&](int x, int y, int z) {
       if (std::min({x, y, z}) < 0 || std::max({x, y, z}) >= 64) return kEmpty;
-      return chunks[static_cast<std::size_t>(x / 32 + 2 * (y / 32) + 4 * (z / 32))].at(x % 32, y % 32,
-                                                                                       z % 32);
+      return chunks[static_cast<std::size_t>(x / 32 + 2 * (y / 32) + 4 * (z / 32))].at(
+          x % 32, y % 32, z % 32);
     };
     const VoxelPos low{rng.between(-20, 60), rng.between(-20, 60), rng.between(-20, 60)};
     const Extent extent = random_extent(rng, 40);

@@ -70,7 +70,9 @@ const Arrows& arrows() {
 Arrows::const_iterator module_of(std::string_view path) {
   auto found = arrows().end();
   for (auto at = arrows().begin(); at != arrows().end(); ++at) {
-    if (below(path, at->first) && (found == arrows().end() || at->first.size() > found->first.size())) found = at;
+    if (below(path, at->first) &&
+        (found == arrows().end() || at->first.size() > found->first.size()))
+      found = at;
   }
   return found;
 }
@@ -93,14 +95,16 @@ struct Ban {
 
 const std::vector<Ban>& bans() {
   static const std::vector<Ban> kBans = {
-      {{"common/core", "common/runs", "common/materials", "common/edits", "common/mesh", "common/generate",
-        "common/rlog", "common/formats", "protocol"},
-       {"common/os/", "common/sqlite/", "asio.hpp", "asio/",  "boost/",   "spdlog/",    "sqlite3.h",    "GL/",       "GLES2/", "GLES3/",
-        "GLFW/",    "EGL/",   "epoxy/",   "chrono",     "ctime",        "time.h",    "thread", "fstream",
-        "iostream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "filesystem"}},
+      {{"common/core", "common/runs", "common/materials", "common/edits", "common/mesh",
+        "common/generate", "common/rlog", "common/formats", "protocol"},
+       {"common/os/", "common/sqlite/", "asio.hpp",  "asio/",   "boost/",   "spdlog/", "sqlite3.h",
+        "GL/",        "GLES2/",         "GLES3/",    "GLFW/",   "EGL/",     "epoxy/",  "chrono",
+        "ctime",      "time.h",         "thread",    "fstream", "iostream", "random",  "unistd.h",
+        "sys/time.h", "sys/socket.h",   "filesystem"}},
       {{"server/world", "server/interest", "client/replica"},
-       {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread", "fstream",
-        "random", "unistd.h", "sys/time.h", "sys/socket.h", "common/os/", "common/sqlite/"}},
+       {"asio.hpp", "asio/", "boost/", "sqlite3.h", "chrono", "ctime", "time.h", "thread",
+        "fstream", "random", "unistd.h", "sys/time.h", "sys/socket.h", "common/os/",
+        "common/sqlite/"}},
   };
   return kBans;
 }
@@ -126,24 +130,27 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
       for (const Ban& ban : bans()) {
         const bool applies = std::any_of(ban.folders.begin(), ban.folders.end(),
                                          [&](const auto& f) { return below(file.path, f); });
-        if (applies && std::any_of(ban.headers.begin(), ban.headers.end(),
-                                   [&](const auto& banned) { return names(include.path, banned); })) {
+        if (applies && std::any_of(ban.headers.begin(), ban.headers.end(), [&](const auto& banned) {
+              return names(include.path, banned);
+            })) {
           complain(ban.rule);
         }
       }
-      const bool ours = std::any_of(std::begin(kRoots), std::end(kRoots), [&](std::string_view root) {
-        return include.path.starts_with(std::string(root) + "/");
-      });
+      const bool ours = std::any_of(
+          std::begin(kRoots), std::end(kRoots),
+          [&](std::string_view root) { return include.path.starts_with(std::string(root) + "/"); });
       if (ours != include.quoted) {
-        complain("headers of this repository are quoted, from its root; all others stand in angle brackets");
+        complain(
+            "headers of this repository are quoted, from its root; all others stand in angle "
+            "brackets");
         if (!ours) continue;
       }
       if (!ours || home == arrows().end()) continue;
       if (include.path.starts_with("protocol/schema/")) continue;  // generated at build time
       const auto target = module_of(include.path);
       if (target == home) continue;
-      if (target == arrows().end() ||
-          std::find(home->second.begin(), home->second.end(), target->first) == home->second.end()) {
+      if (target == arrows().end() || std::find(home->second.begin(), home->second.end(),
+                                                target->first) == home->second.end()) {
         complain("the module does not name that one in its DEPS");
       }
     }
@@ -156,7 +163,8 @@ std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
   for (const char* folder : {"common", "protocol", "server", "client", "tests"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const auto extension = entry.path().extension();
-      if (!entry.is_regular_file() || (extension != ".hpp" && extension != ".cpp" && extension != ".h"))
+      if (!entry.is_regular_file() ||
+          (extension != ".hpp" && extension != ".cpp" && extension != ".h"))
         continue;
       std::ifstream in(entry.path(), std::ios::binary);
       out.push_back({entry.path().lexically_relative(root).generic_string(),
@@ -178,10 +186,11 @@ TEST_CASE("every include of the tree follows the arrows of the house", "[house]"
   REQUIRE(arrows().size() > 20);
   const std::vector<SourceFile> files = source_tree(RUNSTONE_SOURCE_DIR);
   REQUIRE(files.size() > 100);
-  for (const char* folder :
-       {"common/core", "common/runs", "common/edits", "common/os", "protocol", "server", "client"}) {
+  for (const char* folder : {"common/core", "common/runs", "common/edits", "common/os", "protocol",
+                             "server", "client"}) {
     CAPTURE(folder);
-    CHECK(std::any_of(files.begin(), files.end(), [&](const auto& f) { return below(f.path, folder); }));
+    CHECK(std::any_of(files.begin(), files.end(),
+                      [&](const auto& f) { return below(f.path, folder); }));
   }
   for (const std::string& complaint : wrong_includes(files)) {
     CAPTURE(complaint);
@@ -194,7 +203,8 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("common/core/ids.hpp", "#include \"common/runs/run_list.hpp\""));
   CHECK(is_wrong("common/runs/run_chunk.cpp", "#include \"common/edits/apply/edit_stack.hpp\""));
   CHECK(is_wrong("common/edits/apply/edit_stack.cpp", "#include \"common/mesh/quad.hpp\""));
-  CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/edits/descriptor/edit_record.hpp\""));
+  CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp",
+                 "#include \"common/edits/descriptor/edit_record.hpp\""));
   CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/generate/generator.hpp\""));
   CHECK(is_wrong("common/generate/hills.cpp", "#include \"common/edits/apply/edit_stack.hpp\""));
   CHECK(is_wrong("common/formats/luanti_block.cpp", "#include \"common/mesh/quad.hpp\""));
@@ -208,8 +218,8 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"server/app/server.hpp\""));
   CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
   // Out of the pure libraries.
-  for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h", "GL/gl.h",
-                             "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
+  for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h",
+                             "GL/gl.h", "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
     CAPTURE(header);
     CHECK(is_wrong("common/edits/apply/edit_stack.cpp", "#include <" + std::string(header) + ">"));
     CHECK(is_wrong("protocol/codec/frame.hpp", "#include <" + std::string(header) + ">"));
@@ -232,17 +242,20 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
 TEST_CASE("right includes pass", "[house]") {
   CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include \"common/core/ids.hpp\""));
   CHECK_FALSE(is_wrong("common/core/ids.cpp", "#include <vector>"));
-  CHECK_FALSE(is_wrong("common/edits/apply/edit_stack.cpp", "#include \"common/runs/dirty_layers.hpp\""));
-  CHECK_FALSE(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/runs/dirty_layers.hpp\""));
+  CHECK_FALSE(
+      is_wrong("common/edits/apply/edit_stack.cpp", "#include \"common/runs/dirty_layers.hpp\""));
+  CHECK_FALSE(
+      is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"common/runs/dirty_layers.hpp\""));
   CHECK_FALSE(is_wrong("common/formats/luanti_block.cpp", "#include <zstd.h>"));
-  CHECK_FALSE(is_wrong("protocol/codec/frame.cpp", "#include \"common/edits/descriptor/edit_record.hpp\""));
+  CHECK_FALSE(
+      is_wrong("protocol/codec/frame.cpp", "#include \"common/edits/descriptor/edit_record.hpp\""));
   CHECK_FALSE(is_wrong("common/os/steady_clock.hpp", "#include <chrono>"));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK_FALSE(is_wrong("client/net/link.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include <asio.hpp>"));
   CHECK_FALSE(is_wrong("server/net/session.cpp", "#include \"server/world/authority.hpp\""));
   CHECK_FALSE(is_wrong("client/replica/replica.cpp", "#include \"protocol/codec/frame.hpp\""));
-  CHECK_FALSE(
-      is_wrong("tests/simulation/client/session/replica_test.cpp", "#include \"client/replica/replica.hpp\""));
+  CHECK_FALSE(is_wrong("tests/simulation/client/session/replica_test.cpp",
+                       "#include \"client/replica/replica.hpp\""));
   CHECK_FALSE(is_wrong("common/core/ids.cpp", "// #include <chrono>"));
 }

@@ -9,8 +9,8 @@ namespace {
 using namespace reference;
 
 /// Of a graph by the right vertices of each left one: left and right members.
-std::pair<std::vector<bool>, std::vector<bool>> set_of(const std::vector<std::vector<std::uint32_t>>& edges,
-                                                       std::uint32_t right_count) {
+std::pair<std::vector<bool>, std::vector<bool>> set_of(
+    const std::vector<std::vector<std::uint32_t>>& edges, std::uint32_t right_count) {
   static IndependentSet set;  // what one graph leaves behind would show in the next
   BipartiteGraph graph;
   graph.right_count = right_count;
@@ -21,7 +21,8 @@ std::pair<std::vector<bool>, std::vector<bool>> set_of(const std::vector<std::ve
   set.find(graph);
   std::pair<std::vector<bool>, std::vector<bool>> out;
   for (std::uint32_t left = 0; left < edges.size(); ++left) out.first.push_back(set.has_left(left));
-  for (std::uint32_t right = 0; right < right_count; ++right) out.second.push_back(set.has_right(right));
+  for (std::uint32_t right = 0; right < right_count; ++right)
+    out.second.push_back(set.has_right(right));
   return out;
 }
 
@@ -39,7 +40,8 @@ TEST_CASE("independent set: the larger side of a star", "[mesh][reference]") {
 
 TEST_CASE("independent set: a path that has to be augmented twice", "[mesh][reference]") {
   // left 0 - right 0 - left 1 - right 1 - left 2: three of five.
-  CHECK(set_of({{0}, {0, 1}, {1}}, 2) == std::pair{Members{true, true, true}, Members{false, false}});
+  CHECK(set_of({{0}, {0, 1}, {1}}, 2) ==
+        std::pair{Members{true, true, true}, Members{false, false}});
 }
 
 }  // namespace

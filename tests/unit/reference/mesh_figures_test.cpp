@@ -21,7 +21,8 @@ Surface surface_of(const ChunkMesh& mesh) {
   return out;
 }
 
-TEST_CASE("a vertex inside an edge is a T-junction, vertices that meet are none", "[mesh][reference]") {
+TEST_CASE("a vertex inside an edge is a T-junction, vertices that meet are none",
+          "[mesh][reference]") {
   Surface surface;
   surface.quads = {pack({0, 0, 0, 2, 2, Direction::pos_z, kStone}),
                    pack({2, 0, 0, 2, 2, Direction::pos_z, kStone})};
@@ -76,11 +77,12 @@ TJunctions t_junctions_by_pairs(const Surface& surface) {
       const Corner& b = polygon[(i + 1) % polygon.size()];
       for (const Corner& p : vertices) {
         const auto along = [&](const Corner& q) {
-          return std::sqrt(std::pow(q[0] - p[0], 2) + std::pow(q[1] - p[1], 2) + std::pow(q[2] - p[2], 2));
+          return std::sqrt(std::pow(q[0] - p[0], 2) + std::pow(q[1] - p[1], 2) +
+                           std::pow(q[2] - p[2], 2));
         };
-        const double detour =
-            along(a) + along(b) -
-            std::sqrt(std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2));
+        const double detour = along(a) + along(b) -
+                              std::sqrt(std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) +
+                                        std::pow(a[2] - b[2], 2));
         if (p == a || p == b || detour > 1e-9) continue;
         ++out.edges;
         places.insert(p);
@@ -105,7 +107,8 @@ TEST_CASE("T-junctions of random meshes are those found pair by pair", "[mesh][r
                                                 static_cast<std::uint8_t>(rng.below(9)),
                                                 static_cast<std::uint8_t>(120 + rng.below(9))});
         }
-        surface.triangles.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, Direction::pos_x, kStone});
+        surface.triangles.triangles.push_back(
+            {{3 * i, 3 * i + 1, 3 * i + 2}, Direction::pos_x, kStone});
       }
     }
     const TJunctions counted = count_t_junctions(surface);
@@ -121,15 +124,16 @@ TEST_CASE("T-junctions of random meshes are those found pair by pair", "[mesh][r
 TEST_CASE("thin triangles are counted beyond 1:16 and 1:100", "[mesh][reference]") {
   const auto count = [](unsigned width, unsigned height) {
     Surface surface;
-    surface.quads = {pack({0, 0, 0, static_cast<std::uint8_t>(width), static_cast<std::uint8_t>(height),
-                           Direction::neg_y, kStone})};
+    surface.quads = {pack({0, 0, 0, static_cast<std::uint8_t>(width),
+                           static_cast<std::uint8_t>(height), Direction::neg_y, kStone})};
     const ThinTriangles thin = count_thin_triangles(surface);
     return std::pair(thin.above_16, thin.above_100);
   };
   using Pair = std::pair<std::size_t, std::size_t>;
   CHECK(count(1, 1) == Pair{0, 0});
   CHECK(count(15, 1) == Pair{0, 0});
-  CHECK(count(1, 16) == Pair{2, 0});  // the diagonal is a little longer than 16 and the height less than 1
+  CHECK(count(1, 16) ==
+        Pair{2, 0});  // the diagonal is a little longer than 16 and the height less than 1
   CHECK(count(2, 31) == Pair{0, 0});
   CHECK(count(99, 1) == Pair{2, 0});
   CHECK(count(1, 100) == Pair{2, 2});

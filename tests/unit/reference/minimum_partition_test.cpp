@@ -21,7 +21,8 @@ std::size_t rectangles_in(const std::vector<std::string>& rows) {
   return rectangles.size();
 }
 
-TEST_CASE("minimum partition: nothing, one rectangle, and one cut a concave corner", "[mesh][reference]") {
+TEST_CASE("minimum partition: nothing, one rectangle, and one cut a concave corner",
+          "[mesh][reference]") {
   CHECK(rectangles_in({"...", "..."}) == 0);
   CHECK(rectangles_in({"1"}) == 1);
   CHECK(rectangles_in({"111", "111"}) == 1);

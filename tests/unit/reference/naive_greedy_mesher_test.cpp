@@ -30,7 +30,8 @@ Rectangles grid_rdm(const std::vector<std::string>& rows) {
   return rectangles_of<GridRdmScratch>(rows, mesh_grid_rdm);
 }
 
-TEST_CASE("naive greedy: quads begin at the leftmost face, whatever lies above", "[mesh][reference]") {
+TEST_CASE("naive greedy: quads begin at the leftmost face, whatever lies above",
+          "[mesh][reference]") {
   const std::vector<std::string> step = {".1",  //
                                          "11",  //
                                          "1."};
@@ -42,7 +43,8 @@ TEST_CASE("naive greedy: quads begin at the leftmost face, whatever lies above",
   CHECK(greedy(shape).size() == 3);
 }
 
-TEST_CASE("naive greedy: a next row may be longer, which Grid RDM does not join", "[mesh][reference]") {
+TEST_CASE("naive greedy: a next row may be longer, which Grid RDM does not join",
+          "[mesh][reference]") {
   const std::vector<std::string> shape = {"1.",  //
                                           "11",  //
                                           "1."};
@@ -54,7 +56,8 @@ TEST_CASE("naive greedy: a row that does not fit is put back whole", "[mesh][ref
   CHECK(naive({"1111",  //
                "1121",  // both ends fit
                "1111"}) ==
-        Rectangles{{0, 0, 4, 1, 1}, {0, 1, 2, 2, 1}, {2, 1, 1, 1, 2}, {2, 2, 2, 1, 1}, {3, 1, 1, 1, 1}});
+        Rectangles{
+            {0, 0, 4, 1, 1}, {0, 1, 2, 2, 1}, {2, 1, 1, 1, 2}, {2, 2, 2, 1, 1}, {3, 1, 1, 1, 1}});
 }
 
 }  // namespace

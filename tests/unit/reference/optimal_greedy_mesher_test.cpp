@@ -17,7 +17,8 @@ TEST_CASE("optimal greedy: two quads where greedy takes three", "[mesh][referenc
   CHECK(upper_side(quads) == std::vector<PlaneRectangle>{{1, 0, 1, 1, 1}, {0, 1, 3, 1, 1}});
 }
 
-TEST_CASE("optimal greedy: each layer of each direction needs what the formula says", "[mesh][reference]") {
+TEST_CASE("optimal greedy: each layer of each direction needs what the formula says",
+          "[mesh][reference]") {
   SplitMix64 rng(13);
   OptimalGreedyScratch scratch;
   FacePlane plane;

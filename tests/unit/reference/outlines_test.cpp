@@ -87,8 +87,10 @@ std::vector<std::set<std::pair<int, int>>> regions_of(const FacePlane& plane) {
   };
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      if (face(u, v) == face(u + 1, v) && face(u, v) != kEmpty) root[find(at(u, v))] = find(at(u + 1, v));
-      if (face(u, v) == face(u, v + 1) && face(u, v) != kEmpty) root[find(at(u, v))] = find(at(u, v + 1));
+      if (face(u, v) == face(u + 1, v) && face(u, v) != kEmpty)
+        root[find(at(u, v))] = find(at(u + 1, v));
+      if (face(u, v) == face(u, v + 1) && face(u, v) != kEmpty)
+        root[find(at(u, v))] = find(at(u, v + 1));
     }
   }
   std::map<std::size_t, std::set<std::pair<int, int>>> faces;
@@ -118,8 +120,9 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
     for (const Outlines::Region& region : outlines.regions) {
       // The lowest face of the region lies above the first side.
       const LayerPoint first = outlines.points[outlines.rings[region.first_ring].first];
-      const auto faces = std::find_if(regions.begin(), regions.end(),
-                                      [&](const auto& r) { return r.count({first.u, first.v}) != 0; });
+      const auto faces = std::find_if(regions.begin(), regions.end(), [&](const auto& r) {
+        return r.count({first.u, first.v}) != 0;
+      });
       REQUIRE(faces != regions.end());
       const auto in = [&faces](int u, int v) { return faces->count({u, v}) != 0; };
       REQUIRE(region.material == plane.row(first.v)[first.u]);
@@ -139,7 +142,8 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
           ++corners[{a.u, a.v}];
           ring_area += a.u * b.v - a.v * b.u;
           const int du = (b.u > a.u) - (b.u < a.u), dv = (b.v > a.v) - (b.v < a.v);
-          for (int u = a.u, v = a.v; u != b.u || v != b.v; u += du, v += dv) run.insert({u, v, du, dv});
+          for (int u = a.u, v = a.v; u != b.u || v != b.v; u += du, v += dv)
+            run.insert({u, v, du, dv});
         }
         REQUIRE((ring_area > 0) == (r == 0));  // the outer ring alone runs counter-clockwise
         area += ring_area;

@@ -1,6 +1,8 @@
 // Scenes small enough to count by hand, and what the entry points promise beyond the faces.
 #include <catch2/catch.hpp>
 
+#include "common/runs/dense.hpp"
+#include "common/runs/reorder.hpp"
 #include "tests/reference/binary_greedy.hpp"
 #include "tests/reference/bit_matrix.hpp"
 #include "tests/reference/culled_mesher.hpp"
@@ -8,8 +10,6 @@
 #include "tests/reference/rle_rdm.hpp"
 #include "tests/reference/row_compare.hpp"
 #include "tests/reference/simple_mesher.hpp"
-#include "common/runs/dense.hpp"
-#include "common/runs/reorder.hpp"
 #include "tests/support/mesh_scene.hpp"
 #include "tests/support/random_chunk.hpp"
 
@@ -68,7 +68,8 @@ TEST_CASE("two voxels of one material lose the faces between them and merge", "[
   CHECK(quads_of(scene) == Counts{12, 10, 6, 12, 6});
 }
 
-TEST_CASE("equal transparent materials hide each other, different ones do not", "[mesh][reference]") {
+TEST_CASE("equal transparent materials hide each other, different ones do not",
+          "[mesh][reference]") {
   for (const bool along_x : {true, false}) {
     const LocalPos beside = along_x ? LocalPos{4, 4, 5} : LocalPos{3, 4, 6};
     MeshScene scene{uniform_chunk(kSmall, kEmpty), {}};
@@ -110,8 +111,8 @@ TEST_CASE("a neighbour hides faces at the border by the same rule", "[mesh][refe
 TEST_CASE("the grid variant joins rows only if they are alike", "[mesh][reference]") {
   // An L of 3 + 2 on the floor: binary greedy and the grid variant cut it in different ways, both in two.
   MeshScene scene{uniform_chunk(kSmall, kEmpty), {}};
-  for (const LocalPos at :
-       {LocalPos{1, 1, 1}, LocalPos{1, 1, 2}, LocalPos{1, 1, 3}, LocalPos{2, 1, 1}, LocalPos{2, 1, 2}}) {
+  for (const LocalPos at : {LocalPos{1, 1, 1}, LocalPos{1, 1, 2}, LocalPos{1, 1, 3},
+                            LocalPos{2, 1, 1}, LocalPos{2, 1, 2}}) {
     put(scene, at, kStone);
   }
   std::vector<Quad> quads;
@@ -122,7 +123,8 @@ TEST_CASE("the grid variant joins rows only if they are alike", "[mesh][referenc
     if (unpack(quad).direction == Direction::pos_y) up.push_back(unpack(quad));
   }
   REQUIRE(up.size() == 2);
-  CHECK(up[0] == QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});  // along z first: u of a y face
+  CHECK(up[0] ==
+        QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});  // along z first: u of a y face
   CHECK(up[1] == QuadFields{2, 1, 1, 2, 1, Direction::pos_y, kStone});
 }
 
@@ -165,7 +167,8 @@ TEST_CASE("a mask made from runs is the mask of the decoded grid", "[mesh][refer
     if (rng.below(2) == 0) {  // what lies beyond the lines' ends is then known without a look
       const auto fast = 2 * static_cast<std::size_t>(axes_of(scene.chunk.order)[0]);
       for (const std::size_t d : {fast, fast + 1}) {
-        if (scene.neighbours[d]) scene.neighbours[d] = uniform_chunk(scene.neighbours[d]->extent, kGlass);
+        if (scene.neighbours[d])
+          scene.neighbours[d] = uniform_chunk(scene.neighbours[d]->extent, kGlass);
       }
     }
     const DenseGrid grid = grid_of(scene);
@@ -179,7 +182,8 @@ TEST_CASE("a mask made from runs is the mask of the decoded grid", "[mesh][refer
   CHECK(run_dense > 0);
 }
 
-TEST_CASE("decoding counts as a dense expansion, and so does sampling an octree", "[mesh][reference]") {
+TEST_CASE("decoding counts as a dense expansion, and so does sampling an octree",
+          "[mesh][reference]") {
   const MeshScene scene{uniform_chunk(kSmall, kStone), {}};
   std::uint64_t before = dense_expansions();
   DenseGrid grid = grid_of(scene);
@@ -201,7 +205,8 @@ TEST_CASE("the culled mesher times its phases by the clock it is given", "[mesh]
   octree.compact();
   DenseGrid grid;
   std::vector<Quad> quads;
-  const CulledPhases phases = mesh_culled(octree, {8, 8, 8}, kSmall, mesh_visibility(), clock, grid, quads);
+  const CulledPhases phases =
+      mesh_culled(octree, {8, 8, 8}, kSmall, mesh_visibility(), clock, grid, quads);
   CHECK(phases.octree == 900 - 300);
   CHECK(phases.meshing == 2700 - 900);
   CHECK(quads.size() == 6 * 64);
@@ -220,7 +225,8 @@ TEST_CASE("a transposed bit matrix has rows for columns", "[mesh][reference]") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("rows of materials compare bit by bit and up to their first difference", "[mesh][reference]") {
+TEST_CASE("rows of materials compare bit by bit and up to their first difference",
+          "[mesh][reference]") {
   SplitMix64 rng(7);
   std::array<Material, 64 + 1 + kCompareSlack> a{}, b{};
   for (int round = 0; round < 300; ++round) {

@@ -64,7 +64,8 @@ TEST_CASE("run strips as in the original begin at an exposed face and end with t
   CHECK(up[1] == QuadFields{1, 3, 5, 1, 6, Direction::pos_y, kStone});
 }
 
-TEST_CASE("run strips are never wider than a voxel, and never join across materials", "[mesh][reference]") {
+TEST_CASE("run strips are never wider than a voxel, and never join across materials",
+          "[mesh][reference]") {
   SplitMix64 rng(12);
   RunStripScratch scratch;
   std::vector<Quad> quads;
@@ -76,7 +77,8 @@ TEST_CASE("run strips are never wider than a voxel, and never join across materi
       const std::vector<UnitFace> exposed = expected_faces(scene);
       const std::vector<UnitFace> owed =
           hidden == HiddenFaces::run_on ? run_on_faces(dense, exposed) : exposed;
-      REQUIRE(quads_difference(quads, scene.chunk.extent, mesh_materials(), owed).value_or("") == "");
+      REQUIRE(quads_difference(quads, scene.chunk.extent, mesh_materials(), owed).value_or("") ==
+              "");
       int wide = 0;
       for (const Quad quad : quads) {
         const QuadFields q = unpack(quad);

@@ -25,11 +25,13 @@ std::vector<Point> ring_of(const Outlines& outlines, const Outlines::Ring& ring)
 }
 
 /// Directed sides, the region on the left.
-std::set<std::pair<Point, Point>> sides_of(const Outlines& outlines, const Outlines::Region& region) {
+std::set<std::pair<Point, Point>> sides_of(const Outlines& outlines,
+                                           const Outlines::Region& region) {
   std::set<std::pair<Point, Point>> out;
   for (std::uint32_t r = 0; r < region.ring_count; ++r) {
     const auto ring = ring_of(outlines, outlines.rings[region.first_ring + r]);
-    for (std::size_t i = 0; i < ring.size(); ++i) out.insert({ring[i], ring[(i + 1) % ring.size()]});
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      out.insert({ring[i], ring[(i + 1) % ring.size()]});
   }
   return out;
 }
@@ -53,7 +55,8 @@ struct Judged {
 
 /// Triangles of a region: as many as corners and holes ask for, all points used, sides where sides are.
 template <class Triangulation>
-Judged judge(const Outlines& outlines, const Outlines::Region& region, const Triangulation& triangulation) {
+Judged judge(const Outlines& outlines, const Outlines::Region& region,
+             const Triangulation& triangulation) {
   Judged out;
   const auto sides = sides_of(outlines, region);
   std::vector<Point> points;
@@ -66,7 +69,8 @@ Judged judge(const Outlines& outlines, const Outlines::Region& region, const Tri
   std::map<std::pair<Point, Point>, Point> edges;  // directed, with the third point
   Surface surface;
   for (const auto& [u, v] : points)
-    surface.triangles.vertices.push_back({static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 0});
+    surface.triangles.vertices.push_back(
+        {static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 0});
   for (const auto& t : triangulation.triangles()) {
     surface.triangles.triangles.push_back({t, Direction::pos_z, 1});
     for (std::size_t i = 0; i < 3; ++i) {
@@ -96,7 +100,8 @@ Judged judge(const Outlines& outlines, const Outlines::Region& region, const Tri
   return out;
 }
 
-TEST_CASE("regions of random pictures: exact triangulations, and the Delaunay one is", "[mesh][reference]") {
+TEST_CASE("regions of random pictures: exact triangulations, and the Delaunay one is",
+          "[mesh][reference]") {
   SplitMix64 rng(71);
   OutlineTracer tracer;
   Outlines outlines;
@@ -145,8 +150,8 @@ TEST_CASE("a comb and a spiral, whose corners lie in few rows and columns", "[me
   };
   for (int turns = 0; turns < 2;) {
     spiral[static_cast<std::size_t>(v)][static_cast<std::size_t>(u)] = '#';
-    const bool blocked = u + du < 0 || u + du > 127 || v + dv < 0 || v + dv > 127 || taken(u + du, v + dv) ||
-                         taken(u + 2 * du, v + 2 * dv);
+    const bool blocked = u + du < 0 || u + du > 127 || v + dv < 0 || v + dv > 127 ||
+                         taken(u + du, v + dv) || taken(u + 2 * du, v + 2 * dv);
     if (blocked) {
       std::swap(du, dv);
       du = -du;

@@ -36,10 +36,12 @@ QuadLayers layers_of(std::vector<Quad> quads) {
 /// The right mesh of block_scene().
 ChunkMesh block_mesh() {
   ChunkMesh mesh;
-  mesh.opaque = layers_of(
-      {pack({1, 2, 3, 3, 4, Direction::neg_x, kStone}), pack({2, 2, 3, 3, 4, Direction::pos_x, kStone}),
-       pack({1, 2, 3, 4, 2, Direction::neg_y, kStone}), pack({1, 4, 3, 4, 2, Direction::pos_y, kStone}),
-       pack({1, 2, 3, 2, 3, Direction::neg_z, kStone}), pack({1, 2, 6, 2, 3, Direction::pos_z, kStone})});
+  mesh.opaque = layers_of({pack({1, 2, 3, 3, 4, Direction::neg_x, kStone}),
+                           pack({2, 2, 3, 3, 4, Direction::pos_x, kStone}),
+                           pack({1, 2, 3, 4, 2, Direction::neg_y, kStone}),
+                           pack({1, 4, 3, 4, 2, Direction::pos_y, kStone}),
+                           pack({1, 2, 3, 2, 3, Direction::neg_z, kStone}),
+                           pack({1, 2, 6, 2, 3, Direction::pos_z, kStone})});
   std::vector<Quad> water;
   for (unsigned d = 0; d < kDirectionCount; ++d)
     water.push_back(pack({5, 5, 5, 1, 1, static_cast<Direction>(d), kWater}));
@@ -47,9 +49,12 @@ ChunkMesh block_mesh() {
   return mesh;
 }
 
-std::string verdict(const ChunkMesh& mesh) { return scene_difference(block_scene(), mesh).value_or("right"); }
+std::string verdict(const ChunkMesh& mesh) {
+  return scene_difference(block_scene(), mesh).value_or("right");
+}
 
-TEST_CASE("a mesh written by hand passes the oracle, and so does another cut into quads", "[mesh]") {
+TEST_CASE("a mesh written by hand passes the oracle, and so does another cut into quads",
+          "[mesh]") {
   CHECK(verdict(block_mesh()) == "right");
   ChunkMesh cut = block_mesh();
   auto quads = cut.opaque.quads;
@@ -67,7 +72,8 @@ TEST_CASE("the oracle names what is wrong with a broken mesh", "[mesh]") {
     mesh.opaque = layers_of(quads);
     return verdict(mesh);
   };
-  CHECK_THAT(broken([](auto& q) { q.pop_back(); }), Contains("+z of voxel 1 2 6 in material 1 is missing"));
+  CHECK_THAT(broken([](auto& q) { q.pop_back(); }),
+             Contains("+z of voxel 1 2 6 in material 1 is missing"));
   CHECK_THAT(broken([](auto& q) { q.push_back(q[0]); }), Contains("covered twice"));
   CHECK_THAT(broken([](auto& q) { q[0] = pack({1, 2, 3, 4, 4, Direction::neg_x, kStone}); }),
              Contains("-x of voxel 1 5 3 in material 1 is too many"));
@@ -125,15 +131,19 @@ TEST_CASE("the oracle names what is wrong with a raw list of quads", "[mesh]") {
   CHECK(verdict_of([](auto&) {}) == "right");
   CHECK_THAT(verdict_of([](auto& q) { q.pop_back(); }), Contains("is missing"));
   CHECK_THAT(verdict_of([](auto& q) { q.push_back(q[3]); }), Contains("covered twice"));
-  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 0, 0, 1, 1, Direction::pos_y, kStone})); }),
-             Contains("is too many"));
-  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 1, 2, Direction::pos_x, kStone})); }),
-             !Contains("leaves"));  // v of an x face is z
-  CHECK_THAT(verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 2, 1, Direction::pos_x, kStone})); }),
-             Contains("leaves the extent"));
+  CHECK_THAT(
+      verdict_of([](auto& q) { q.push_back(pack({0, 0, 0, 1, 1, Direction::pos_y, kStone})); }),
+      Contains("is too many"));
+  CHECK_THAT(
+      verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 1, 2, Direction::pos_x, kStone})); }),
+      !Contains("leaves"));  // v of an x face is z
+  CHECK_THAT(
+      verdict_of([](auto& q) { q.push_back(pack({0, 7, 0, 2, 1, Direction::pos_x, kStone})); }),
+      Contains("leaves the extent"));
   CHECK_THAT(verdict_of([](auto& q) { q[0].bits |= 1ULL << 60; }), Contains("reserved bits"));
-  CHECK_THAT(verdict_of([](auto& q) { q[0] = pack({5, 5, 5, 1, 1, static_cast<Direction>(6), kWater}); }),
-             Contains("looks in no direction"));
+  CHECK_THAT(
+      verdict_of([](auto& q) { q[0] = pack({5, 5, 5, 1, 1, static_cast<Direction>(6), kWater}); }),
+      Contains("looks in no direction"));
   CHECK_THAT(verdict_of([](auto& q) { q[0] = pack({5, 5, 5, 1, 1, Direction::neg_x, kBarrier}); }),
              Contains("empty material"));
 }

@@ -31,7 +31,8 @@ TEST_CASE("the links of the lab are the ones it says", "[link]") {
   CHECK(find_link_profile("lan")->queue_bytes() == 65'536);
   CHECK(find_link_profile("lossy")->loss == 0.02);
   CHECK(find_link_profile("carrier pigeon") == nullptr);
-  for (const LinkProfile& profile : link_profiles()) CHECK(profile.jitter_ns <= profile.round_trip_ns / 2);
+  for (const LinkProfile& profile : link_profiles())
+    CHECK(profile.jitter_ns <= profile.round_trip_ns / 2);
 }
 
 TEST_CASE("a link without rate, delay and loss passes everything at once", "[link]") {
@@ -59,7 +60,8 @@ TEST_CASE("packets that come together leave one after another", "[link]") {
   CHECK(link.queued_bytes(10 * kMs) == 0);
 }
 
-TEST_CASE("what finds the queue full is dropped, and room comes back at the link's rate", "[link]") {
+TEST_CASE("what finds the queue full is dropped, and room comes back at the link's rate",
+          "[link]") {
   LinkModel link(plain(10 * kMs, 8'000'000), 1);  // a queue of 65,536 bytes
   int passed = 0;
   while (link.push(1000, 0).fate == LinkFate::arrives) ++passed;
@@ -104,7 +106,8 @@ TEST_CASE("jitter stays in its bounds, is used to both, and never reorders", "[l
   }
 }
 
-TEST_CASE("loss is the share it says, takes the transmitter's time, and follows the seed", "[link]") {
+TEST_CASE("loss is the share it says, takes the transmitter's time, and follows the seed",
+          "[link]") {
   const LinkProfile profile{"loss", 0, 0, 8'000'000, 0.02};
   const auto fates = [&](std::uint64_t seed) {
     LinkModel link(profile, seed);

@@ -44,7 +44,8 @@ TriangleMesh box_mesh() {
 }
 
 std::string verdict(const TriangleMesh& mesh) {
-  return triangles_difference(mesh, Extent::cube(8), mesh_materials(), expected_faces(block_scene()))
+  return triangles_difference(mesh, Extent::cube(8), mesh_materials(),
+                              expected_faces(block_scene()))
       .value_or("right");
 }
 
@@ -96,8 +97,9 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
                m.triangles[1].vertices = {0, 1, 3};
              }),
              Contains(odd));
-  CHECK_THAT(broken([](auto& m) { std::swap(m.triangles[5].vertices[0], m.triangles[5].vertices[1]); }),
-             Contains("triangle 5 winds the wrong way"));
+  CHECK_THAT(
+      broken([](auto& m) { std::swap(m.triangles[5].vertices[0], m.triangles[5].vertices[1]); }),
+      Contains("triangle 5 winds the wrong way"));
   CHECK_THAT(broken([](auto& m) {  // a flipped one would take away what a doubled one has too much
                MeshTriangle twin = m.triangles[0];
                m.triangles.push_back(twin);
@@ -107,11 +109,13 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
              Contains("winds the wrong way"));
   CHECK_THAT(broken([](auto& m) { m.triangles[0].material = m.triangles[1].material = kDirt; }),
              Contains(odd));
-  CHECK_THAT(broken([](auto& m) { m.triangles[0].material = kBarrier; }), Contains("empty material"));
+  CHECK_THAT(broken([](auto& m) { m.triangles[0].material = kBarrier; }),
+             Contains("empty material"));
   CHECK_THAT(broken([](auto& m) { m.triangles[0].material = kDirt; }), Contains("shares a vertex"));
   CHECK_THAT(broken([](auto& m) { m.triangles[0].direction = static_cast<Direction>(6); }),
              Contains("looks in no direction"));
-  CHECK_THAT(broken([](auto& m) { m.triangles[0].vertices[2] = 10000; }), Contains("does not exist"));
+  CHECK_THAT(broken([](auto& m) { m.triangles[0].vertices[2] = 10000; }),
+             Contains("does not exist"));
   CHECK_THAT(broken([](auto& m) { m.vertices[0].y = 9; }), Contains("leaves the extent"));
   CHECK_THAT(broken([](auto& m) { m.vertices.push_back({}); }), Contains("is not used"));
   CHECK_THAT(broken([](auto& m) {
@@ -131,7 +135,8 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
 TEST_CASE("a surface is judged by what is in it", "[mesh]") {
   reference::Surface surface;
   const auto judge = [&surface] {
-    return surface_difference(surface, Extent::cube(8), mesh_materials(), expected_faces(block_scene()))
+    return surface_difference(surface, Extent::cube(8), mesh_materials(),
+                              expected_faces(block_scene()))
         .value_or("right");
   };
   CHECK_THAT(judge(), Contains("is missing"));
@@ -227,7 +232,8 @@ bool covers_points(const Patch& patch) {
   std::size_t points = 0;
   for (const auto& [at, times] : cover) {
     const UnitFace face{at.first / 100, at.first % 100, 2, Direction::pos_z, kStone};
-    if (times != 1 || !std::binary_search(patch.faces.begin(), patch.faces.end(), face)) return false;
+    if (times != 1 || !std::binary_search(patch.faces.begin(), patch.faces.end(), face))
+      return false;
     ++points;
   }
   return points == patch.faces.size() * 13 * 13;
@@ -249,7 +255,8 @@ TEST_CASE("the triangle oracle agrees with counting triangles over points", "[me
       }
       compact.triangles.push_back(triangle);
     }
-    const auto fault = triangles_difference(compact, Extent::cube(8), mesh_materials(), patch.faces);
+    const auto fault =
+        triangles_difference(compact, Extent::cube(8), mesh_materials(), patch.faces);
     CAPTURE(round, fault.value_or("right"));
     REQUIRE(!fault == covers_points(patch));
     (fault ? wrong : right) += 1;

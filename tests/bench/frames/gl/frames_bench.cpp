@@ -14,13 +14,13 @@
 #include "client/render/renderer.hpp"
 #include "common/core/hash.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
-#include "tests/reference/t_junctions.hpp"
-#include "tests/reference/thin_triangles.hpp"
-#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/frames/frames_world.hpp"
 #include "tests/bench/frames/gl/orbit.hpp"
 #include "tests/bench/frames/gl/plain_renderer.hpp"
 #include "tests/bench/harness/statistics.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/reference/t_junctions.hpp"
+#include "tests/reference/thin_triangles.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -50,18 +50,19 @@ std::string gl_text(GLenum what) {
 using Refusal = std::string;
 
 /// The chunks of a world as a mesher has them, on the GPU, and what can be said of them before they are drawn.
-Refusal mesh_world(const FramesWorld& world, std::size_t vertices_max, PlainScene& scene, FramesRow& row) {
+Refusal mesh_world(const FramesWorld& world, std::size_t vertices_max, PlainScene& scene,
+                   FramesRow& row) {
   reference::ThinTriangles thin;
   std::size_t junctions = 0;
   reference::Surface surface;
   IndexedMesh mesh;
   const auto side = static_cast<std::int32_t>(world.edge);
   for (const FramesChunk& chunk : world.chunks) {
-    const auto contestant = make_contestant(row.mesher, chunk.volume, *world.visibility);
-    if (!contestant) return "it cannot take the chunks";
+    const auto mesher_case = make_mesher_case(row.mesher, chunk.volume, *world.visibility);
+    if (!mesher_case) return "it cannot take the chunks";
     PhaseTimes phases{};
-    contestant->mesh(phases);
-    contestant->surface(surface);
+    mesher_case->mesh(phases);
+    mesher_case->surface(surface);
     if (scene.vertices() + surface.vertex_count() > vertices_max) {
       return fmt::format("more than {} vertices", vertices_max);
     }
@@ -91,7 +92,8 @@ void mesh_product(const FramesWorld& world, Renderer& renderer, FramesRow& row) 
   ChunkMesh mesh;
   std::size_t quads = 0;
   for (const FramesChunk& chunk : world.chunks) {
-    mesh_rdm(chunk.volume.scene.chunk, chunk.volume.scene.pointers(), {}, *world.visibility, scratch, mesh);
+    mesh_rdm(chunk.volume.scene.chunk, chunk.volume.scene.pointers(), {}, *world.visibility,
+             scratch, mesh);
     renderer.upload({0, chunk.at}, static_cast<std::int32_t>(world.edge), mesh);
     quads += mesh.quad_count();
   }
@@ -159,7 +161,8 @@ class FramesBench {
   std::vector<Painter> painters_of(const FramesWorld& world) {
     std::vector<std::string> meshers =
         options_.meshers.empty() ? frames_meshers_by_default() : options_.meshers;
-    const bool wants_reference = std::find(meshers.begin(), meshers.end(), kReference) != meshers.end();
+    const bool wants_reference =
+        std::find(meshers.begin(), meshers.end(), kReference) != meshers.end();
     if (!wants_reference) meshers.emplace_back(kReference);
     std::vector<Painter> out;
     FramesRow row;
@@ -230,16 +233,18 @@ class FramesBench {
       }
       for (const std::size_t i : order) {
         Painter& painter = painters[i];
-        if (frame % painter.stride == 0) painter.frame_ms.push_back(draw_ms(painter, camera(frame)));
+        if (frame % painter.stride == 0)
+          painter.frame_ms.push_back(draw_ms(painter, camera(frame)));
       }
     }
   }
 
   /// What the pictures show, and what their fragments cost.
   void look(std::vector<Painter>& painters) {
-    const auto reference = std::find_if(painters.begin(), painters.end(), [](const Painter& painter) {
-      return painter.scene != nullptr && painter.row.mesher == kReference;
-    });
+    const auto reference =
+        std::find_if(painters.begin(), painters.end(), [](const Painter& painter) {
+          return painter.scene != nullptr && painter.row.mesher == kReference;
+        });
     for (unsigned picture = 0; picture < options_.pictures; ++picture) {
       const Camera at = camera(picture * options_.frames / options_.pictures);
       plain_.draw(*reference->scene, at);
@@ -265,7 +270,8 @@ class FramesBench {
     add(row.pinhole_pixels, static_cast<double>(difference.pinhole_pixels));
     if (covered == 0) return;  // nothing to divide by
     add(row.overdraw, drawn / covered);
-    add(row.depth_complexity, static_cast<double>(plain_.fragments_covered(*painter.scene, at)) / covered);
+    add(row.depth_complexity,
+        static_cast<double>(plain_.fragments_covered(*painter.scene, at)) / covered);
     if (const auto lanes = plain_.lanes_shaded(*painter.scene, at)) add(row.lanes, *lanes / drawn);
   }
 
@@ -280,13 +286,15 @@ class FramesBench {
 
 }  // namespace
 
-Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options, std::ostream& progress) {
+Result<FramesResult, std::string> run_frames_bench(const FramesOptions& options,
+                                                   std::ostream& progress) {
   std::vector<std::string> names;
   for (const std::string& name : frames_world_names()) {
     const auto asked = [&](const std::string& world) {
       return world == name || (world == "scenarios" && name != "luanti");
     };
-    if (options.worlds.empty() || std::any_of(options.worlds.begin(), options.worlds.end(), asked)) {
+    if (options.worlds.empty() ||
+        std::any_of(options.worlds.begin(), options.worlds.end(), asked)) {
       names.push_back(name);
     }
   }

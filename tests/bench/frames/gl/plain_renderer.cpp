@@ -28,7 +28,8 @@ std::uint64_t samples_of(Draw&& draw) {
 
 }  // namespace
 
-PlainRenderer::PlainRenderer(GlContextLoader loader, int width, int height) : width_(width), height_(height) {
+PlainRenderer::PlainRenderer(GlContextLoader loader, int width, int height)
+    : width_(width), height_(height) {
   if (gladLoadGL(loader) == 0) throw std::runtime_error("the OpenGL loader found no functions");
   colour_.indexed = link_program("plain", kPlainVertexShader, kPlainFragmentShader);
   colour_.packed = link_program("plain packed", kPackedVertexShader, kPlainFragmentShader);
@@ -47,8 +48,10 @@ PlainRenderer::PlainRenderer(GlContextLoader loader, int width, int height) : wi
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
   lanes_framebuffer_ = GlFramebuffer::make();
   glBindFramebuffer(GL_FRAMEBUFFER, lanes_framebuffer_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, lanes_colour_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, lanes_depth_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                            lanes_colour_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                            lanes_depth_.get());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error("the driver refuses an off-screen target of floats");
   }
@@ -65,7 +68,8 @@ void PlainRenderer::bind(bool depth_test) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void PlainRenderer::draw_with(const Programs& programs, const PlainScene& scene, const Camera& camera) {
+void PlainRenderer::draw_with(const Programs& programs, const PlainScene& scene,
+                              const Camera& camera) {
   struct Visible {
     const PlainScene::Chunk* chunk;
     float distance2;

@@ -11,7 +11,8 @@ GlBuffer filled(GLenum target, const void* from, std::size_t bytes) {
   GlBuffer buffer = GlBuffer::make();
   glBindBuffer(target, buffer.get());
   glBufferData(target, static_cast<GLsizeiptr>(bytes), from, GL_STATIC_DRAW);
-  if (glGetError() == GL_OUT_OF_MEMORY) throw std::runtime_error("the GPU has no memory left for a mesh");
+  if (glGetError() == GL_OUT_OF_MEMORY)
+    throw std::runtime_error("the GPU has no memory left for a mesh");
   return buffer;
 }
 
@@ -33,11 +34,12 @@ void PlainScene::add(const glm::vec3& origin, unsigned edge, const IndexedMesh& 
   Chunk& chunk = new_chunk(origin, edge);
   chunk.vertices =
       filled(GL_ARRAY_BUFFER, mesh.vertices.data(), mesh.vertices.size() * sizeof(IndexedVertex));
-  chunk.indices =
-      filled(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t));
+  chunk.indices = filled(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.data(),
+                         mesh.indices.size() * sizeof(std::uint32_t));
   chunk.count = static_cast<GLsizei>(mesh.indices.size());
   glEnableVertexAttribArray(0);
-  glVertexAttribIPointer(0, 4, GL_UNSIGNED_BYTE, sizeof(IndexedVertex), offset(offsetof(IndexedVertex, x)));
+  glVertexAttribIPointer(0, 4, GL_UNSIGNED_BYTE, sizeof(IndexedVertex),
+                         offset(offsetof(IndexedVertex, x)));
   glEnableVertexAttribArray(1);
   glVertexAttribIPointer(1, 1, GL_UNSIGNED_SHORT, sizeof(IndexedVertex),
                          offset(offsetof(IndexedVertex, material)));

@@ -20,7 +20,8 @@ constexpr double kGroupGap = 5;
 constexpr double kWidest = 34;
 
 double value_of(const Series& series, std::size_t category) {
-  return category < series.values.size() ? series.values[category] : std::numeric_limits<double>::quiet_NaN();
+  return category < series.values.size() ? series.values[category]
+                                         : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// How categories share the width right of `left`.
@@ -101,7 +102,8 @@ std::string svg_of(const BarChart& chart, Width width) {
     entries.push_back({chart.series[i].name, roles[i], colours[i]});
 
   Columns columns(chart, tick_room(scale), width);
-  const double overhang = CategoryLabels(chart.categories, columns.pitch).overhang(0) - columns.pitch / 2 + 2;
+  const double overhang =
+      CategoryLabels(chart.categories, columns.pitch).overhang(0) - columns.pitch / 2 + 2;
   constexpr double kOverhangMax = 80;
   if (overhang > columns.left) columns = Columns(chart, std::min(overhang, kOverhangMax), width);
   const auto& [left, panels, pitch] = columns;
@@ -112,12 +114,14 @@ std::string svg_of(const BarChart& chart, Width width) {
   double y = draw_legend(svg, entries, 2, width_of(width) - 4, 0);
   std::size_t first = 0;
   for (const std::size_t count : panels) {
-    const Box area{left, y + (first == 0 ? kAbove : 10), pitch * static_cast<double>(count), height};
+    const Box area{left, y + (first == 0 ? kAbove : 10), pitch * static_cast<double>(count),
+                   height};
     scale.lay(area.y + height, area.y);
     draw_vertical_axis(svg, scale, first == 0 ? caption_of(chart.y) : "", area);
     Panel{chart, scale, colours, area, pitch}.draw(svg, first, count);
     for (std::size_t i = 0; i < count; ++i) {
-      labels.draw_below(svg, first + i, left + (static_cast<double>(i) + 0.5) * pitch, area.y + height);
+      labels.draw_below(svg, first + i, left + (static_cast<double>(i) + 0.5) * pitch,
+                        area.y + height);
     }
     first += count;
     y = area.y + height + labels.height();

@@ -11,7 +11,8 @@ namespace runstone::bench::chart {
 struct Series {
   std::string name = {};
   Role role = Role::other;
-  std::vector<double> values = {};  // one a category (or a name, in a StackChart); NaN, or none: not measured
+  std::vector<double> values =
+      {};  // one a category (or a name, in a StackChart); NaN, or none: not measured
 };
 
 struct BarChart {

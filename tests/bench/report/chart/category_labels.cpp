@@ -19,11 +19,13 @@ std::vector<std::size_t> panels_of(std::size_t columns, std::size_t per_panel_ma
   const std::size_t panels = (columns + limit - 1) / limit;
   std::vector<std::size_t> out;
   out.reserve(panels);
-  for (std::size_t i = 0; i < panels; ++i) out.push_back(columns / panels + (i < columns % panels ? 1 : 0));
+  for (std::size_t i = 0; i < panels; ++i)
+    out.push_back(columns / panels + (i < columns % panels ? 1 : 0));
   return out;
 }
 
-CategoryLabels::CategoryLabels(const std::vector<std::string>& names, double pitch) : names_(names) {
+CategoryLabels::CategoryLabels(const std::vector<std::string>& names, double pitch)
+    : names_(names) {
   double widest = 0;
   for (const std::string& name : names) widest = std::max(widest, width_of(name, kTickSize));
   is_slanted_ = widest > pitch - 6;
@@ -38,13 +40,16 @@ double CategoryLabels::overhang(std::size_t column) const {
 void CategoryLabels::draw_below(Svg& svg, std::size_t column, double x, double y) const {
   if (!is_slanted_) return svg.text(x, y + 16, Anchor::middle, names_[column], "tick");
   const double length = std::min(kLongest, (x + 2) / kCosine);
-  svg.text(x + 4, y + 13, Anchor::end, shortened(names_[column], kTickSize, length), "tick", -kDegrees);
+  svg.text(x + 4, y + 13, Anchor::end, shortened(names_[column], kTickSize, length), "tick",
+           -kDegrees);
 }
 
-void CategoryLabels::draw_above(Svg& svg, std::size_t column, double x, double y, double right) const {
+void CategoryLabels::draw_above(Svg& svg, std::size_t column, double x, double y,
+                                double right) const {
   if (!is_slanted_) return svg.text(x, y - 7, Anchor::middle, names_[column], "tick");
   const double length = std::min(kLongest, (right - x - 9) / kCosine);
-  svg.text(x + 3, y - 6, Anchor::start, shortened(names_[column], kTickSize, length), "tick", -kDegrees);
+  svg.text(x + 3, y - 6, Anchor::start, shortened(names_[column], kTickSize, length), "tick",
+           -kDegrees);
 }
 
 }  // namespace runstone::bench::chart

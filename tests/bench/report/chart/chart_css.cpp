@@ -70,14 +70,16 @@ constexpr std::string_view kRules = R"(
 
 std::string chart_css() {
   std::string out = fmt::format(
-      ":root{{{}}}\n@media screen and (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{}}}}}\n"
+      ":root{{{}}}\n@media screen and "
+      "(prefers-color-scheme:dark){{:root:not([data-theme=light]){{{}}}}}\n"
       "@media screen{{:root[data-theme=dark]{{{}}}}}{}",
       kLight, kDark, kDark, kRules);
   for (int i = 0; i < 8; ++i) out += fmt::format(".chart .c-other{0}{{--c:var(--other{0})}}\n", i);
   for (int i = 0; i < 9; ++i) {
     const bool is_end = i < 2 || i > 6;
-    out += fmt::format(".chart .heat{0}{{--c:var(--heat{0})}}\n.chart .on-heat{0}{{fill:var(--heat-{1})}}\n",
-                       i, is_end ? "ends" : "middle");
+    out += fmt::format(
+        ".chart .heat{0}{{--c:var(--heat{0})}}\n.chart .on-heat{0}{{fill:var(--heat-{1})}}\n", i,
+        is_end ? "ends" : "middle");
   }
   return out;
 }

@@ -35,8 +35,8 @@ Character first_of(std::string_view text) {
 }
 
 bool is_forbidden(std::uint32_t code) {
-  return (code < 0x20 && code != '\t' && code != '\n' && code != '\r') || code == 0xFFFE || code == 0xFFFF ||
-         code == kReplacement;
+  return (code < 0x20 && code != '\t' && code != '\n' && code != '\r') || code == 0xFFFE ||
+         code == 0xFFFF || code == kReplacement;
 }
 
 /// In parts of the size of the font.

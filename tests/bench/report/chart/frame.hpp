@@ -9,7 +9,8 @@ namespace runstone::bench::chart {
 /// <div class="chart-frame"> with the wide and the narrow picture of a chart of any kind. This is what a page shows.
 template <typename Chart>
 std::string frame_of(const Chart& chart) {
-  return "<div class=\"chart-frame\">" + svg_of(chart, Width::wide) + svg_of(chart, Width::narrow) + "</div>";
+  return "<div class=\"chart-frame\">" + svg_of(chart, Width::wide) + svg_of(chart, Width::narrow) +
+         "</div>";
 }
 
 }  // namespace runstone::bench::chart

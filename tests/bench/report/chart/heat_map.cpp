@@ -66,10 +66,11 @@ double draw_key(Svg& svg, const Levels& levels, const std::string& caption, Widt
   return y + 24;
 }
 
-void draw_cell(Svg& svg, const HeatMap& chart, const Levels& levels, std::size_t row, std::size_t column,
-               const Box& box) {
+void draw_cell(Svg& svg, const HeatMap& chart, const Levels& levels, std::size_t row,
+               std::size_t column, const Box& box) {
   const std::size_t at = row * chart.columns.size() + column;
-  const double value = at < chart.values.size() ? chart.values[at] : std::numeric_limits<double>::quiet_NaN();
+  const double value =
+      at < chart.values.size() ? chart.values[at] : std::numeric_limits<double>::quiet_NaN();
   svg.begin_mark(chart.rows[row] + ", " + chart.columns[column] + ": " + format_value(value));
   if (Scale::can_show(value, chart.value.is_log)) {
     const std::string level = std::to_string(levels.of(value));
@@ -89,7 +90,8 @@ void draw_cell(Svg& svg, const HeatMap& chart, const Levels& levels, std::size_t
 }  // namespace
 
 std::string svg_of(const HeatMap& chart, Width width) {
-  const std::string label = chart.title.empty() ? "Table in colours: " + chart.value.title : chart.title;
+  const std::string label =
+      chart.title.empty() ? "Table in colours: " + chart.value.title : chart.title;
   const std::optional<Levels> levels = levels_of(chart);
   if (!levels || chart.rows.empty() || chart.columns.empty())
     return note_svg(width, "Nothing was measured.", label);
@@ -112,11 +114,12 @@ std::string svg_of(const HeatMap& chart, Width width) {
   for (const std::size_t count : panels) {
     y += labels.height();
     for (std::size_t i = 0; i < count; ++i) {
-      labels.draw_above(svg, first + i, left + (static_cast<double>(i) + 0.5) * cell, y, width_of(width));
+      labels.draw_above(svg, first + i, left + (static_cast<double>(i) + 0.5) * cell, y,
+                        width_of(width));
     }
     for (std::size_t row = 0; row < chart.rows.size(); ++row, y += kCellHeight) {
-      svg.text(names + 4, y + kCellHeight / 2 + 4, Anchor::end, shortened(chart.rows[row], kTextSize, names),
-               "plain");
+      svg.text(names + 4, y + kCellHeight / 2 + 4, Anchor::end,
+               shortened(chart.rows[row], kTextSize, names), "plain");
       for (std::size_t i = 0; i < count; ++i) {
         const Box box{left + static_cast<double>(i) * cell, y, cell - 1, kCellHeight - 1};
         draw_cell(svg, chart, *levels, row, first + i, box);

@@ -6,7 +6,8 @@
 
 namespace runstone::bench::chart {
 
-std::vector<double> spread(const std::vector<double>& positions, double pitch, double low, double high) {
+std::vector<double> spread(const std::vector<double>& positions, double pitch, double low,
+                           double high) {
   const std::size_t count = positions.size();
   if (count == 0 || static_cast<double>(count - 1) * pitch > high - low) return {};
   std::vector<std::size_t> order(count);
@@ -35,7 +36,8 @@ std::vector<double> spread(const std::vector<double>& positions, double pitch, d
   std::size_t i = 0;
   for (const Pool& pool : pools) {
     const double at = std::clamp(pool.mean(), low, highest);
-    for (std::size_t k = 0; k < pool.count; ++k, ++i) out[order[i]] = at + static_cast<double>(i) * pitch;
+    for (std::size_t k = 0; k < pool.count; ++k, ++i)
+      out[order[i]] = at + static_cast<double>(i) * pitch;
   }
   return out;
 }
@@ -59,7 +61,8 @@ std::vector<Box> LabelPlacer::way_of(const Box& label, double x, double y, doubl
 }
 
 bool LabelPlacer::is_free(const Box& box, double x, double y, double margin) const {
-  const bool is_inside = box.x >= room_.x && box.y >= room_.y && box.x + box.width <= room_.x + room_.width &&
+  const bool is_inside = box.x >= room_.x && box.y >= room_.y &&
+                         box.x + box.width <= room_.x + room_.width &&
                          box.y + box.height <= room_.y + room_.height;
   if (!is_inside) return false;
   const auto is_hit = [&](const Box& other) { return overlap(box, other); };
@@ -71,7 +74,8 @@ bool LabelPlacer::is_free(const Box& box, double x, double y, double margin) con
   });
 }
 
-std::optional<Box> LabelPlacer::place(double x, double y, double radius, double width, double height) {
+std::optional<Box> LabelPlacer::place(double x, double y, double radius, double width,
+                                      double height) {
   // Closer to another point than to its own, a name would be read as the other's: only where nothing else is left.
   for (const double margin : {7.0, 1.0}) {
     for (const double away : {3.0, 9.0, 18.0, 30.0, 44.0, 60.0}) {
@@ -88,7 +92,8 @@ std::optional<Box> LabelPlacer::place(double x, double y, double radius, double 
       for (const Box& box : candidates) {
         if (!is_free(box, x, y, margin)) continue;
         const std::vector<Box> way = way_of(box, x, y, radius);
-        if (!std::all_of(way.begin(), way.end(), [&](const Box& part) { return is_free(part, x, y, 0); }))
+        if (!std::all_of(way.begin(), way.end(),
+                         [&](const Box& part) { return is_free(part, x, y, 0); }))
           continue;
         block(box);
         taken_.insert(taken_.end(), way.begin(), way.end());

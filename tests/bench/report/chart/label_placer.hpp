@@ -9,7 +9,8 @@ namespace runstone::bench::chart {
 
 /// Moves positions apart until each is `pitch` from the next one, within [low, high], in their order and moved as
 /// little as can be (least squares). Empty if they do not fit at all. Requires finite positions.
-std::vector<double> spread(const std::vector<double>& positions, double pitch, double low, double high);
+std::vector<double> spread(const std::vector<double>& positions, double pitch, double low,
+                           double high);
 
 /// Where the lead from a point to a label ends: at the label's nearest side.
 struct LeadEnd {

@@ -23,7 +23,8 @@ std::vector<std::string> colours_of(const std::vector<Role>& roles) {
   return out;
 }
 
-double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right, double top) {
+double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right,
+                   double top) {
   if (entries.empty()) return top;
   double x = left;
   double y = top;

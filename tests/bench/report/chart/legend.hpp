@@ -19,6 +19,7 @@ struct LegendEntry {
 std::vector<std::string> colours_of(const std::vector<Role>& roles);
 
 /// Draws from `top` down; returns where the next thing may begin.
-double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right, double top);
+double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right,
+                   double top);
 
 }  // namespace runstone::bench::chart

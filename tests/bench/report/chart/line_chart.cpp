@@ -21,7 +21,9 @@ constexpr double kLabelGap = 16;  // from the plot to its labels
 struct Scales {
   Scale x, y;
 
-  [[nodiscard]] bool can_show(const Point& point) const { return x.can_show(point.x) && y.can_show(point.y); }
+  [[nodiscard]] bool can_show(const Point& point) const {
+    return x.can_show(point.x) && y.can_show(point.y);
+  }
 };
 
 /// Only points that have both coordinates widen the scales.
@@ -30,7 +32,8 @@ Scales scales_of(const LineChart& chart, bool is_narrow) {
   std::vector<double> ys;
   for (const LineSeries& line : chart.lines) {
     for (const Point& point : line.points) {
-      if (!Scale::can_show(point.x, chart.x.is_log) || !Scale::can_show(point.y, chart.y.is_log)) continue;
+      if (!Scale::can_show(point.x, chart.x.is_log) || !Scale::can_show(point.y, chart.y.is_log))
+        continue;
       xs.push_back(point.x);
       ys.push_back(point.y);
     }
@@ -48,7 +51,8 @@ void draw_line(Svg& svg, const LineSeries& line, const Scales& scales, const std
       is_broken = true;
       continue;
     }
-    path += (is_broken ? "M" : "L") + number(scales.x.place(point.x)) + " " + number(scales.y.place(point.y));
+    path += (is_broken ? "M" : "L") + number(scales.x.place(point.x)) + " " +
+            number(scales.y.place(point.y));
     is_broken = false;
   }
   const char* const kind = line.role == Role::ours     ? "line strong-line "
@@ -87,8 +91,8 @@ void draw_end_labels(Svg& svg, const LineChart& chart, const Scales& scales,
     const double from = scales.x.place(end_of(line, scales)->x) + 5;
     const double to = area.x + area.width + kLabelGap;
     const std::string bend = number(std::max(from, to - kLabelGap + 3));
-    svg.path("M" + number(from) + " " + number(wanted[i]) + "L" + bend + " " + number(wanted[i]) + "L" +
-                 number(to - 3) + " " + number(placed[i]),
+    svg.path("M" + number(from) + " " + number(wanted[i]) + "L" + bend + " " + number(wanted[i]) +
+                 "L" + number(to - 3) + " " + number(placed[i]),
              "lead " + colours[ended[i]]);
     svg.text(to, placed[i] + 4, Anchor::start, shortened(line.name, kTextSize, right - to),
              line.role == Role::ours ? "strong" : "plain");
@@ -107,7 +111,8 @@ std::string svg_of(const LineChart& chart, Width width) {
   double widest = 0;
   for (const LineSeries& line : chart.lines) {
     roles.push_back(line.role);
-    widest = std::max(widest, width_of(line.name, kTextSize) * (line.role == Role::ours ? kStrong : 1.0));
+    widest = std::max(widest,
+                      width_of(line.name, kTextSize) * (line.role == Role::ours ? kStrong : 1.0));
   }
   const std::vector<std::string> colours = colours_of(roles);
   const double right = width_of(width) - 4;

@@ -15,8 +15,8 @@ std::string hatching(const Box& box) {
   for (int i = 0; i < kLinesMax && c < box.width + box.height; ++i, c += kStep) {
     const double left = std::max(0.0, c - box.height);
     const double right = std::min(box.width, c);
-    out += "M" + number(box.x + left) + " " + number(box.y + (c - left)) + "L" + number(box.x + right) + " " +
-           number(box.y + (c - right));
+    out += "M" + number(box.x + left) + " " + number(box.y + (c - left)) + "L" +
+           number(box.x + right) + " " + number(box.y + (c - right));
   }
   return out;
 }
@@ -30,7 +30,8 @@ std::string classes(std::string_view shape, std::string_view colour) {
 void draw_bar(Svg& svg, const Box& box, Role role, std::string_view colour) {
   if (role != Role::thesis) return svg.rect(box, classes("fill", colour));
   // The outline is half inside.
-  const Box inner{box.x + 0.5, box.y + 0.5, std::max(box.width - 1, 0.2), std::max(box.height - 1, 0.2)};
+  const Box inner{box.x + 0.5, box.y + 0.5, std::max(box.width - 1, 0.2),
+                  std::max(box.height - 1, 0.2)};
   svg.rect(inner, classes("hollow", colour));
   const std::string lines = hatching(inner);
   if (!lines.empty()) svg.path(lines, classes("hatch", colour));
@@ -41,7 +42,8 @@ void draw_point(Svg& svg, double x, double y, double radius, Role role, std::str
     case Role::ours:
       return svg.circle(x, y, radius * 1.3, classes("fill halo", colour));
     case Role::baseline:
-      return svg.rect({x - radius, y - radius, 2 * radius, 2 * radius}, classes("fill halo", colour));
+      return svg.rect({x - radius, y - radius, 2 * radius, 2 * radius},
+                      classes("fill halo", colour));
     case Role::thesis:
       return svg.circle(x, y, radius, classes("hollow ring", colour));
     case Role::other:
@@ -51,9 +53,9 @@ void draw_point(Svg& svg, double x, double y, double radius, Role role, std::str
 
 void draw_missing(Svg& svg, double x, double y) {
   constexpr double kArm = 2.5;
-  svg.path("M" + number(x - kArm) + " " + number(y - kArm) + "L" + number(x + kArm) + " " + number(y + kArm) +
-               "M" + number(x - kArm) + " " + number(y + kArm) + "L" + number(x + kArm) + " " +
-               number(y - kArm),
+  svg.path("M" + number(x - kArm) + " " + number(y - kArm) + "L" + number(x + kArm) + " " +
+               number(y + kArm) + "M" + number(x - kArm) + " " + number(y + kArm) + "L" +
+               number(x + kArm) + " " + number(y - kArm),
            "missing");
 }
 

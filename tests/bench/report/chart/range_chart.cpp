@@ -35,8 +35,8 @@ std::string key_of(const RangeNames& names) {
 }
 
 /// Returns the right end of what was drawn.
-double draw_range(Svg& svg, const Scale& scale, const Range& range, const Rows& rows, std::size_t row,
-                  Role role) {
+double draw_range(Svg& svg, const Scale& scale, const Range& range, const Rows& rows,
+                  std::size_t row, Role role) {
   const std::string colour = class_of(role);
   const double y = rows.bar_middle(row);
   double end = scale.base();

@@ -55,8 +55,8 @@ std::string svg_of(const RankChart& chart, Width width) {
     if (scale.can_show(values[i])) {
       const double at = scale.place(values[i]);
       const double low = std::min(at, end);
-      draw_bar(svg, {low, rows.bar_top(i), std::max(std::abs(at - end), 1.0), rows.bar_height()}, role,
-               class_of(role));
+      draw_bar(svg, {low, rows.bar_top(i), std::max(std::abs(at - end), 1.0), rows.bar_height()},
+               role, class_of(role));
       end = std::max(at, end);
     } else {
       draw_missing(svg, end + kGap, y);
@@ -70,7 +70,8 @@ std::string svg_of(const RankChart& chart, Width width) {
     if (is_narrow && !note.empty()) {
       svg.text(rows.end(), rows.bar_top(i) - 5, Anchor::end, note, "note");
     } else if (!note.empty()) {
-      svg.text(end + 2 * kGap + width_of(text, kTextSize) * kStrong, y + 4, Anchor::start, note, "note");
+      svg.text(end + 2 * kGap + width_of(text, kTextSize) * kStrong, y + 4, Anchor::start, note,
+               "note");
     }
     svg.end_mark();
   }

@@ -13,7 +13,8 @@ struct RankChart {
   std::vector<Role> roles = {};     // one a name; none: other
   std::vector<double> values = {};  // one a name; NaN: not measured
   Axis x = {};
-  std::vector<std::string> notes = {};  // one a name, quietly behind the value ("2.1 x ours"); may be empty
+  std::vector<std::string> notes =
+      {};  // one a name, quietly behind the value ("2.1 x ours"); may be empty
   std::string title = {};
 };
 

@@ -15,8 +15,12 @@ constexpr double kNamesShareMax = 0.36;  // of the picture
 
 }  // namespace
 
-Rows::Rows(const std::vector<std::string>& names, const std::vector<Role>& roles, double tail, Width width)
-    : names_(names), roles_(roles), is_narrow_(width == Width::narrow), end_(width_of(width) - kMargin) {
+Rows::Rows(const std::vector<std::string>& names, const std::vector<Role>& roles, double tail,
+           Width width)
+    : names_(names),
+      roles_(roles),
+      is_narrow_(width == Width::narrow),
+      end_(width_of(width) - kMargin) {
   left_ = kMargin;
   if (!is_narrow_) {
     double widest = 0;

@@ -12,7 +12,8 @@ namespace runstone::bench::chart {
 class Rows {
  public:
   /// `roles` may be shorter than `names`. `tail` is the room that values behind the longest bar need.
-  Rows(const std::vector<std::string>& names, const std::vector<Role>& roles, double tail, Width width);
+  Rows(const std::vector<std::string>& names, const std::vector<Role>& roles, double tail,
+       Width width);
 
   /// Where the first row begins: known when the head is drawn.
   void begin_at(double top) { top_ = top; }

@@ -131,8 +131,9 @@ void Scale::lay(double from, double to) {
 }
 
 double Scale::place(double value) const {
-  const double share = is_log_ ? (std::log(value) - std::log(low_)) / (std::log(high_) - std::log(low_))
-                               : (value - low_) / (high_ - low_);
+  const double share = is_log_
+                           ? (std::log(value) - std::log(low_)) / (std::log(high_) - std::log(low_))
+                           : (value - low_) / (high_ - low_);
   return from_ + std::clamp(share, 0.0, 1.0) * (to_ - from_);
 }
 

@@ -18,7 +18,7 @@ class Scale {
   /// What the scale begins with.
   enum class Start {
     lowest,  // the lowest value
-    bars     // 0; on a logarithmic scale so far below the lowest value that its bar can still be seen
+    bars  // 0; on a logarithmic scale so far below the lowest value that its bar can still be seen
   };
 
   enum class Ends {

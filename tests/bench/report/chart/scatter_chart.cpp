@@ -40,9 +40,9 @@ void draw_better(Svg& svg, const Box& area) {
   const double x = area.x + area.width - 14;
   const double y = area.y - 12;
   svg.text(x - 6, y, Anchor::end, "better", "note");
-  svg.path("M" + number(x + 14) + " " + number(y - 12) + "L" + number(x) + " " + number(y + 2) + "M" +
-               number(x) + " " + number(y - 7) + "L" + number(x) + " " + number(y + 2) + "L" + number(x + 9) +
-               " " + number(y + 2),
+  svg.path("M" + number(x + 14) + " " + number(y - 12) + "L" + number(x) + " " + number(y + 2) +
+               "M" + number(x) + " " + number(y - 7) + "L" + number(x) + " " + number(y + 2) + "L" +
+               number(x + 9) + " " + number(y + 2),
            "arrow");
 }
 
@@ -50,7 +50,8 @@ void draw_label(Svg& svg, const ScatterPoint& point, double x, double y, const B
   const LeadEnd lead = lead_to(box, x, y);
   constexpr double kClose = 12;
   if (lead.length > kClose) svg.line(x, y, lead.x, lead.y, "lead");
-  svg.text(box.x, box.y + 11, Anchor::start, point.name, point.role == Role::ours ? "strong" : "plain");
+  svg.text(box.x, box.y + 11, Anchor::start, point.name,
+           point.role == Role::ours ? "strong" : "plain");
 }
 
 struct PlacedPoint {
@@ -73,7 +74,8 @@ double badness_of(const std::vector<PlacedPoint>& points) {
 void place_labels(std::vector<PlacedPoint>& points, LabelPlacer placer) {
   for (PlacedPoint& at : points) {
     if (!at.point->is_labelled) continue;
-    const double wide = width_of(at.point->name, kTextSize) * (at.point->role == Role::ours ? kStrong : 1.0);
+    const double wide =
+        width_of(at.point->name, kTextSize) * (at.point->role == Role::ours ? kStrong : 1.0);
     at.label = placer.place(at.x, at.y, kRadius + 1, wide, kLabelHeight);
   }
 }
@@ -111,7 +113,8 @@ std::string svg_of(const ScatterChart& chart, Width width) {
   std::vector<double> ys;
   for (std::size_t i = 0; i < chart.points.size(); ++i) {
     const ScatterPoint& point = chart.points[i];
-    if (!Scale::can_show(point.x, chart.x.is_log) || !Scale::can_show(point.y, chart.y.is_log)) continue;
+    if (!Scale::can_show(point.x, chart.x.is_log) || !Scale::can_show(point.y, chart.y.is_log))
+      continue;
     shown.push_back(i);
     xs.push_back(point.x);
     ys.push_back(point.y);

@@ -67,10 +67,10 @@ std::string svg_of(const StackChart& chart, Width width) {
       end += value;
       // A thin gap parts neighbours whose colours are alike.
       const double wide = scale.place(end) - from;
-      svg.begin_mark(chart.names[row] + ", " + chart.parts[i].name + ": " + format_value(value) + " of " +
-                     format_value(sums[row]));
-      draw_bar(svg, {from, rows.bar_top(row), wide > 3 ? wide - 1 : wide, rows.bar_height()}, roles[i],
-               colours[i]);
+      svg.begin_mark(chart.names[row] + ", " + chart.parts[i].name + ": " + format_value(value) +
+                     " of " + format_value(sums[row]));
+      draw_bar(svg, {from, rows.bar_top(row), wide > 3 ? wide - 1 : wide, rows.bar_height()},
+               roles[i], colours[i]);
       svg.end_mark();
     }
     const bool is_there = scale.can_show(sums[row]);

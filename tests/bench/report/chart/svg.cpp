@@ -22,20 +22,22 @@ std::string number(double value) {
 }
 
 void Svg::begin_mark(std::string_view tooltip) {
-  fmt::format_to(std::back_inserter(body_), "<g class=\"mark\"><title>{}</title>", escaped(tooltip));
+  fmt::format_to(std::back_inserter(body_), "<g class=\"mark\"><title>{}</title>",
+                 escaped(tooltip));
 }
 
 void Svg::end_mark() { body_ += "</g>"; }
 
 void Svg::rect(const Box& box, std::string_view classes) {
-  fmt::format_to(std::back_inserter(body_), R"(<rect class="{}" x="{}" y="{}" width="{}" height="{}"/>)",
-                 classes, number(box.x), number(box.y), number(std::max(box.width, 0.0)),
+  fmt::format_to(std::back_inserter(body_),
+                 R"(<rect class="{}" x="{}" y="{}" width="{}" height="{}"/>)", classes,
+                 number(box.x), number(box.y), number(std::max(box.width, 0.0)),
                  number(std::max(box.height, 0.0)));
 }
 
 void Svg::line(double x1, double y1, double x2, double y2, std::string_view classes) {
-  fmt::format_to(std::back_inserter(body_), R"(<line class="{}" x1="{}" y1="{}" x2="{}" y2="{}"/>)", classes,
-                 number(x1), number(y1), number(x2), number(y2));
+  fmt::format_to(std::back_inserter(body_), R"(<line class="{}" x1="{}" y1="{}" x2="{}" y2="{}"/>)",
+                 classes, number(x1), number(y1), number(x2), number(y2));
 }
 
 void Svg::path(std::string_view data, std::string_view classes) {
@@ -43,18 +45,20 @@ void Svg::path(std::string_view data, std::string_view classes) {
 }
 
 void Svg::circle(double x, double y, double radius, std::string_view classes) {
-  fmt::format_to(std::back_inserter(body_), R"(<circle class="{}" cx="{}" cy="{}" r="{}"/>)", classes,
-                 number(x), number(y), number(std::max(radius, 0.0)));
+  fmt::format_to(std::back_inserter(body_), R"(<circle class="{}" cx="{}" cy="{}" r="{}"/>)",
+                 classes, number(x), number(y), number(std::max(radius, 0.0)));
 }
 
 void Svg::text(double x, double y, Anchor anchor, std::string_view text, std::string_view classes,
                double degrees) {
-  const char* const side = anchor == Anchor::start ? "" : anchor == Anchor::middle ? " mid" : " end";
-  fmt::format_to(std::back_inserter(body_), R"(<text class="{}{}" x="{}" y="{}")", classes, side, number(x),
-                 number(y));
+  const char* const side = anchor == Anchor::start    ? ""
+                           : anchor == Anchor::middle ? " mid"
+                                                      : " end";
+  fmt::format_to(std::back_inserter(body_), R"(<text class="{}{}" x="{}" y="{}")", classes, side,
+                 number(x), number(y));
   if (degrees != 0) {
-    fmt::format_to(std::back_inserter(body_), " transform=\"rotate({} {} {})\"", number(degrees), number(x),
-                   number(y));
+    fmt::format_to(std::back_inserter(body_), " transform=\"rotate({} {} {})\"", number(degrees),
+                   number(x), number(y));
   }
   fmt::format_to(std::back_inserter(body_), ">{}</text>", escaped(text));
 }

@@ -22,7 +22,8 @@ void check_bytes(const EditDescriptor& edit, const Bytes& golden) {
 
 TEST_CASE("descriptor bytes of a set voxel are pinned", "[edits][golden]") {
   check_bytes({SetVoxel{{1, -2, 3}}, {}, 300}, {0x01, 0x00, 0xac, 0x02, 0x02, 0x03, 0x06});
-  check_bytes({SetVoxel{{0, 0, 0}}, {MaskKind::only_empty, 0}, 0}, {0x01, 0x01, 0x00, 0x00, 0x00, 0x00});
+  check_bytes({SetVoxel{{0, 0, 0}}, {MaskKind::only_empty, 0}, 0},
+              {0x01, 0x01, 0x00, 0x00, 0x00, 0x00});
   check_bytes({SetVoxel{{-kWorldLimit, kWorldLimit - 1, 64}}, {}, 65535},
               {0x01, 0x00, 0xff, 0xff, 0x03,              // material 65,535
                0xff, 0xff, 0xff, 0xff, 0x03,              // zigzag(-2^29) = 2^30 - 1
@@ -45,12 +46,13 @@ TEST_CASE("descriptor bytes of a filled sphere are pinned", "[edits][golden]") {
 }
 
 TEST_CASE("descriptor bytes of a stroke are pinned", "[edits][golden]") {
-  check_bytes({FillStroke{{{0, 64, -64}, {-1, 64, 960}, {0, 63, -64}}, 3}, {MaskKind::only_empty, 0}, 7},
-              {0x04, 0x01, 0x07,          // stroke, only_empty, material 7
-               0x03, 0x01,                // radius 3, points less two
-               0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
-               0x01, 0x00, 0x80, 0x10,    // -1, 0, +1024
-               0x02, 0x01, 0xff, 0x0f});  // +1, -1, -1024
+  check_bytes(
+      {FillStroke{{{0, 64, -64}, {-1, 64, 960}, {0, 63, -64}}, 3}, {MaskKind::only_empty, 0}, 7},
+      {0x04, 0x01, 0x07,          // stroke, only_empty, material 7
+       0x03, 0x01,                // radius 3, points less two
+       0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
+       0x01, 0x00, 0x80, 0x10,    // -1, 0, +1024
+       0x02, 0x01, 0xff, 0x0f});  // +1, -1, -1024
 }
 
 TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
@@ -60,14 +62,14 @@ TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
   cells.append(1, kEmpty);
   cells.append(1, Material{7});
   const Paste paste{{0, 64, -64}, *cells.finish(), Orientation{}.rotated_about_y(1)};
-  check_bytes(
-      {paste, {MaskKind::only_empty, 0}, kEmpty},
-      {0x06, 0x01, 0x00,          // paste, only_empty, no material of its own
-       0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
-       0x2c,                      // z, y, x of the clipboard along x, y, z; backwards along z
-       0x00, 0x02, 0x00, 0x01,    // order x, y, z; sides less one
-       0x01, 0x00, 0x06,          // palette of 2: 0, then 0 + 1 + 6
-       0x05, 0x02, 0x00, 0x01});  // 2 of number 2; 2 of 0 (0 of 0, 1); 1 of 1 (0 of 1, 2); 1 of 2 (1 of 0, 2)
+  check_bytes({paste, {MaskKind::only_empty, 0}, kEmpty},
+              {0x06, 0x01, 0x00,        // paste, only_empty, no material of its own
+               0x00, 0x80, 0x01, 0x7f,  // 0, 64, -64
+               0x2c,                    // z, y, x of the clipboard along x, y, z; backwards along z
+               0x00, 0x02, 0x00, 0x01,  // order x, y, z; sides less one
+               0x01, 0x00, 0x06,        // palette of 2: 0, then 0 + 1 + 6
+               0x05, 0x02, 0x00,
+               0x01});  // 2 of number 2; 2 of 0 (0 of 0, 1); 1 of 1 (0 of 1, 2); 1 of 2 (1 of 0, 2)
   ClipboardBuilder whole(Extent::cube(128), AxisOrder::xyz);
   whole.append(Extent::cube(128).volume(), Material{65535});
   check_bytes({Paste{{-kWorldLimit, 0, 0}, *whole.finish(), *Orientation::of_byte(47)}, {}, kEmpty},

@@ -35,19 +35,22 @@ Digest world_digest(const GeneratorPin& pin) {
 TEST_CASE("terrain version 1 gives the pinned voxels", "[generate][golden]") {
   const GeneratorPin pin{"terrain", 1, 7, ""};
   CHECK(to_hex(digest_at(pin, {0, 32, 0}, Extent::cube(32))) == "060a799fda53cf7f1174e45b35beb740");
-  CHECK(to_hex(digest_at(pin, {-96, 32, 160}, Extent::cube(32))) == "0b8a04bc871c09021f1166ead6f16918");
-  CHECK(to_hex(digest_at(pin, {-16, -64, -16}, Extent{8, 128, 8})) == "1642a0af94b70f511d75cf90705e05a3");
+  CHECK(to_hex(digest_at(pin, {-96, 32, 160}, Extent::cube(32))) ==
+        "0b8a04bc871c09021f1166ead6f16918");
+  CHECK(to_hex(digest_at(pin, {-16, -64, -16}, Extent{8, 128, 8})) ==
+        "1642a0af94b70f511d75cf90705e05a3");
   CHECK(to_hex(digest_at(pin, {536870000, 0, -536870912}, Extent::cube(64))) ==
         "126ca4c43320adcb09d1fcd668994d69");
   CHECK(to_hex(world_digest(pin)) == "00715fac4772631906ef7d2aa95b9848");
-  CHECK(to_hex(world_digest({"terrain", 1, 0xffffffffffffffffULL, "sea_level = 20\npeak = \"\""})) ==
-        "0a9025a38bd1613108ec0e16f830aa68");
+  CHECK(
+      to_hex(world_digest({"terrain", 1, 0xffffffffffffffffULL, "sea_level = 20\npeak = \"\""})) ==
+      "0a9025a38bd1613108ec0e16f830aa68");
 }
 
 TEST_CASE("flat version 1 gives the pinned voxels", "[generate][golden]") {
   CHECK(to_hex(world_digest({"flat", 1, 0, ""})) == "055cd5d186d91e711aee77e053ce4794");
-  CHECK(to_hex(digest_at({"flat", 1, 99, "height = 9\nground = \"slate\""}, {64, 0, 64}, Extent::cube(16))) ==
-        "0cc623eef66cfff30cc9235b6616344d");
+  CHECK(to_hex(digest_at({"flat", 1, 99, "height = 9\nground = \"slate\""}, {64, 0, 64},
+                         Extent::cube(16))) == "0cc623eef66cfff30cc9235b6616344d");
 }
 
 TEST_CASE("empty version 1 gives the pinned voxels", "[generate][golden]") {

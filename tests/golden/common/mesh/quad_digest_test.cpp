@@ -44,7 +44,8 @@ TEST_CASE("scenarios give the pinned quads in the pinned order", "[mesh][scenari
 TEST_CASE("seeded worlds give the pinned quads in the pinned order", "[mesh][golden]") {
   QuadDigest digest;
   for (const bench::VoxelWorld& world : bench::seeded_worlds()) {
-    for (const bench::Volume& volume : bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kEdge)) {
+    for (const bench::Volume& volume :
+         bench::volumes_in(world, {{-32, -32, -32}, {32, 32, 32}}, kEdge)) {
       digest.add(volume.scene, *world.visibility);
     }
   }

@@ -11,7 +11,8 @@ std::vector<EditRecord> golden_records() {
   constexpr ClientInstance kInstance = 0x0123456789abcdefULL;
   constexpr TimeUs kTime = 1'700'000'000'000'000;
   std::vector<EditRecord> records(3);
-  records[0] = {{1, 1}, {1, kInstance, 1}, kTime, Cause::player, {SetVoxel{{1, -2, 3}}, {}, 300}, 0, 0};
+  records[0] = {{1, 1}, {1, kInstance, 1}, kTime, Cause::player, {SetVoxel{{1, -2, 3}}, {}, 300}, 0,
+                0};
   records[1] = {{1, 2},
                 {300, 7, 5},
                 kTime + 100,
@@ -19,7 +20,8 @@ std::vector<EditRecord> golden_records() {
                 {SetVoxel{{2, -2, 3}}, {MaskKind::only_empty, 0}, 300},
                 0,
                 0};
-  records[2] = {{2, 3}, {1, kInstance, 2}, kTime + 101, Cause::undo, {SetVoxel{{1, -2, 3}}, {}, 0}, 1, 0};
+  records[2] = {
+      {2, 3}, {1, kInstance, 2}, kTime + 101, Cause::undo, {SetVoxel{{1, -2, 3}}, {}, 0}, 1, 0};
   return records;
 }
 

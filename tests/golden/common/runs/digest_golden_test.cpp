@@ -30,7 +30,8 @@ Material hills(unsigned x, unsigned y, unsigned z) {
 
 }  // namespace
 
-TEST_CASE("pinned digests hold in every axis order, from runs and from single voxels", "[runs][golden]") {
+TEST_CASE("pinned digests hold in every axis order, from runs and from single voxels",
+          "[runs][golden]") {
   for (const AxisOrder order : kAxisOrders) {
     CAPTURE(static_cast<int>(order));
     const RunChunk one = chunk_of({8, 8, 8}, order, [](unsigned x, unsigned y, unsigned z) {
@@ -39,8 +40,10 @@ TEST_CASE("pinned digests hold in every axis order, from runs and from single vo
     const RunChunk noisy = chunk_of({9, 20, 33}, order, noise);
     const RunChunk hilly = chunk_of(Extent::cube(32), order, hills);
     const RunChunk wide = chunk_of({128, 40, 64}, order, hills);
-    CHECK(to_hex(digest_of(uniform_chunk(Extent::cube(32), kEmpty, order))) == std::string(32, '0'));
-    CHECK(to_hex(digest_of(uniform_chunk(Extent::cube(32), 1, order))) == "1d097e98f4fc282407cd14195a2e2b9a");
+    CHECK(to_hex(digest_of(uniform_chunk(Extent::cube(32), kEmpty, order))) ==
+          std::string(32, '0'));
+    CHECK(to_hex(digest_of(uniform_chunk(Extent::cube(32), 1, order))) ==
+          "1d097e98f4fc282407cd14195a2e2b9a");
     CHECK(to_hex(digest_of(one)) == "010a51814835306010b093d3d6f74a73");
     CHECK(to_hex(digest_of(noisy)) == "00c6d3db03ac40751d08f08a3fe2040d");
     CHECK(to_hex(digest_of(hilly)) == "016e6d07e9655fbd15bde0778fabff27");

@@ -56,12 +56,15 @@ TEST_CASE("packed chunk bytes are pinned", "[protocol][golden]") {
               "01 00 02"       // palette indices
               "e7"             // of material 0: to the end of the 25th line
               "03");           // of material 1: length 3; the last run fills up
-  check_bytes(two_wide_runs(), ChunkEncoding::packed, "02 02 00  40 40 40  02  02 00 01  01 00  00  f0a204");
-  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::packed, "02 02 00  20 20 20  01  01 01  00");
+  check_bytes(two_wide_runs(), ChunkEncoding::packed,
+              "02 02 00  40 40 40  02  02 00 01  01 00  00  f0a204");
+  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::packed,
+              "02 02 00  20 20 20  01  01 01  00");
 }
 
 TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
-  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::coded, "03 01 00  20 20 20  01 01");
+  check_bytes(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::coded,
+              "03 01 00  20 20 20  01 01");
   check_bytes(three_runs(), ChunkEncoding::coded, "03 01 02  08 08 08  03 00 00 aa02  95fe3d9fa0");
   check_bytes(two_wide_runs(), ChunkEncoding::coded, "03 01 00  40 40 40  02 00 01  787d58bd");
 

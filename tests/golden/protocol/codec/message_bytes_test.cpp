@@ -11,7 +11,8 @@
 namespace runstone::test {
 namespace {
 
-Message read(Sender sender, FrameClass frame_class, const char* hex, std::uint16_t chunk_edge = 16) {
+Message read(Sender sender, FrameClass frame_class, const char* hex,
+             std::uint16_t chunk_edge = 16) {
   const auto decoded = decode_message(sender, frame_class, from_hex(hex), chunk_edge);
   if (!decoded) FAIL(decoded.error().what);
   return *decoded;
@@ -50,7 +51,8 @@ Welcome a_welcome() {
   m.chunk_edge = 32;
   m.heights = {-64, 192};
   m.spawn = {0.5, 70, -0.25};
-  REQUIRE(m.materials.add({"stone", {128, 128, 128, 255}, Visibility::opaque, std::nullopt}).has_value());
+  REQUIRE(m.materials.add({"stone", {128, 128, 128, 255}, Visibility::opaque, std::nullopt})
+              .has_value());
   m.server_key = keys_of(1).public_key;
   m.challenge = counting<32>(0x40);
   m.encoding = ChunkEncoding::packed;
@@ -153,10 +155,11 @@ TEST_CASE("unavailable chunks of protocol 1 are read", "[protocol][golden]") {
 }
 
 TEST_CASE("travel of protocol 2 is read", "[protocol][golden]") {
-  const Message read_back = read(Sender::client, FrameClass::control,
-                                 "1400000052554e310000000008000c0007000800080000000000001410000000"
-                                 "0c0014000800070000000c000c000000000000020300000040222018240a0600");
-  CHECK(read_back == Message(Travel{3, TravelTo::time, 0, 1'700'000'000'123'456}));
+  const Message read_back =
+      read(Sender::client, FrameClass::control,
+           "1400000052554e310000000008000c0007000800080000000000001410000000"
+           "0c0014000800070000000c000c000000000000020300000040222018240a0600");
+  CHECK(read_back == Message(HistoryRequest{3, HistoryTarget::time, 0, 1'700'000'000'123'456}));
 }
 
 TEST_CASE("a moment of protocol 2 is read", "[protocol][golden]") {
@@ -164,7 +167,8 @@ TEST_CASE("a moment of protocol 2 is read", "[protocol][golden]") {
                                  "1400000052554e310000000008000c0007000800080000000000001514000000"
                                  "10002000080006000700100018000c0010000000000001010300000014000000"
                                  "2c03000000000000c0fd0e18240a06000000000000000000");
-  CHECK(read_back == Message(Moment{3, MomentPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
+  CHECK(read_back ==
+        Message(HistoryState{3, HistoryPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
 }
 
 TEST_CASE("a refused moment of protocol 2 is read", "[protocol][golden]") {
@@ -172,7 +176,7 @@ TEST_CASE("a refused moment of protocol 2 is read", "[protocol][golden]") {
                                  "1000000052554e3108000c000700080008000000000000151400000010001000"
                                  "080007000000000000000c001000000000000003040000000400000009000000"
                                  "636f6d706163746564000000");
-  CHECK(read_back == Message(Moment{4, MomentPhase::refused, false, 0, 0, "compacted"}));
+  CHECK(read_back == Message(HistoryState{4, HistoryPhase::refused, false, 0, 0, "compacted"}));
 }
 
 TEST_CASE("a command of protocol 2 is read", "[protocol][golden]") {
@@ -198,13 +202,13 @@ TEST_CASE("a change of the roster of protocol 2 is read", "[protocol][golden]") 
                                  "1000080007000c000a00000000000001080000000c0000000100000018000000"
                                  "02000000080000002c01000008000c0004000800080000000700000004000000"
                                  "03000000626f6200");
-  CHECK(read_back == Message(Roster{{{7, "bob"}}, true, {8, 300}}));
+  CHECK(read_back == Message(PlayerList{{{7, "bob"}}, true, {8, 300}}));
 }
 
 TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[protocol][golden]") {
-  const Held held{{{{0, {-3, 0, 7}}, {}, 0x0123456789abcdefULL},
-                   {{0, {1, -2, 3}}, {3, 500}, 1},
-                   {{0, {1, -2, 4}}, {2, 70}, 0}}};
+  const CachedChunks held{{{{0, {-3, 0, 7}}, {}, 0x0123456789abcdefULL},
+                           {{0, {1, -2, 3}}, {3, 500}, 1},
+                           {{0, {1, -2, 4}}, {2, 70}, 0}}};
   CHECK(read(Sender::client, FrameClass::control,
              "1000000052554e3108000e0007000800080000000000001a0c00000000000600"
              "0800040006000000040000002700000005000e00efcdab896745230108030703"
@@ -214,12 +218,14 @@ TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[p
         "05000e00efcdab8967452301"
         "08030703f4030100000000000000"
         "00000202460000000000000000");
-  const Same same{{{{0, {-3, 0, 7}}, 0}, {{0, {1, -2, 3}}, 500}, {{0, {1, -2, 4}}, 70}}};
+  const ChunksNotModified same{
+      {{{0, {-3, 0, 7}}, 0}, {{0, {1, -2, 3}}, 500}, {{0, {1, -2, 4}}, 70}}};
   CHECK(read(Sender::server, FrameClass::chunks,
              "1000000052554e3108000e0007000800080000000000001b0c00000000000600"
              "0800040006000000040000000e00000005000e00080307e807000002db060000") == Message(same));
   CHECK(to_hex(encode_same(same.chunks)) == "05000e00080307e807000002db06");
-  ChunkEdits edits{{0, {1, -2, 3}}, 480, {3, 500}, {{0x1d097e98f4fc2824ULL, 0x07cd14195a2e2b9aULL}}, {}};
+  ChunkEdits edits{
+      {0, {1, -2, 3}}, 480, {3, 500}, {{0x1d097e98f4fc2824ULL, 0x07cd14195a2e2b9aULL}}, {}};
   edits.edits.push_back({499, {SetVoxel{{17, -31, 50}}, {}, 300}});
   edits.edits.push_back({500, {FillSphere{{20, -30, 50}, 3}, {MaskKind::only_solid, 0}, 7}});
   CHECK(read(Sender::server, FrameClass::chunks,
@@ -243,13 +249,14 @@ TEST_CASE("received of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::client, FrameClass::control,
                                  "1000000052554e3108000e000700080008000000000000180c00000000000600"
                                  "0c000400060000008967452301000000");
-  CHECK(read_back == Message(Received{0x1'2345'6789}));
+  CHECK(read_back == Message(ReceiveAck{0x1'2345'6789}));
 }
 
 TEST_CASE("uniform chunks of protocol 2 are read", "[protocol][golden]") {
-  const Message read_back = read(Sender::server, FrameClass::chunks,
-                                 "1000000052554e3108000e000700080008000000000000190c00000000000600"
-                                 "0800040006000000040000000e00000002060301000002000e000703f4030000");
+  const Message read_back =
+      read(Sender::server, FrameClass::chunks,
+           "1000000052554e3108000e000700080008000000000000190c00000000000600"
+           "0800040006000000040000000e00000002060301000002000e000703f4030000");
   const std::vector<UniformChunk> chunks = {
       {{0, {1, -2, 3}}, 0, {}}, {{0, {1, -1, 3}}, 0, {}}, {{0, {2, 5, 3}}, 7, {3, 500}}};
   CHECK(read_back == Message(UniformChunks{chunks}));
@@ -260,34 +267,35 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
   hello.key = keys_of(2).public_key;
   const Welcome welcome = a_welcome();
   const Bytes transcript = server_transcript(hello, welcome);
-  CHECK(to_hex(transcript) ==
-        to_hex(from_hex(
-            "12000000 72756e73746f6e6520736572766572207631"  // "runstone server v1"
-            "04000000 02000000"                              // hello.protocol
-            "20000000 8139770ea87d175f56a35466c34c7ecccb8d8a91b4ee37a25df60f5b8fc9b394"  // hello.key
-            "08000000 efcdab8967452301"                                                  // hello.instance
-            "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"  // hello.nonce
-            "05000000 52656ec3a9"                                                        // hello.name
-            "01000000 03"                                                                // hello.encodings
-            "08000000 0500000000000080"                                                  // hello.features
-            "04000000 02000000"                                                          // welcome.protocol
-            "10000000 101112131415161718191a1b1c1d1e1f"                                  // world_id
-            "04000000 03000000"                                                          // epoch
-            "08000000 e001000000000000"                                                  // durable
-            "08000000 f301000000000000"                                                  // head
-            "02000000 2000"                                                              // chunk_edge
-            "04000000 c0ffffff"                                                          // y_min
-            "04000000 c0000000"                                                          // y_max
-            "08000000 000000000000e03f 08000000 0000000000805140 08000000 000000000000d0bf"  // spawn
-            "04000000 02000000"                                                              // rows
-            "03000000 616972 04000000 00000000 01000000 00"                                  // air
-            "05000000 73746f6e65 04000000 808080ff 01000000 01"                              // stone
-            "20000000 8a88e3dd7409f195fd52db2d3cba5d72ca6709bf1d94121bf3748801b40f6f5c"      // server_key
-            "20000000 404142434445464748494a4b4c4d4e4f505152535455565758595a5b5c5d5e5f"      // challenge
-            "01000000 02"                                                                    // encoding
-            "08000000 40420f0000000000"      // edit_volume_max
-            "01000000 10"                    // view_radius_max
-            "08000000 0500000000000000")));  // welcome.features
+  CHECK(
+      to_hex(transcript) ==
+      to_hex(from_hex(
+          "12000000 72756e73746f6e6520736572766572207631"  // "runstone server v1"
+          "04000000 02000000"                              // hello.protocol
+          "20000000 8139770ea87d175f56a35466c34c7ecccb8d8a91b4ee37a25df60f5b8fc9b394"  // hello.key
+          "08000000 efcdab8967452301"  // hello.instance
+          "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"  // hello.nonce
+          "05000000 52656ec3a9"                                                        // hello.name
+          "01000000 03"                                // hello.encodings
+          "08000000 0500000000000080"                  // hello.features
+          "04000000 02000000"                          // welcome.protocol
+          "10000000 101112131415161718191a1b1c1d1e1f"  // world_id
+          "04000000 03000000"                          // epoch
+          "08000000 e001000000000000"                  // durable
+          "08000000 f301000000000000"                  // head
+          "02000000 2000"                              // chunk_edge
+          "04000000 c0ffffff"                          // y_min
+          "04000000 c0000000"                          // y_max
+          "08000000 000000000000e03f 08000000 0000000000805140 08000000 000000000000d0bf"  // spawn
+          "04000000 02000000"                                                              // rows
+          "03000000 616972 04000000 00000000 01000000 00"                                  // air
+          "05000000 73746f6e65 04000000 808080ff 01000000 01"                              // stone
+          "20000000 8a88e3dd7409f195fd52db2d3cba5d72ca6709bf1d94121bf3748801b40f6f5c"  // server_key
+          "20000000 404142434445464748494a4b4c4d4e4f505152535455565758595a5b5c5d5e5f"  // challenge
+          "01000000 02"                                                                // encoding
+          "08000000 40420f0000000000"      // edit_volume_max
+          "01000000 10"                    // view_radius_max
+          "08000000 0500000000000000")));  // welcome.features
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
   CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome))) ==
         "84d50dc41accf04644e3a969534a705651518dc6c2c2cd7d34b8e369dc13382c"

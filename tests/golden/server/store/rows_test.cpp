@@ -35,18 +35,22 @@ std::string make_world(const TempFolder& folder) {
       {{1, 1}, {1, 0x8000000000000002ULL, 3}, 1'700'000'000'000'000, Cause::player, edit},
       {{1, 2}, {1, 0x8000000000000002ULL, 4}, 1'700'000'000'000'001, Cause::undo, edit, 1}};
   REQUIRE(store->append({&player, 1}, records).has_value());
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {{{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {
+      {{0, {0, 0, -7}}, golden_chunk(2, {1, 1})}};
   REQUIRE(store->save_snapshots(snapshots, 1).has_value());
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> kept = {{{0, {-1, 2, -3}}, golden_chunk(3, {1, 2})}};
-  const Keyframe keyframe{
-      {{1, 2}, 1'700'000'000'000'001}, 1, world_digest_term(kept.front().first, kept.front().second->digest)};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> kept = {
+      {{0, {-1, 2, -3}}, golden_chunk(3, {1, 2})}};
+  const Keyframe keyframe{{{1, 2}, 1'700'000'000'000'001},
+                          1,
+                          world_digest_term(kept.front().first, kept.front().second->digest)};
   REQUIRE(store->save_keyframe(kept, keyframe).has_value());
   return store->file();
 }
 
 std::string columns(const std::string& file, const std::string& table) {
-  return raw_sql(
-      file, "SELECT group_concat(name || ' ' || type || pk, ', ') FROM pragma_table_info('" + table + "')");
+  return raw_sql(file,
+                 "SELECT group_concat(name || ' ' || type || pk, ', ') FROM pragma_table_info('" +
+                     table + "')");
 }
 
 }  // namespace
@@ -64,43 +68,56 @@ TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
   CHECK(columns(file, "base") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
-        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
-  CHECK(columns(file, "edit_log") ==
-        "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, client_seq "
-        "INTEGER0, time_us INTEGER0, cause INTEGER0, subject INTEGER0, min_x INTEGER0, min_y INTEGER0, min_z "
-        "INTEGER0, max_x "
-        "INTEGER0, max_y INTEGER0, max_z INTEGER0, descriptor BLOB0, checksum INTEGER0");
-  CHECK(columns(file, "snapshot") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 INTEGER0, "
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 "
+        "INTEGER0, "
         "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(
-      columns(file, "keyframe") ==
-      "seq INTEGER1, epoch INTEGER0, time_us INTEGER0, chunks INTEGER0, digest0 INTEGER0, digest1 INTEGER0, "
-      "checksum INTEGER0");
+      columns(file, "edit_log") ==
+      "log INTEGER1, seq INTEGER2, epoch INTEGER0, author INTEGER0, instance INTEGER0, client_seq "
+      "INTEGER0, time_us INTEGER0, cause INTEGER0, subject INTEGER0, min_x INTEGER0, min_y "
+      "INTEGER0, min_z "
+      "INTEGER0, max_x "
+      "INTEGER0, max_y INTEGER0, max_z INTEGER0, descriptor BLOB0, checksum INTEGER0");
+  CHECK(columns(file, "snapshot") ==
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, epoch INTEGER0, seq INTEGER0, digest0 "
+        "INTEGER0, "
+        "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
+  CHECK(columns(file, "keyframe") ==
+        "seq INTEGER1, epoch INTEGER0, time_us INTEGER0, chunks INTEGER0, digest0 INTEGER0, "
+        "digest1 INTEGER0, "
+        "checksum INTEGER0");
   CHECK(columns(file, "keyframe_chunk") ==
-        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, digest0 INTEGER0, "
+        "lod INTEGER1, x INTEGER2, y INTEGER3, z INTEGER4, seq INTEGER5, epoch INTEGER0, digest0 "
+        "INTEGER0, "
         "digest1 INTEGER0, checksum INTEGER0, data BLOB0");
   CHECK(columns(file, "player") == "author INTEGER1, key BLOB0, name TEXT0, checksum INTEGER0");
-  CHECK(columns(file, "player_instance") ==
-        "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
+  CHECK(
+      columns(file, "player_instance") ==
+      "author INTEGER1, instance INTEGER2, decided INTEGER0, last_us INTEGER0, checksum INTEGER0");
   CHECK(raw_sql(file,
-                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = 'table' "
+                "SELECT group_concat(name, ' ') FROM (SELECT name FROM sqlite_master WHERE type = "
+                "'table' "
                 "ORDER BY name)") ==
-        "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid meta player "
+        "base edit_log keyframe keyframe_chunk log_box log_box_node log_box_parent log_box_rowid "
+        "meta player "
         "player_instance snapshot");
+  CHECK(
+      raw_sql(
+          file,
+          "SELECT group_concat(name || ' ' || sql, '; ') FROM (SELECT name, sql FROM sqlite_master "
+          "WHERE type = 'index' AND sql IS NOT NULL ORDER BY name)") ==
+      "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); edit_log_cause "
+      "CREATE INDEX "
+      "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0; keyframe_chunk_digest CREATE INDEX "
+      "keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1)");
   CHECK(raw_sql(file,
-                "SELECT group_concat(name || ' ' || sql, '; ') FROM (SELECT name, sql FROM sqlite_master "
-                "WHERE type = 'index' AND sql IS NOT NULL ORDER BY name)") ==
-        "edit_log_author CREATE INDEX edit_log_author ON edit_log(author, seq); edit_log_cause CREATE INDEX "
-        "edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0; keyframe_chunk_digest CREATE INDEX "
-        "keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1)");
-  CHECK(raw_sql(
-            file,
-            "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || min_y || ' ' || "
-            "min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z FROM log_box") == "1 2 1 -4 5 6 7 8 9");
+                "SELECT first_seq || ' ' || last_seq || ' ' || author || ' ' || min_x || ' ' || "
+                "min_y || ' ' || "
+                "min_z || ' ' || max_x || ' ' || max_y || ' ' || max_z FROM log_box") ==
+        "1 2 1 -4 5 6 7 8 9");
   CHECK(raw_sql(file, "SELECT group_concat(key, ' ') FROM (SELECT key FROM meta ORDER BY key)") ==
-        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version log_head "
+        "base_fold checkpoint chunk_edge epoch generator generator_parameters generator_version "
+        "log_head "
         "materials "
         "seed server_key_seed snapshot_fold spawn world_id");
 }
@@ -114,12 +131,15 @@ TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
   const std::string undo = "edit_log WHERE seq = 2";
   CHECK(value("checksum", undo) == "-9055125786412931878");
   CHECK(value("hex(descriptor)", undo) == "02030203070A0C0A0202");
-  CHECK(value("seq || ' ' || epoch || ' ' || author || ' ' || instance || ' ' || client_seq || ' ' || "
-              "time_us || ' ' || "
-              "cause || ' ' || subject || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x || ' "
-              "' || max_y || ' ' "
-              "|| max_z",
-              undo) == "2 1 1 -9223372036854775806 4 1700000000000001 3 1 -4 5 6 7 8 9");
+  CHECK(
+      value(
+          "seq || ' ' || epoch || ' ' || author || ' ' || instance || ' ' || client_seq || ' ' || "
+          "time_us || ' ' || "
+          "cause || ' ' || subject || ' ' || min_x || ' ' || min_y || ' ' || min_z || ' ' || max_x "
+          "|| ' "
+          "' || max_y || ' ' "
+          "|| max_z",
+          undo) == "2 1 1 -9223372036854775806 4 1700000000000001 3 1 -4 5 6 7 8 9");
   CHECK(value("hex(data)", "base") == "02020110101001010100");
   CHECK(value("digest0 || ' ' || digest1", "base") == "31824059738278227 938747246342400335");
   CHECK(value("checksum", "base") == "-7474810389127841368");
@@ -129,7 +149,8 @@ TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
   CHECK(value("seq || ' ' || epoch || ' ' || digest0 || ' ' || digest1", "keyframe_chunk") ==
         "2 1 86466051881807956 2019403095640583695");
   CHECK(value("checksum", "keyframe_chunk") == "2036681862769137114");
-  CHECK(value("seq || ' ' || epoch || ' ' || time_us || ' ' || chunks || ' ' || digest0 || ' ' || digest1",
+  CHECK(value("seq || ' ' || epoch || ' ' || time_us || ' ' || chunks || ' ' || digest0 || ' ' || "
+              "digest1",
               "keyframe") == "2 1 1700000000000001 1 1657188782348826176 737397801681045469");
   CHECK(value("checksum", "keyframe") == "-6012113385911227469");
   CHECK(value("checksum", "player") == "-8523557106004048105");
@@ -142,17 +163,22 @@ TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
   CHECK(value("checksum", "meta WHERE key = 'generator'") == "-5376564082402544169");
   CHECK(value("hex(value)", "meta WHERE key = 'spawn'") ==
         "000000000000E03F000000000090514000000000000008C0");
-  CHECK(value("hex(value)", "meta WHERE key = 'log_head'") == "0000000000000000000000000000000000000000");
+  CHECK(value("hex(value)", "meta WHERE key = 'log_head'") ==
+        "0000000000000000000000000000000000000000");
   CHECK(value("hex(value)", "meta WHERE key = 'base_fold'") == "0100000000000000BED44F992268158D");
-  CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") == "0100000000000000D2455B47B79BD394");
+  CHECK(value("hex(value)", "meta WHERE key = 'snapshot_fold'") ==
+        "0100000000000000D2455B47B79BD394");
 }
 
-TEST_CASE("chunks of a world of format 3 are read, and it is of format 4 once it was opened for writing",
-          "[store][golden]") {
+TEST_CASE(
+    "chunks of a world of format 3 are read, and it is of format 4 once it was opened for writing",
+    "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
-  const auto put_back = [&](const std::string& table, const std::string& data, const std::string& checksum) {
-    REQUIRE(raw_sql(file, "UPDATE " + table + " SET data = x'" + data + "', checksum = " + checksum).empty());
+  const auto put_back = [&](const std::string& table, const std::string& data,
+                            const std::string& checksum) {
+    REQUIRE(raw_sql(file, "UPDATE " + table + " SET data = x'" + data + "', checksum = " + checksum)
+                .empty());
   };
   put_back("base", "0201011010100101010100", "2279636502801835223");
   put_back("snapshot", "0201011010100101020100", "526761025094432557");

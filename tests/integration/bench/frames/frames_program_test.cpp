@@ -44,9 +44,10 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
   if (!has_context()) return;
   const test::TempFolder folder;
   const std::string json = folder / "frames.json", csv = folder / "frames.csv";
-  const BenchOutput output = run({"--worlds", "scenario_6,scenario_1,luanti", "--meshers",
-                                  "rdm,rdm_plain,culled,rle_rdm,quads,product", "--frames", "4", "--pictures",
-                                  "2", "--size", "160x90", "--csv", csv, "--json", json});
+  const BenchOutput output =
+      run({"--worlds", "scenario_6,scenario_1,luanti", "--meshers",
+           "rdm,rdm_plain,culled,rle_rdm,quads,product", "--frames", "4", "--pictures", "2",
+           "--size", "160x90", "--csv", csv, "--json", json});
   INFO(output.err);
   REQUIRE(output.exit_code == 0);
   std::ifstream in(json);
@@ -55,7 +56,8 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
   CHECK_FALSE(document.at("gl").at("renderer").get<std::string>().empty());
   std::map<std::string, std::map<std::string, nlohmann::json>> rows;
   for (const auto& row : document.at("rows")) {
-    const std::string mesher = row.at("mesher").get<std::string>() + " " + row.at("path").get<std::string>();
+    const std::string mesher =
+        row.at("mesher").get<std::string>() + " " + row.at("path").get<std::string>();
     CHECK(rows[row.at("world")].emplace(mesher, row).second);
     CAPTURE(row.dump());
     CHECK(row.at("p50_ms") > 0);
@@ -95,7 +97,8 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
           of.at("rdm product").at("vertices").get<std::size_t>() * 2);
     CHECK(of.at("rdm plain").at("vertices") < of.at("culled plain").at("vertices"));
     CHECK(of.at("rdm plain").at("lanes") <= of.at("culled plain").at("lanes"));
-    CHECK(of.at("rle_rdm plain").at("depth_complexity") > of.at("culled plain").at("depth_complexity"));
+    CHECK(of.at("rle_rdm plain").at("depth_complexity") >
+          of.at("culled plain").at("depth_complexity"));
   }
   // The thesis' own counts: 1080 vertices a chunk, and 54 faces of whole chunks around the 27.
   CHECK(rows["scenario_6"]["culled plain"].at("vertices") == 27 * 1080);
@@ -109,8 +112,8 @@ TEST_CASE("without the culled mesher seams are still counted against its picture
   if (!has_context()) return;
   const test::TempFolder folder;
   const std::string json = folder / "frames.json";
-  const BenchOutput output = run({"--worlds", "scenario_2", "--meshers", "rdm", "--frames", "3", "--pictures",
-                                  "1", "--size", "64x36", "--json", json});
+  const BenchOutput output = run({"--worlds", "scenario_2", "--meshers", "rdm", "--frames", "3",
+                                  "--pictures", "1", "--size", "64x36", "--json", json});
   REQUIRE(output.exit_code == 0);
   std::ifstream in(json);
   const auto document = nlohmann::json::parse(in);
@@ -121,13 +124,15 @@ TEST_CASE("without the culled mesher seams are still counted against its picture
 
 TEST_CASE("a mesh that is too large is named instead", "[frames]") {
   if (!has_context()) return;
-  const BenchOutput output = run({"--worlds", "scenario_6", "--meshers", "simple,culled,rdm", "--frames", "3",
-                                  "--size", "64x36", "--vertices-max", "20000"});
+  const BenchOutput output = run({"--worlds", "scenario_6", "--meshers", "simple,culled,rdm",
+                                  "--frames", "3", "--size", "64x36", "--vertices-max", "20000"});
   REQUIRE(output.exit_code == 0);
-  CHECK(output.out.find("skipped: scenario_6 simple: more than 20000 vertices") != std::string::npos);
+  CHECK(output.out.find("skipped: scenario_6 simple: more than 20000 vertices") !=
+        std::string::npos);
   CHECK(output.out.find("| rdm |") != std::string::npos);
   CHECK(output.out.find("| simple |") == std::string::npos);
-  CHECK(output.out.find("| culled |") != std::string::npos);  // 29160, but the others are held to it
+  CHECK(output.out.find("| culled |") !=
+        std::string::npos);  // 29160, but the others are held to it
 }
 
 TEST_CASE("runstone-bench frames refuses what it cannot do", "[frames]") {

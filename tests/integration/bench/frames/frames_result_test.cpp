@@ -27,8 +27,8 @@ FramesRow row_of(const char* world, const char* mesher, std::size_t vertices, do
 FramesResult sample() {
   FramesResult out;
   out.gl_renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
-  out.rows = {row_of("a", "culled", 2'000'000, 5), row_of("a", "rdm", 1'000'000, 3), row_of("b", "rdm", 0, 1),
-              row_of("a", "rdm", 5'000'000, 100)};
+  out.rows = {row_of("a", "culled", 2'000'000, 5), row_of("a", "rdm", 1'000'000, 3),
+              row_of("b", "rdm", 0, 1), row_of("a", "rdm", 5'000'000, 100)};
   out.rows[1].seam_pixels = 1.5;
   out.rows[1].t_junctions = 12;
   out.rows[3].path = "product";
@@ -109,8 +109,8 @@ TEST_CASE("a size is two sides in pixels", "[frames]") {
   CHECK(parse_size("640x360", width, height));
   CHECK(width == 640);
   CHECK(height == 360);
-  for (const char* text :
-       {"", "640", "x360", "640x", "640x360x2", "640 x360", "-640x360", "8x360", "640x8", "4097x16", "axb"}) {
+  for (const char* text : {"", "640", "x360", "640x", "640x360x2", "640 x360", "-640x360", "8x360",
+                           "640x8", "4097x16", "axb"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_size(text, width, height));
   }

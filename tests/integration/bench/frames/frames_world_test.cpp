@@ -13,7 +13,8 @@ namespace {
 
 /// Each neighbour is the chunk that lies there, and is missing only where the block ends.
 void check_neighbours(const FramesWorld& world) {
-  CHECK(world.chunks.size() == static_cast<std::size_t>(world.size[0] * world.size[1] * world.size[2]));
+  CHECK(world.chunks.size() ==
+        static_cast<std::size_t>(world.size[0] * world.size[1] * world.size[2]));
   for (const FramesChunk& chunk : world.chunks) {
     CHECK(chunk.volume.edge == world.edge);
     for (unsigned d = 0; d < kDirectionCount; ++d) {
@@ -31,8 +32,8 @@ void check_neighbours(const FramesWorld& world) {
 
 TEST_CASE("a block is cut from a world where it was asked for", "[frames]") {
   const auto worlds = seeded_worlds();
-  const auto hills =
-      std::find_if(worlds.begin(), worlds.end(), [](const VoxelWorld& w) { return w.name == "hills"; });
+  const auto hills = std::find_if(worlds.begin(), worlds.end(),
+                                  [](const VoxelWorld& w) { return w.name == "hills"; });
   REQUIRE(hills != worlds.end());
   const FramesWorld block = block_of(*hills, {-16, -8, 40}, {3, 1, 2}, 8);
   check_neighbours(block);
@@ -43,7 +44,8 @@ TEST_CASE("a block is cut from a world where it was asked for", "[frames]") {
   }
 }
 
-TEST_CASE("every name is a world: 27 chunks a scenario, and the ground of the Luanti world", "[frames]") {
+TEST_CASE("every name is a world: 27 chunks a scenario, and the ground of the Luanti world",
+          "[frames]") {
   const auto names = frames_world_names();
   REQUIRE(names.size() == 38);
   CHECK(names[4] == "scenario_5");
@@ -59,7 +61,9 @@ TEST_CASE("every name is a world: 27 chunks a scenario, and the ground of the Lu
   REQUIRE(luanti.has_value());
   check_neighbours(*luanti);
   // Ground: chunks of rock and of air, and some of both.
-  const auto uniform = [](const FramesChunk& chunk) { return chunk.volume.scene.chunk.is_uniform(); };
+  const auto uniform = [](const FramesChunk& chunk) {
+    return chunk.volume.scene.chunk.is_uniform();
+  };
   CHECK_FALSE(std::all_of(luanti->chunks.begin(), luanti->chunks.end(), uniform));
   const auto missing = frames_world("luanti", RUNSTONE_SOURCE_DIR "/tests/data/none");
   REQUIRE_FALSE(missing.has_value());

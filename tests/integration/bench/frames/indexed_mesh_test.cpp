@@ -25,7 +25,8 @@ std::array<int, 3> doubled_area(const IndexedMesh& mesh, std::size_t t) {
   std::array<int, 3> out{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-    out[axis] = (at[1][u] - at[0][u]) * (at[2][v] - at[0][v]) - (at[1][v] - at[0][v]) * (at[2][u] - at[0][u]);
+    out[axis] = (at[1][u] - at[0][u]) * (at[2][v] - at[0][v]) -
+                (at[1][v] - at[0][v]) * (at[2][u] - at[0][u]);
   }
   return out;
 }
@@ -75,7 +76,8 @@ TEST_CASE("a quad becomes two triangles of its area, direction and material", "[
 TEST_CASE("a triangle mesh keeps its vertices shared, behind those of quads", "[frames]") {
   Surface surface;
   surface.quads = {pack({0, 0, 0, 1, 1, Direction::pos_x, 9})};
-  surface.triangles.vertices = {{0, 4, 0}, {0, 4, 128}, {128, 4, 0}, {0, 5, 0}, {0, 5, 1}, {1, 5, 0}};
+  surface.triangles.vertices = {{0, 4, 0}, {0, 4, 128}, {128, 4, 0},
+                                {0, 5, 0}, {0, 5, 1},   {1, 5, 0}};
   surface.triangles.triangles = {MeshTriangle{{0, 1, 2}, Direction::pos_y, 300},
                                  MeshTriangle{{2, 1, 0}, Direction::pos_y, 300},
                                  MeshTriangle{{3, 4, 5}, Direction::neg_y, 2}};

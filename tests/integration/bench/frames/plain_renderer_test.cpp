@@ -13,10 +13,10 @@
 #include "client/platform/gl_context.hpp"
 #include "client/platform/osmesa_context.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/meshing/contestant.hpp"
 #include "tests/bench/frames/frames_options.hpp"
 #include "tests/bench/frames/frames_world.hpp"
 #include "tests/bench/frames/gl/orbit.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"
 
 using namespace runstone;
@@ -64,7 +64,8 @@ std::size_t lanes_of(const DrawnPicture& picture) {
   std::set<std::pair<int, int>> blocks;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
-      if (picture.pixels[static_cast<std::size_t>(y * picture.width + x)] != 0) blocks.emplace(x / 2, y / 2);
+      if (picture.pixels[static_cast<std::size_t>(y * picture.width + x)] != 0)
+        blocks.emplace(x / 2, y / 2);
     }
   }
   return 4 * blocks.size();
@@ -138,19 +139,19 @@ TEST_CASE("every mesher draws the same picture", "[frames]") {
   const auto worlds = seeded_worlds();
   const auto meshers = frames_meshers_by_default();
   for (const char* name : {"overhangs", "town"}) {
-    const auto world =
-        std::find_if(worlds.begin(), worlds.end(), [&](const VoxelWorld& w) { return w.name == name; });
+    const auto world = std::find_if(worlds.begin(), worlds.end(),
+                                    [&](const VoxelWorld& w) { return w.name == name; });
     REQUIRE(world != worlds.end());
     const FramesWorld block = block_of(*world, {0, -16, 0}, {2, 2, 2}, 16);
     const auto scene_of = [&](std::string_view mesher, std::size_t without) {
       PlainScene scene;
       for (const FramesChunk& chunk : block.chunks) {
-        const auto contestant = make_contestant(mesher, chunk.volume, *block.visibility);
-        REQUIRE(contestant.has_value());
+        const auto mesher_case = make_mesher_case(mesher, chunk.volume, *block.visibility);
+        REQUIRE(mesher_case.has_value());
         PhaseTimes phases{};
-        contestant->mesh(phases);
+        mesher_case->mesh(phases);
         Surface surface;
-        contestant->surface(surface);
+        mesher_case->surface(surface);
         surface.quads.resize(surface.quads.size() - std::min(without, surface.quads.size()));
         IndexedMesh mesh;
         index_surface(surface, mesh);
@@ -186,8 +187,11 @@ TEST_CASE("packed quads give the picture of the same quads indexed, pixel by pix
   SplitMix64 rng(5);
   std::vector<Quad> quads;
   for (int i = 0; i < 200; ++i) {
-    const auto below = [&rng](std::uint32_t bound) { return static_cast<std::uint8_t>(rng.below(bound)); };
-    QuadFields fields{below(128), below(128), below(128), 1, 1, static_cast<Direction>(below(6)), 1};
+    const auto below = [&rng](std::uint32_t bound) {
+      return static_cast<std::uint8_t>(rng.below(bound));
+    };
+    QuadFields fields{below(128), below(128), below(128), 1, 1, static_cast<Direction>(below(6)),
+                      1};
     fields.width = static_cast<std::uint8_t>(1 + below(128));
     fields.height = static_cast<std::uint8_t>(1 + below(128));
     // Quads of one plane may overlap, so they look alike.
@@ -220,8 +224,8 @@ TEST_CASE("the whole block is in view all the way round", "[frames]") {
   for (unsigned frame = 0; frame < 60; ++frame) {
     const glm::mat4 clip = clip_of(orbit_camera(size, frame, 60), 1280, 720);
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec4 at =
-          clip * glm::vec4{(corner & 1) * size[0], (corner >> 1 & 1) * size[1], (corner >> 2) * size[2], 1};
+      const glm::vec4 at = clip * glm::vec4{(corner & 1) * size[0], (corner >> 1 & 1) * size[1],
+                                            (corner >> 2) * size[2], 1};
       CAPTURE(frame, corner);
       CHECK(at.w > 0);
       CHECK(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= at.w);

@@ -38,7 +38,8 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing", "[bots]") {
+TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing",
+          "[bots]") {
   const FlatServer flat;
   const FleetReport report = BotFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
   INFO(report.failure);
@@ -63,8 +64,9 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
   CHECK(flat.server->stop().digests.seq == 500);
 }
 
-TEST_CASE("edits that are due soon after the start are made when they are due, not with the next ping",
-          "[bots]") {
+TEST_CASE(
+    "edits that are due soon after the start are made when they are due, not with the next ping",
+    "[bots]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
   BotOptions options = options_for(*server, BotRole::build, 4);

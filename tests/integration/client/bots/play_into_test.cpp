@@ -53,8 +53,9 @@ TEST_CASE("a log played into a server of the same generator gives the same world
   auto server = start_server(quiet_config(folder / "live"), flat_creation());
   const std::string address = "127.0.0.1:" + std::to_string(server->port());
   const TemporaryFiles files;
-  const auto played = run_replay({"--world", folder / "old", "--at", "150", "--into", address, "--speed",
-                                  "max", "--bot", RUNSTONE_BOT_PROGRAM, "--json", folder / "report.json"});
+  const auto played =
+      run_replay({"--world", folder / "old", "--at", "150", "--into", address, "--speed", "max",
+                  "--bot", RUNSTONE_BOT_PROGRAM, "--json", folder / "report.json"});
   INFO(played.err);
   CHECK(played.code == 0);
   CHECK(files.none_left());
@@ -84,12 +85,14 @@ TEST_CASE("what stands in the way of a play is the program's exit code; no file 
     return file;
   };
   CHECK(into("old", script("exit 7")).code == 7);
-  CHECK(into("old", script("test -s \"$2\" || exit 3; test \"$4\" = 127.0.0.1:1 || exit 4")).code == 0);
+  CHECK(into("old", script("test -s \"$2\" || exit 3; test \"$4\" = 127.0.0.1:1 || exit 4")).code ==
+        0);
   const auto killed = into("old", script("kill -9 $$"));
   CHECK(killed.code == 2);
   CHECK(killed.err.find("bot.sh: was ended by signal 9") != std::string::npos);
   // A stop goes to the child, and the program still cleans up.
-  CHECK(into("old", script("trap 'exit 5' TERM; kill -TERM $PPID; while :; do sleep 0.05; done")).code == 5);
+  CHECK(into("old", script("trap 'exit 5' TERM; kill -TERM $PPID; while :; do sleep 0.05; done"))
+            .code == 5);
   CHECK(files.none_left());
 }
 
@@ -98,8 +101,8 @@ TEST_CASE("a log is not played where no temporary folder can be made", "[bots][p
   make_world(folder / "old", 1);
   const auto error_with = [&](const std::string& temporary) {
     ::setenv("TMPDIR", temporary.c_str(), 1);
-    const auto played =
-        run_replay({"--world", folder / "old", "--into", "127.0.0.1:1", "--bot", RUNSTONE_BOT_PROGRAM});
+    const auto played = run_replay(
+        {"--world", folder / "old", "--into", "127.0.0.1:1", "--bot", RUNSTONE_BOT_PROGRAM});
     ::unsetenv("TMPDIR");
     CHECK(played.code == 2);
     return played.err;

@@ -51,7 +51,8 @@ PlayReport play(std::uint16_t port, const RecordedLog& log, double speed, double
 
 }  // namespace
 
-TEST_CASE("a log played on a fresh server of the same generator gives the same world", "[bots][play]") {
+TEST_CASE("a log played on a fresh server of the same generator gives the same world",
+          "[bots][play]") {
   const TempFolder recorded;
   const Digest digest = build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));

@@ -84,7 +84,8 @@ TEST_CASE("a draw child shows each chunk where it is, as it is now", "[integrati
   CHECK_FALSE(child->renderer().empty());
   const TempFolder folder;
   REQUIRE(child->world(kEdge, red_and_green()));
-  const RunChunk red = uniform_chunk(Extent::cube(kEdge), 1), green = uniform_chunk(Extent::cube(kEdge), 2);
+  const RunChunk red = uniform_chunk(Extent::cube(kEdge), 1),
+                 green = uniform_chunk(Extent::cube(kEdge), 2);
   REQUIRE(child->chunk({0, {0, 0, 0}}, red));
   REQUIRE(child->chunk({0, {1, 0, 0}}, green));
   const auto drawn = child->draw(above(), kSize, folder / "one.png");
@@ -171,18 +172,20 @@ TEST_CASE("a program that is missing is named, with what to do about it", "[inte
   CHECK(contains(start_error({}), folder / "elsewhere"));
   CHECK(contains(start_error({folder / "nothing"}), folder / "nothing"));
   REQUIRE(::unsetenv("RUNSTONE_CLIENT") == 0);
-  CHECK(
-      contains(start_error({}), "/runstone-client: cannot be started: "));  // beside this test there is none
+  CHECK(contains(start_error({}),
+                 "/runstone-client: cannot be started: "));  // beside this test there is none
 }
 
-TEST_CASE("a child that ends, is silent or talks nonsense is an error that says so", "[integration][draw]") {
+TEST_CASE("a child that ends, is silent or talks nonsense is an error that says so",
+          "[integration][draw]") {
   const TempFolder folder;
   using namespace std::chrono_literals;
   CHECK(contains(start_error({script(folder, "exit 3")}), "ended with exit code 3"));
   CHECK(contains(start_error({script(folder, "kill -9 $$")}), "was ended by signal 9"));
   CHECK(contains(start_error({script(folder, "echo hello")}), "answered \"hello\""));
   CHECK(contains(start_error({script(folder, "echo ready 99 X; cat")}), "another version"));
-  CHECK(contains(start_error({script(folder, "echo error no paint left; exit 2")}), "no paint left"));
+  CHECK(
+      contains(start_error({script(folder, "echo error no paint left; exit 2")}), "no paint left"));
   CHECK(contains(start_error({script(folder, "exec sleep 60"), 200ms}), "did nothing for 0 s"));
   // It draws once, then leaves; then stays, and answers something else.
   auto child = DrawChild::start({script(folder, "echo ready 1 X; head -c 20 >/dev/null; exit 5")});
@@ -210,8 +213,8 @@ TEST_CASE("a child that is dropped is gone", "[integration][draw]") {
   const std::string mark = folder / "pid";
   pid_t pid = 0;
   {
-    const auto child =
-        DrawChild::start({script(folder, "echo $$ > " + mark + "; echo ready 1 X; exec sleep 600")});
+    const auto child = DrawChild::start(
+        {script(folder, "echo $$ > " + mark + "; echo ready 1 X; exec sleep 600")});
     REQUIRE(child.has_value());
     std::ifstream(mark) >> pid;
     REQUIRE(pid > 1);
@@ -224,8 +227,8 @@ TEST_CASE("a child has none of our files", "[integration][draw]") {
   const TempFolder folder;
   const std::string list = folder / "list";
   std::ofstream held(folder / "held");  // std::ofstream opens without close-on-exec
-  const auto child =
-      DrawChild::start({script(folder, "ls -l /proc/$$/fd > " + list + "; echo ready 1 X; cat >/dev/null")});
+  const auto child = DrawChild::start(
+      {script(folder, "ls -l /proc/$$/fd > " + list + "; echo ready 1 X; cat >/dev/null")});
   REQUIRE(child.has_value());
   std::ifstream in(list);
   const std::string text{std::istreambuf_iterator<char>(in), {}};

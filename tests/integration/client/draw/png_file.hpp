@@ -32,7 +32,8 @@ class PngFile {
     stbi_uc* const pixels = stbi_load(file.c_str(), &width, &height, &channels, 3);
     INFO(file);
     REQUIRE(pixels != nullptr);
-    rgb.assign(pixels, pixels + static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+    rgb.assign(pixels,
+               pixels + static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
     stbi_image_free(pixels);
   }
   /// Mean colour of the square of 2 r + 1 pixels around a place, 0 .. 1 from the left and the top.
@@ -41,8 +42,9 @@ class PngFile {
     std::array<int, 3> sum{};
     for (int y = y0 - r; y <= y0 + r; ++y) {
       for (int x = x0 - r; x <= x0 + r; ++x) {
-        const std::size_t at =
-            (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3;
+        const std::size_t at = (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x)) *
+                               3;
         for (std::size_t c = 0; c < 3; ++c) sum[c] += rgb.at(at + c);
       }
     }

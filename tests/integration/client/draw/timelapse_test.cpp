@@ -144,8 +144,8 @@ TEST_CASE("a timelapse has a frame every so many edits, the first moment and the
 
   // Other moments, in another folder.
   const std::string part = carpet / "part";
-  const ReplayOutcome second = carpet.run(
-      {"--timelapse", part, "--from", "4", "--at", "8", "--every", "3", "--camera", carpet.camera()});
+  const ReplayOutcome second = carpet.run({"--timelapse", part, "--from", "4", "--at", "8",
+                                           "--every", "3", "--camera", carpet.camera()});
   INFO(second.err << second.out);
   REQUIRE(second.code == 0);
   CHECK(red_places(PngFile(part + "/" + frame_name(1))) == 4);
@@ -154,7 +154,8 @@ TEST_CASE("a timelapse has a frame every so many edits, the first moment and the
   CHECK_FALSE(std::filesystem::exists(part + "/" + frame_name(4)));
 }
 
-TEST_CASE("without a path the camera sees all edits, from the first frame on", "[integration][draw]") {
+TEST_CASE("without a path the camera sees all edits, from the first frame on",
+          "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet carpet;
   const ReplayOutcome outcome = carpet.run();
@@ -180,7 +181,8 @@ TEST_CASE("a camera follows its path while the world grows", "[integration][draw
   std::string share, x, y;
   in >> share >> x >> y;
   // From beside the carpet's beginning, where nothing ever changes, to above its middle.
-  std::ofstream(carpet.camera()) << "0% 400 " << y << " 400 180 -90\n100% 40 " << y << " 4 180 -90\n";
+  std::ofstream(carpet.camera()) << "0% 400 " << y << " 400 180 -90\n100% 40 " << y
+                                 << " 4 180 -90\n";
   const ReplayOutcome outcome = carpet.run({"--every", "5", "--camera", carpet.camera()});
   INFO(outcome.err << outcome.out);
   REQUIRE(outcome.code == 0);
@@ -215,10 +217,12 @@ TEST_CASE("a timelapse that cannot be is refused with the reason, before anythin
   CHECK(contains(run_replay({"--world", carpet.world(), "--every", "3"}).err, "--timelapse"));
   std::filesystem::create_directories(carpet / "used");
   std::ofstream(carpet / "used/frame-000007.png") << "old";
-  CHECK(contains(refused({"--timelapse", carpet / "used"}), "holds frames already (frame-000007.png)"));
+  CHECK(contains(refused({"--timelapse", carpet / "used"}),
+                 "holds frames already (frame-000007.png)"));
 }
 
-TEST_CASE("a world without edits has nothing to look at, unless a path says where", "[integration][draw]") {
+TEST_CASE("a world without edits has nothing to look at, unless a path says where",
+          "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet bare(0);
   CHECK(contains(bare.run().err, "no edit, so there is nothing to look at"));
@@ -229,7 +233,8 @@ TEST_CASE("a world without edits has nothing to look at, unless a path says wher
   CHECK(is_green(bare.frame(1).mean(0.5, 0.5)));
 }
 
-TEST_CASE("ffmpeg joins the frames where it is there, and else the command is told", "[integration][draw]") {
+TEST_CASE("ffmpeg joins the frames where it is there, and else the command is told",
+          "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet carpet;
   std::filesystem::create_directories(carpet / "bin");

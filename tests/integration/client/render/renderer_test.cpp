@@ -76,7 +76,8 @@ std::unique_ptr<GlContext> context_or_warn(MakeContext make) {
 
 }  // namespace
 
-TEST_CASE("a quad is drawn where its voxels are and nowhere else, on every headless path", "[render]") {
+TEST_CASE("a quad is drawn where its voxels are and nowhere else, on every headless path",
+          "[render]") {
   const MakeContext make = GENERATE(&make_egl_surfaceless_context, &make_osmesa_context);
   const auto context = context_or_warn(make);
   if (!context) return;
@@ -135,7 +136,8 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
     }
     const Image image = draw_with(*context, camera, cube);
     CHECK(reddish(pixel(image, 0.5, 0.5)));
-    ChunkMesh lacking = cube;  // the oracle broken on purpose: without this face the centre shows through
+    ChunkMesh lacking =
+        cube;  // the oracle broken on purpose: without this face the centre shows through
     lacking.opaque.quads.erase(lacking.opaque.quads.begin() + d);
     CHECK_FALSE(reddish(pixel(draw_with(*context, camera, lacking), 0.5, 0.5)));
   }

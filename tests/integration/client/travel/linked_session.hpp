@@ -33,7 +33,7 @@ class LinkedSession final : private LinkEvents {
     session_.tick(steady_now_us());
     flush();
     io_.run_for(std::chrono::milliseconds(2));
-    static_cast<void>(replica().take_news());
+    static_cast<void>(replica().drain_changes());
   }
   /// Requires `reached` to come true within 20 seconds.
   void until(const std::function<bool()>& reached) {
@@ -51,7 +51,7 @@ class LinkedSession final : private LinkEvents {
     REQUIRE(session_.submit(edit, steady_now_us(), steady_now_us()).has_value());
   }
   /// Arrives, or is refused.
-  void travel(const Travel& travel) {
+  void travel(const HistoryRequest& travel) {
     REQUIRE(session_.travel(travel).has_value());
     until([&] { return !session_.travelling(); });
   }
@@ -65,7 +65,8 @@ class LinkedSession final : private LinkEvents {
     return config;
   }
   void flush() {
-    for (const Message& message : session_.take_outgoing()) link_.send(connection_, encode_message(message));
+    for (const Message& message : session_.take_outgoing())
+      link_.send(connection_, encode_message(message));
   }
   void on_connected(ConnectionNumber connection) override {
     connection_ = connection;
@@ -74,7 +75,8 @@ class LinkedSession final : private LinkEvents {
   }
   void on_received(NetReceived received) override {
     const TimeUs now_us = steady_now_us();
-    session_.receive(std::move(received.message), {received.received_us, received.unpacked_us, now_us});
+    session_.receive(std::move(received.message),
+                     {received.received_us, received.unpacked_us, now_us});
   }
   void on_disconnected(ConnectionNumber /*connection*/, std::string why) override {
     if (!leaves_) FAIL_CHECK(why);

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
-#include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/client/travel/linked_session.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
 
 namespace runstone::test {
 namespace {
@@ -32,7 +32,8 @@ struct Builder {
     for (int i = 0; i < edits; ++i) {
       const auto n = static_cast<std::int32_t>(moments.size());
       const VoxelPos at = {n * 7 % 60 - 30, n * 5 % 20 - 8, n * 11 % 60 - 30};
-      client.edit({FillSphere{at, static_cast<std::uint16_t>(n % 5)}, {}, static_cast<Material>(n % 7)});
+      client.edit(
+          {FillSphere{at, static_cast<std::uint16_t>(n % 5)}, {}, static_cast<Material>(n % 7)});
       client.settle();
       moments.push_back(held_by(client.replica()));
     }
@@ -41,7 +42,7 @@ struct Builder {
   std::vector<Held> moments;  // by sequence
 };
 
-Travel to_seq(Sequence seq) { return {1, TravelTo::sequence, seq, 0}; }
+HistoryRequest to_seq(Sequence seq) { return {1, HistoryTarget::sequence, seq, 0}; }
 
 }  // namespace
 
@@ -82,7 +83,8 @@ TEST_CASE("a client sees its view as it was after any edit, and the live world a
   server->stop();
 }
 
-TEST_CASE("scrubbing sends what changed; a view that moves in the past shows the past", "[travel]") {
+TEST_CASE("scrubbing sends what changed; a view that moves in the past shows the past",
+          "[travel]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
   Builder builder(server->port());
@@ -98,7 +100,8 @@ TEST_CASE("scrubbing sends what changed; a view that moves in the past shows the
   const auto before = viewer.replica().counters().snapshots_taken;
   viewer.travel(to_seq(13));
   std::size_t changed = 0;
-  for (const auto& [key, held] : builder.moments[13]) changed += held != builder.moments[12].at(key) ? 1 : 0;
+  for (const auto& [key, held] : builder.moments[13])
+    changed += held != builder.moments[12].at(key) ? 1 : 0;
   CHECK(changed > 0);
   CHECK(viewer.replica().counters().snapshots_taken - before == changed);
   CHECK(held_by(viewer.replica()) == builder.moments[13]);
@@ -134,12 +137,12 @@ TEST_CASE("a moment may be named by its time", "[travel]") {
   viewer.travel(to_seq(3));
   const TimeUs third_us = viewer.replica().past()->utc_us;
   CHECK(third_us > 0);
-  viewer.travel({1, TravelTo::time, 0, third_us});
+  viewer.travel({1, HistoryTarget::time, 0, third_us});
   CHECK(viewer.replica().past()->seq == 3);
-  viewer.travel({1, TravelTo::time, 0, third_us - 1});
+  viewer.travel({1, HistoryTarget::time, 0, third_us - 1});
   CHECK(viewer.replica().past()->seq == 2);
   CHECK(held_by(viewer.replica()) == builder.moments[2]);
-  viewer.travel({1, TravelTo::time, 0, 1});
+  viewer.travel({1, HistoryTarget::time, 0, 1});
   CHECK(viewer.replica().past()->seq == 0);
   server->stop();
 }
@@ -151,11 +154,13 @@ TEST_CASE("of many wishes in a row the last one is granted", "[travel]") {
   builder.build(12);
   LinkedSession viewer(server->port(), kView);
   viewer.settle();
-  for (Sequence seq = 0; seq <= 12; ++seq) REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
+  for (Sequence seq = 0; seq <= 12; ++seq)
+    REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
   viewer.travel(to_seq(5));
   CHECK(viewer.replica().past()->seq == 5);
   CHECK(held_by(viewer.replica()) == builder.moments[5]);
-  for (Sequence seq = 0; seq <= 12; ++seq) REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
+  for (Sequence seq = 0; seq <= 12; ++seq)
+    REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
   viewer.travel({});
   viewer.settle();
   CHECK(held_by(viewer.replica()) == builder.moments[12]);

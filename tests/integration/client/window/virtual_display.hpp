@@ -41,7 +41,8 @@ inline double changed_share(const Grab& a, const Grab& b, int step = 12) {
   std::size_t changed = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     bool differs = false;
-    for (std::size_t c = 0; c < 3; ++c) differs = differs || std::abs(a.pixels[i][c] - b.pixels[i][c]) > step;
+    for (std::size_t c = 0; c < 3; ++c)
+      differs = differs || std::abs(a.pixels[i][c] - b.pixels[i][c]) > step;
     changed += differs ? 1 : 0;
   }
   return static_cast<double>(changed) / static_cast<double>(a.pixels.size());
@@ -55,8 +56,9 @@ class VirtualDisplay {
     int ends[2];
     REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
     server_.emplace(
-        std::vector<std::string>{find_program("Xvfb").value(), "-displayfd", std::to_string(ends[1]),
-                                 "-screen", "0", std::to_string(width) + "x" + std::to_string(height) + "x24",
+        std::vector<std::string>{find_program("Xvfb").value(), "-displayfd",
+                                 std::to_string(ends[1]), "-screen", "0",
+                                 std::to_string(width) + "x" + std::to_string(height) + "x24",
                                  "-fbdir", folder, "-nolisten", "tcp", "-noreset"},
         folder + "/xvfb.log", std::vector<std::string>{}, ends[1]);
     ::close(ends[1]);
@@ -69,7 +71,9 @@ class VirtualDisplay {
   }
 
   /// DISPLAY=..., and the driver that needs no GPU.
-  std::vector<std::string> environment() const { return {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"}; }
+  std::vector<std::string> environment() const {
+    return {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"};
+  }
 
   /// Runs xdotool; whether it succeeded.
   bool hand(std::vector<std::string> words) {
@@ -91,19 +95,23 @@ class VirtualDisplay {
     // XWD: big-endian words; header size, ..., 12: bytes per line, ..., 19: colours, each of 12 bytes.
     const auto word = [&bytes](std::size_t i) {
       std::size_t value = 0;
-      for (std::size_t b = 0; b < 4; ++b) value = value << 8 | static_cast<std::uint8_t>(bytes[i * 4 + b]);
+      for (std::size_t b = 0; b < 4; ++b)
+        value = value << 8 | static_cast<std::uint8_t>(bytes[i * 4 + b]);
       return value;
     };
     const std::size_t start = word(0) + word(19) * 12;
     const auto offset = [&](int column, int row) {
-      return start + word(12) * static_cast<std::size_t>(row) + static_cast<std::size_t>(column) * 4;
+      return start + word(12) * static_cast<std::size_t>(row) +
+             static_cast<std::size_t>(column) * 4;
     };
     REQUIRE(bytes.size() >= offset(x + width, y + height - 1));
     Grab out{width, height, {}};
     for (int row = y; row < y + height; ++row) {
       for (int column = x; column < x + width; ++column) {
         const std::size_t at = offset(column, row);
-        const auto colour = [&](std::size_t c) { return int{static_cast<std::uint8_t>(bytes[at + c])}; };
+        const auto colour = [&](std::size_t c) {
+          return int{static_cast<std::uint8_t>(bytes[at + c])};
+        };
         out.pixels.push_back({colour(2), colour(1), colour(0)});
       }
     }

@@ -5,10 +5,10 @@
 #include <iterator>
 #include <optional>
 
-#include "tests/integration/server/app/raw_client.hpp"
-#include "tests/integration/server/app/server_bench.hpp"
 #include "tests/integration/client/window/child_process.hpp"
 #include "tests/integration/client/window/virtual_display.hpp"
+#include "tests/integration/server/app/raw_client.hpp"
+#include "tests/integration/server/app/server_bench.hpp"
 
 namespace runstone {
 namespace {
@@ -26,7 +26,8 @@ using test::VirtualDisplay;
 using test::wait_for;
 
 constexpr int kWidth = 480, kHeight = 360;
-constexpr double kChanged = 0.5;  // of the middle; a picked voxel's outline and the cross hair are less
+constexpr double kChanged =
+    0.5;  // of the middle; a picked voxel's outline and the cross hair are less
 constexpr std::chrono::seconds kLong{60};  // for a step on a machine that has much else to do
 
 /// Programs the test cannot do without and this machine lacks.
@@ -59,7 +60,8 @@ Grab settled_centre(const VirtualDisplay& display, int width = kWidth, int heigh
 
 bool shows_ground(const Grab& grab) {
   const auto mean = grab.mean();
-  return mean[0] + mean[1] + mean[2] > 60 && mean[1] > mean[2] + 10;  // grass: neither black nor sky
+  return mean[0] + mean[1] + mean[2] > 60 &&
+         mean[1] > mean[2] + 10;  // grass: neither black nor sky
 }
 
 /// The edit that the server orders next.
@@ -93,7 +95,8 @@ std::string text_of(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("a display that goes away ends the client with the code of a missing one", "[integration]") {
+TEST_CASE("a display that goes away ends the client with the code of a missing one",
+          "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
     WARN("skipped: not installed:" << missing);
     return;
@@ -102,10 +105,12 @@ TEST_CASE("a display that goes away ends the client with the code of a missing o
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   VirtualDisplay display(folder / ".", 800, 600);
   const std::string log = folder / "client.log";
-  ChildProcess client({RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
-                       "--size", "320x240", "--view", "1", "--no-cache"},
-                      log, display.environment());
-  const bool opened = wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; });
+  ChildProcess client(
+      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
+       "--size", "320x240", "--view", "1", "--no-cache"},
+      log, display.environment());
+  const bool opened =
+      wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; });
   INFO(text_of(log));
   REQUIRE(opened);
   display.end();
@@ -116,8 +121,9 @@ TEST_CASE("a display that goes away ends the client with the code of a missing o
   CHECK(server->stop().is_clean);
 }
 
-TEST_CASE("in a window a left click digs, a right click places, and it can be resized, pictured and left",
-          "[integration]") {
+TEST_CASE(
+    "in a window a left click digs, a right click places, and it can be resized, pictured and left",
+    "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
     WARN("skipped: not installed:" << missing);
     return;
@@ -134,9 +140,10 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
   VirtualDisplay display(folder / ".", 800, 600);
   const std::string log = folder / "client.log";
   ChildProcess client(
-      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()), "--name", "hands",
-       "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight), "--view", "2", "--no-cache",
-       "--screenshot-dir", folder / ".", "--report", folder / "report.json"},
+      {RUNSTONE_CLIENT_PROGRAM, "--connect", "127.0.0.1:" + std::to_string(server->port()),
+       "--name", "hands", "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight),
+       "--view", "2", "--no-cache", "--screenshot-dir", folder / ".", "--report",
+       folder / "report.json"},
       log, display.environment());
   const std::vector<std::string> window = {"search", "--onlyvisible", "--name", "^Runstone"};
   const auto with_window = [&window](std::vector<std::string> words) {
@@ -150,7 +157,8 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
 
   // The first click takes the mouse; then it looks down at the ground some voxels ahead.
   REQUIRE(display.hand(with_window({"windowfocus", "mousemove", "240", "180", "click", "1"})));
-  for (int step = 0; step < 4; ++step) REQUIRE(display.hand({"mousemove_relative", "--", "0", "80"}));
+  for (int step = 0; step < 4; ++step)
+    REQUIRE(display.hand({"mousemove_relative", "--", "0", "80"}));
   REQUIRE(wait_for(kLong, [&] { return shows_ground(centre(display, kWidth, kHeight)); }));
   const Grab before = settled_centre(display);
 
@@ -158,8 +166,8 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
   const EditDescriptor dug = next_edit(watcher);
   CHECK(dug.material == kEmpty);
   REQUIRE(std::holds_alternative<SetVoxel>(dug.shape));
-  REQUIRE(
-      wait_for(kLong, [&] { return changed_share(before, centre(display, kWidth, kHeight)) > kChanged; }));
+  REQUIRE(wait_for(
+      kLong, [&] { return changed_share(before, centre(display, kWidth, kHeight)) > kChanged; }));
   const Grab hole = settled_centre(display);
   CHECK(changed_share(before, hole) > kChanged);
 
@@ -167,8 +175,10 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
   const EditDescriptor placed = next_edit(watcher);
   CHECK(placed.material == 1);
   REQUIRE(std::holds_alternative<SetVoxel>(placed.shape));
-  CHECK(std::get<SetVoxel>(placed.shape).at == std::get<SetVoxel>(dug.shape).at);  // back into the hole
-  REQUIRE(wait_for(kLong, [&] { return changed_share(hole, centre(display, kWidth, kHeight)) > kChanged; }));
+  CHECK(std::get<SetVoxel>(placed.shape).at ==
+        std::get<SetVoxel>(dug.shape).at);  // back into the hole
+  REQUIRE(wait_for(
+      kLong, [&] { return changed_share(hole, centre(display, kWidth, kHeight)) > kChanged; }));
 
   // A smaller window shows a smaller picture, filled to its edge, and F2 takes one of that size.
   REQUIRE(display.hand(with_window({"windowsize", "320", "240"})));
@@ -180,7 +190,8 @@ TEST_CASE("in a window a left click digs, a right click places, and it can be re
     return !pictures.empty() && text_of(pictures[0]).find("IEND") != std::string::npos;
   }));
   const std::string png = text_of(pictures_in(folder / ".")[0]);
-  CHECK(png.substr(16, 8) == std::string("\0\0\1\100\0\0\0\360", 8));  // width and height, big-endian
+  CHECK(png.substr(16, 8) ==
+        std::string("\0\0\1\100\0\0\0\360", 8));  // width and height, big-endian
 
   REQUIRE(display.hand({"key", "Escape"}));  // frees the mouse
   REQUIRE(display.hand({"key", "Escape"}));

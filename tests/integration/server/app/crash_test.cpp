@@ -23,7 +23,9 @@ VoxelPos place_of(ClientSequence seq) {
   return {n % 16, n / 16 % 16, n / 256 % 16};
 }
 Material material_of(ClientSequence seq) { return static_cast<Material>(1 + seq % 5); }
-EditRequest edit(ClientSequence seq) { return {seq, 0, {SetVoxel{place_of(seq)}, {}, material_of(seq)}}; }
+EditRequest edit(ClientSequence seq) {
+  return {seq, 0, {SetVoxel{place_of(seq)}, {}, material_of(seq)}};
+}
 
 ServerConfig crash_config(const std::string& world) {
   ServerConfig config = quiet_config(world);
@@ -49,8 +51,9 @@ class ServerProcess {
     }
     ::close(ends[1]);  // so that the end of the child ends the wait for its port
     pollfd port_is_known{ends[0], POLLIN, 0};
-    const bool is_told = ::poll(&port_is_known, 1, kStartMs) > 0 &&
-                         ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
+    const bool is_told =
+        ::poll(&port_is_known, 1, kStartMs) > 0 &&
+        ::read(ends[0], &port_, sizeof port_) == static_cast<ssize_t>(sizeof port_);
     ::close(ends[0]);
     if (!is_told || port_ == 0) kill();
     REQUIRE(is_told);
@@ -93,8 +96,8 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
   RawClient client(server->port());
   const auto ready = client.join(1, kInstance);
   REQUIRE(ready.has_value());
-  CHECK(ready->decided >= durable);
-  CHECK(ready->decided == client.welcome.durable);  // one client made the whole log
+  CHECK(ready->resolved >= durable);
+  CHECK(ready->resolved == client.welcome.durable);  // one client made the whole log
   CHECK(client.welcome.epoch == 2);
 
   // Offers again what it does not know to be durable: from before the watermark to the end.
@@ -108,12 +111,12 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
     REQUIRE(message.has_value());
     if (const auto* reject = std::get_if<Reject>(&*message)) {
       CHECK(reject->client_seq == ++answered);
-      CHECK(reject->reason == RejectReason::already_decided);
-      CHECK(answered <= ready->decided);
+      CHECK(reject->reason == RejectReason::already_resolved);
+      CHECK(answered <= ready->resolved);
     } else if (const auto* commit = std::get_if<Commit>(&*message)) {
       for (const OrderedEdit& e : commit->edits) {
         CHECK(e.op.seq == ++answered);
-        CHECK(answered > ready->decided);
+        CHECK(answered > ready->resolved);
         ++last;
       }
     }

@@ -21,7 +21,8 @@ using test::start_server;
 using test::TempFolder;
 
 constexpr ChunkKey kDamaged{0, {0, 0, 0}};
-const char* const kRow = "SELECT hex(data) || '/' || checksum FROM snapshot WHERE x=0 AND y=0 AND z=0";
+const char* const kRow =
+    "SELECT hex(data) || '/' || checksum FROM snapshot WHERE x=0 AND y=0 AND z=0";
 
 EditRequest edit(ClientSequence seq, VoxelPos at) { return {seq, 0, {SetVoxel{at}, {}, 1}}; }
 
@@ -34,7 +35,8 @@ Answers answers(RawClient& client, std::size_t count) {
   while (got.sent.size() + got.unavailable.size() < count) {
     const auto message = client.next();
     REQUIRE(message.has_value());
-    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&*message)) got.sent.insert(snapshot->key);
+    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&*message))
+      got.sent.insert(snapshot->key);
     if (const auto* none = std::get_if<ChunkUnavailable>(&*message)) {
       CHECK(none->reason == UnavailableReason::damaged);
       got.unavailable.insert(none->keys.begin(), none->keys.end());
@@ -59,11 +61,13 @@ void make_damaged_world(const std::string& folder) {
     REQUIRE(server->stop().is_clean);
   }
   const std::string damage =
-      "UPDATE snapshot SET data = zeroblob(length(data)) WHERE x=0 AND y=0 AND z=0; SELECT changes()";
+      "UPDATE snapshot SET data = zeroblob(length(data)) WHERE x=0 AND y=0 AND z=0; SELECT "
+      "changes()";
   REQUIRE(raw_sql(folder + "/world.sqlite", damage) == "1");
 }
 
-TEST_CASE("a damaged chunk is named to those who see it, and nobody else is disturbed", "[integration]") {
+TEST_CASE("a damaged chunk is named to those who see it, and nobody else is disturbed",
+          "[integration]") {
   const TempFolder folder;
   make_damaged_world(folder / "world");
   const std::string row = raw_sql(folder / "world/world.sqlite", kRow);

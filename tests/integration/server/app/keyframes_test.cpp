@@ -74,7 +74,8 @@ TEST_CASE("a server makes the keyframes that its log lacks, and new ones as it g
     RawClient client(server->port());
     const auto ready = client.join(1);
     REQUIRE(ready.has_value());
-    for (Sequence seq = 131; seq <= 185; ++seq) client.send(EditRequest{seq - 130, 0, nth_edit(seq)});
+    for (Sequence seq = 131; seq <= 185; ++seq)
+      client.send(EditRequest{seq - 130, 0, nth_edit(seq)});
     CHECK(client.sees_durable(185));
     CHECK(wait_for(folder.path(), 9));
     const StopReport report = server->stop();
@@ -100,14 +101,16 @@ TEST_CASE("a server that shall make no keyframes makes none", "[integration][key
   CHECK(places(folder.path()).empty());
 }
 
-TEST_CASE("a damaged edit ends the making of keyframes, not the server", "[integration][keyframe]") {
+TEST_CASE("a damaged edit ends the making of keyframes, not the server",
+          "[integration][keyframe]") {
   const TempFolder folder;
   make_world(folder.path(), 100);
   CHECK(start_server(quiet_config(folder.path()), {})
             ->stop()
             .is_clean);  // snapshots: the next start reads no old edit
   REQUIRE(raw_sql(folder / "world.sqlite",
-                  "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 50; SELECT changes()") == "1");
+                  "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 50; SELECT changes()") ==
+          "1");
   const auto server = start_server(keyframe_config(folder.path()), {});
   CHECK(wait_for(folder.path(), 2));
   RawClient client(server->port());

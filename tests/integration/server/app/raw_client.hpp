@@ -63,8 +63,8 @@ class RawClient {
   std::optional<Message> next(int deadline_ms = 10'000) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(deadline_ms);
     while (arrived_.empty()) {
-      const auto left =
-          std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+          end - std::chrono::steady_clock::now());
       if (left.count() <= 0 || !read_some(static_cast<int>(left.count()))) return std::nullopt;
     }
     Message message = std::move(arrived_.front());
@@ -111,16 +111,17 @@ class RawClient {
     return h;
   }
   /// The whole handshake; nothing if the server closed.
-  std::optional<Ready> join(std::uint8_t who, ClientInstance instance = 1) {
+  std::optional<SessionAccepted> join(std::uint8_t who, ClientInstance instance = 1) {
     const Hello h = hello(who, instance);
     send(h);
     auto got = next_of<Welcome>();
     if (!got) return std::nullopt;
     welcome = *std::move(got);
     chunk_edge_ = welcome.chunk_edge;
-    if (!verify(welcome.server_key, server_transcript(h, welcome), welcome.signature)) return std::nullopt;
-    send(Proof{sign(key_pair_of(seed_), client_transcript(h, welcome))});
-    return next_of<Ready>();
+    if (!verify(welcome.server_key, server_transcript(h, welcome), welcome.signature))
+      return std::nullopt;
+    send(ClientAuth{sign(key_pair_of(seed_), client_transcript(h, welcome))});
+    return next_of<SessionAccepted>();
   }
 
   Welcome welcome;
@@ -156,7 +157,8 @@ class RawClient {
       arrived_.push_back(*std::move(message));
       return {};
     };
-    const auto fed = reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(got)), on_message);
+    const auto fed =
+        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(got)), on_message);
     RUNSTONE_ASSERT(fed.has_value());  // the server never sends what its own decoder refuses
     return true;
   }

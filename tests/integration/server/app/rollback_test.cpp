@@ -65,7 +65,8 @@ std::string replayed(const std::string& world) {
 
 }  // namespace
 
-TEST_CASE("players undo and redo by a command; the rest is for operators", "[integration][rollback]") {
+TEST_CASE("players undo and redo by a command; the rest is for operators",
+          "[integration][rollback]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   KeySeed seed{};
@@ -97,7 +98,8 @@ TEST_CASE("players undo and redo by a command; the rest is for operators", "[int
         std::string::npos);
   seed.fill(1);
   const std::string key = to_hex(key_pair_of(seed).public_key);
-  CHECK(command(boss, "players").text.find("player1 #1 key " + key + " is here") != std::string::npos);
+  CHECK(command(boss, "players").text.find("player1 #1 key " + key + " is here") !=
+        std::string::npos);
   CHECK(command(boss, "rollback preview author nobody").text.find("nobody of that name") !=
         std::string::npos);
 
@@ -117,7 +119,8 @@ TEST_CASE("players undo and redo by a command; the rest is for operators", "[int
   replayed(folder / "world");
 }
 
-TEST_CASE("a griefer is rolled back by control while a builder goes on", "[integration][rollback]") {
+TEST_CASE("a griefer is rolled back by control while a builder goes on",
+          "[integration][rollback]") {
   const TempFolder folder;
   const std::string world = folder / "world";
   auto server = start_server(quiet_config(world), flat_creation());
@@ -135,7 +138,8 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on", "[integ
     build(griefer, i, FillSphere{{-40 + 2 * x, 85, 20 - x}, 9}, i % 2 == 0 ? kEmpty : Material{3});
   }
   REQUIRE(griefer.sees_durable(41));
-  const Answer preview = control(world, {"rollback", "preview", "author", "player2", "since", "1h"});
+  const Answer preview =
+      control(world, {"rollback", "preview", "author", "player2", "since", "1h"});
   INFO(preview.text);
   REQUIRE(preview.is_ok);
   CHECK(preview.text.find("would take back 40 edits") != std::string::npos);
@@ -184,7 +188,8 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on", "[integ
         const VoxelPos p{x, y, z};
         const auto chunk = store->load_snapshot({0, chunk_of(p, 16)});
         REQUIRE(chunk.has_value());
-        const Material is = chunk->has_value() ? material_at((*chunk)->voxels, local_of(p, 16)) : kEmpty;
+        const Material is =
+            chunk->has_value() ? material_at((*chunk)->voxels, local_of(p, 16)) : kEmpty;
         const bool in_house = VoxelBox{{-30, 80, -30}, {30, 90, 30}}.contains(p);
         const Material ought = touched.contains(p) ? Material{2} : in_house ? Material{1} : kEmpty;
         wrong += is == ought ? 0 : 1;
@@ -227,7 +232,7 @@ TEST_CASE("a socket that a dead server left behind is replaced", "[integration][
   start_server(quiet_config(world), flat_creation())->stop();
   {
     asio::io_context io;
-    auto left = ControlSocket::listen(io, world, [](const std::string&, DeskReply) {});
+    auto left = ControlSocket::listen(io, world, [](const std::string&, CommandReply) {});
     REQUIRE(left.has_value());
     std::filesystem::rename(world + "/" + kControlSocketName, world + "/kept");
   }

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "server/runtime/logging.hpp"
 #include "server/app/server.hpp"
+#include "server/runtime/logging.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace runstone::test {
@@ -27,7 +27,8 @@ inline WorldCreation flat_creation() {
 }
 
 /// Requires the start to succeed.
-inline std::unique_ptr<Server> start_server(const ServerConfig& config, const WorldCreation& creation) {
+inline std::unique_ptr<Server> start_server(const ServerConfig& config,
+                                            const WorldCreation& creation) {
   auto server = Server::start(config, creation);
   INFO((server ? std::string() : server.error()));
   REQUIRE(server.has_value());

@@ -112,7 +112,8 @@ TEST_CASE("several clients see each other's edits as equal commits", "[integrati
   CHECK(orders[0] == orders[2]);
 }
 
-TEST_CASE("a broken peer ends its own session with a numbered reason and nobody else's", "[integration]") {
+TEST_CASE("a broken peer ends its own session with a numbered reason and nobody else's",
+          "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient good(server->port());
@@ -270,7 +271,8 @@ TEST_CASE("who sends faster than a session is read is held back, not sent away",
     CHECK(calm.next_of<Pong>().has_value());
   }
   std::size_t answered = 0;
-  while (const auto message = greedy.next(100)) answered += std::holds_alternative<Pong>(*message) ? 1 : 0;
+  while (const auto message = greedy.next(100))
+    answered += std::holds_alternative<Pong>(*message) ? 1 : 0;
   CHECK(answered > 0);
   CHECK(answered < kPings / 2);
   CHECK(greedy.is_open());
@@ -286,7 +288,7 @@ TEST_CASE("who claims to have read more than was sent is told so, and so is who 
   CHECK(liar.welcome.features == kFeatureReceived);
   liar.send(View{{0, 0, 0}, 1, 1});
   snapshots(liar, 5 * 3);
-  liar.send(Received{1ULL << 40});
+  liar.send(ReceiveAck{1ULL << 40});
   const auto told = liar.goodbye();
   REQUIRE(told.has_value());
   CHECK(told->reason == GoodbyeReason::malformed_message);
@@ -294,13 +296,14 @@ TEST_CASE("who claims to have read more than was sent is told so, and so is who 
 
   RawClient plain(server->port());
   REQUIRE(plain.join(2).has_value());
-  plain.send(Received{1});
+  plain.send(ReceiveAck{1});
   const auto refused = plain.goodbye();
   REQUIRE(refused.has_value());
   CHECK(refused->reason == GoodbyeReason::unexpected_message);
 }
 
-TEST_CASE("a client that says nothing of what it read gets its view all the same", "[integration]") {
+TEST_CASE("a client that says nothing of what it read gets its view all the same",
+          "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient quiet(server->port());
@@ -363,7 +366,8 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
     REQUIRE(client.join(5, 33).has_value());
     client.send(View{{0, 0, 0}, 1, 1});
     for (ClientSequence seq = 1; seq <= 20; ++seq) {
-      client.send(edit(seq, {static_cast<std::int32_t>(seq) * 7 % 40 - 20, 1, 2}, some_material(seq)));
+      client.send(
+          edit(seq, {static_cast<std::int32_t>(seq) * 7 % 40 - 20, 1, 2}, some_material(seq)));
     }
     REQUIRE(client.sees_durable(20));
     const StopReport report = server->stop();
@@ -382,13 +386,13 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
   const auto ready = client.join(5, 33);
   REQUIRE(ready.has_value());
   CHECK(ready->author == 1);
-  CHECK(ready->decided == 20);
+  CHECK(ready->resolved == 20);
   CHECK(client.welcome.epoch == 2);
   CHECK(client.welcome.durable == 20);
   client.send(edit(20, {0, 1, 2}, 1));
   const auto reject = client.next_of<Reject>();
   REQUIRE(reject.has_value());
-  CHECK(reject->reason == RejectReason::already_decided);
+  CHECK(reject->reason == RejectReason::already_resolved);
   client.send(View{{0, 0, 0}, 3, 1});
   std::map<ChunkKey, Version> versions;
   for (const auto& s : snapshots(client, 29 * 3)) versions[s.key] = s.chunk.version;
@@ -419,8 +423,8 @@ TEST_CASE("the last name of a player is the one that is stored, edit or no edit"
     REQUIRE(ready.has_value());
     CHECK(ready->author == 1);
     if (edits) {
-      client.send(edit(ready->decided + 1, {1, 1, 1}, 2));
-      REQUIRE(client.sees_durable(ready->decided + 1));
+      client.send(edit(ready->resolved + 1, {1, 1, 1}, 2));
+      REQUIRE(client.sees_durable(ready->resolved + 1));
     }
     CHECK(server->stop().is_clean);
   };

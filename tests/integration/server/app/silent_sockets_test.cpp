@@ -25,7 +25,8 @@ bool is_ended(RawClient& client) {
   return !client.is_open();
 }
 
-TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them go", "[integration]") {
+TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them go",
+          "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   config.sessions_max = 2;
@@ -44,7 +45,8 @@ TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them
   CHECK(early.next_of<Pong>().has_value());  // a player's connection never goes
 }
 
-TEST_CASE("one address has few connections in the handshake, and players do not count", "[integration]") {
+TEST_CASE("one address has few connections in the handshake, and players do not count",
+          "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   config.handshakes_per_address = 3;

@@ -112,7 +112,8 @@ TEST_CASE("a file that is no world is refused and left as it is", "[integration]
   std::ofstream(file) << content;
   CHECK(contains(start_error(config, flat_creation()), "world.sqlite"));
   std::ifstream in(file);
-  CHECK(std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>()) == content);
+  CHECK(std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>()) ==
+        content);
 }
 
 TEST_CASE("a folder that cannot be written is named", "[integration]") {
@@ -180,8 +181,9 @@ TEST_CASE("a damaged log row above the checkpoint stops the start and is named",
   CHECK(contains(start_error(config, flat_creation()), "seq=3"));
 }
 
-TEST_CASE("a world whose log was compacted to its end goes on at its sequence and never before its time",
-          "[integration]") {
+TEST_CASE(
+    "a world whose log was compacted to its end goes on at its sequence and never before its time",
+    "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   make_edited_world(config);
@@ -205,7 +207,8 @@ TEST_CASE("a damaged last log row stops the start even if nothing waits above th
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   make_edited_world(config);
-  run_sql(config.world + "/world.sqlite", "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 3");
+  run_sql(config.world + "/world.sqlite",
+          "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 3");
   CHECK(contains(start_error(config, flat_creation()), "edit_log seq=3"));
 }
 

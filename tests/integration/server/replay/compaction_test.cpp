@@ -55,8 +55,8 @@ Chunks moment_of(Store& store, Sequence at) {
 void make_keyframe(Store& store, Sequence at) {
   const auto generator = generator_of(store);
   KeyframeMaker maker(store, *generator, {});
-  const auto made =
-      maker.make_at(at, [&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>& keyframe) {
+  const auto made = maker.make_at(
+      at, [&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>& keyframe) {
         return store.save_keyframe(chunks, keyframe);
       });
   if (!made) FAIL(made.error().message());
@@ -109,7 +109,7 @@ std::vector<std::tuple<AuthorId, ClientInstance, ClientSequence, TimeUs>> marks_
   std::vector<std::tuple<AuthorId, ClientInstance, ClientSequence, TimeUs>> marks;
   const auto rows = *store.high_waters();
   for (const HighWater& mark : rows)
-    marks.emplace_back(mark.author, mark.instance, mark.decided, mark.last_us);
+    marks.emplace_back(mark.author, mark.instance, mark.resolved, mark.last_us);
   return marks;
 }
 
@@ -163,14 +163,16 @@ TEST_CASE("a compacted world is the same from its new beginning on", "[store][co
     CHECK(marks_of(*store) == marks);
     const auto generator = generator_of(*store);
     CHECK(WorldAt::open(*store, *generator, kCut - 1).error().what ==
-          "begins at seq=101: the world at seq=99 was compacted away; the earliest left is that at seq=100");
+          "begins at seq=101: the world at seq=99 was compacted away; the earliest left is that at "
+          "seq=100");
     CHECK(*sequence_of(*store, AtTime{kCutTime}) == kCut);
     REQUIRE(store->raise_epoch().has_value());
     SplitMix64 rng(2);
     CHECK(store->append({}, sample_records(rng, 2, kEdits + 1, 3)).has_value());
     CHECK(store->check().has_value());
   }
-  CHECK(run_replay({"--world", folder.path(), "--verify", "--at", std::to_string(kEdits), "--json", json})
+  CHECK(run_replay(
+            {"--world", folder.path(), "--verify", "--at", std::to_string(kEdits), "--json", json})
             .code == 0);
   CHECK(digest() == digest_before);
   // Once more from there, to the end of the log and with nothing behind it.
@@ -230,7 +232,8 @@ TEST_CASE("a compaction that power cuts loses nothing and can be done again",
   CHECK(after > 3);
 }
 
-TEST_CASE("a compaction that finds the disk full says so and loses nothing", "[store][compact][power-loss]") {
+TEST_CASE("a compaction that finds the disk full says so and loses nothing",
+          "[store][compact][power-loss]") {
   std::size_t full = 0, shrunk_too_late = 0;
   for (std::uint64_t room = 1; room < 300; room += 1 + room / 6) {
     CAPTURE(room);
@@ -251,7 +254,8 @@ TEST_CASE("a compaction that finds the disk full says so and loses nothing", "[s
     CHECK(says_full);
     if (first == 1) {
       ++full;
-      CHECK(outcome.said.find("nothing was lost, and the world stands as before") != std::string::npos);
+      CHECK(outcome.said.find("nothing was lost, and the world stands as before") !=
+            std::string::npos);
     } else {
       ++shrunk_too_late;
       CHECK(outcome.said.find("is compacted and sound") != std::string::npos);

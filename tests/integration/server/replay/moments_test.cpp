@@ -5,8 +5,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "server/replay/world_copy.hpp"
 #include "server/history/world_at.hpp"
+#include "server/replay/world_copy.hpp"
 #include "tests/support/raw_sql.hpp"
 #include "tests/support/run_replay.hpp"
 #include "tests/support/sample_world.hpp"
@@ -26,7 +26,9 @@ void make_world(const std::string& folder) {
   WorldMeta meta = sample_meta();
   meta.generator.name = "flat";
   auto store = *create_world(folder, meta);
-  REQUIRE(store->save_base(std::vector<std::pair<ChunkKey, ChunkPtr>>{{kImported, sample_chunk(rng, {})}})
+  REQUIRE(store
+              ->save_base(
+                  std::vector<std::pair<ChunkKey, ChunkPtr>>{{kImported, sample_chunk(rng, {})}})
               .has_value());
   REQUIRE(store->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
@@ -76,8 +78,8 @@ TEST_CASE("a moment is written as a world of its own", "[store][replay]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy";
   make_world(world);
-  const auto outcome =
-      run_replay({"--world", world, "--at", "70", "--write", copy + "/", "--json", folder / "w.json"});
+  const auto outcome = run_replay(
+      {"--world", world, "--at", "70", "--write", copy + "/", "--json", folder / "w.json"});
   CHECK(outcome.err == "");
   REQUIRE(outcome.code == 0);
   const auto source = *open_world(world, StoreAccess::read_only);
@@ -124,14 +126,15 @@ TEST_CASE("a moment is written as a world of its own", "[store][replay]") {
 TEST_CASE("a difference is told in a table and as JSON", "[store][replay]") {
   const TempFolder folder;
   make_world(folder.path());
-  const auto outcome =
-      run_replay({"--world", folder.path(), "--diff", "-100ms", "120", "--json", folder / "d.json"});
+  const auto outcome = run_replay(
+      {"--world", folder.path(), "--diff", "-100ms", "120", "--json", folder / "d.json"});
   CHECK(outcome.code == 2);  // milliseconds are no unit
-  const auto told = run_replay(
-      {"--world", folder.path(), "--diff", "2023-11-14T22:13:20.02Z", "-0s", "--json", folder / "d.json"});
+  const auto told = run_replay({"--world", folder.path(), "--diff", "2023-11-14T22:13:20.02Z",
+                                "-0s", "--json", folder / "d.json"});
   CHECK(told.err == "");
   REQUIRE(told.code == 0);
-  CHECK(contains(told.out, "moments     after sequence 20 and after sequence 120, 100 edits between\n"));
+  CHECK(contains(told.out,
+                 "moments     after sequence 20 and after sequence 120, 100 edits between\n"));
   CHECK(contains(told.out, "builder 1: "));
   const auto json = read_json(folder / "d.json");
   CHECK(json.at("edits") == 100);
@@ -146,8 +149,8 @@ TEST_CASE("a difference is told in a table and as JSON", "[store][replay]") {
   CHECK(by_chunk == json.at("voxels"));
   CHECK(edits == 100);
   CHECK(run_replay({"--world", folder.path(), "--diff", "30"}).code == 2);
-  CHECK(
-      contains(run_replay({"--world", folder.path(), "--diff", "30", "20"}).err, "seq=30 is behind seq=20"));
+  CHECK(contains(run_replay({"--world", folder.path(), "--diff", "30", "20"}).err,
+                 "seq=30 is behind seq=20"));
 }
 
 TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][replay]") {
@@ -163,7 +166,8 @@ TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][
       std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
       for (const ChunkKey& key : world.touched()) {
         chunks.emplace_back(key, std::make_shared<const Chunk>(*world.chunk(key)));
-        keyframe.world_digest = keyframe.world_digest + world_digest_term(key, chunks.back().second->digest);
+        keyframe.world_digest =
+            keyframe.world_digest + world_digest_term(key, chunks.back().second->digest);
         ++keyframe.chunks;
       }
       REQUIRE(store->save_keyframe(chunks, keyframe).has_value());
@@ -186,8 +190,9 @@ TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][
     auto world = *WorldAt::open(*store, *generator, 110);
     const ChunkKey key = world.touched().front();
     const auto lie = sample_chunk(rng, world.version(key));
-    REQUIRE(store->save_keyframe(std::vector<std::pair<ChunkKey, ChunkPtr>>{{key, lie}}, std::nullopt)
-                .has_value());
+    REQUIRE(
+        store->save_keyframe(std::vector<std::pair<ChunkKey, ChunkPtr>>{{key, lie}}, std::nullopt)
+            .has_value());
   }
   const auto differs = run_replay({"--world", folder.path(), "--verify"});
   CHECK(differs.code == 1);

@@ -25,7 +25,8 @@ struct Promise {
 };
 
 /// The first broken promise; empty if all are kept. Forgets tried records that did not make it.
-std::string broken_promise(const std::string& folder, const SqliteOptions& options, Promise& promise) {
+std::string broken_promise(const std::string& folder, const SqliteOptions& options,
+                           Promise& promise) {
   auto opened = open_sqlite_world(folder, StoreAccess::read_only, options);
   if (!opened) return "cannot be opened: " + opened.error().message();
   Store& store = **opened;
@@ -33,7 +34,8 @@ std::string broken_promise(const std::string& folder, const SqliteOptions& optio
   const auto last = store.last_sequence();
   if (!last) return last.error().message();
   if (*last < promise.durable) {
-    return "ends at " + std::to_string(*last) + ", but " + std::to_string(promise.durable) + " was durable";
+    return "ends at " + std::to_string(*last) + ", but " + std::to_string(promise.durable) +
+           " was durable";
   }
   if (*last > promise.tried.size()) return "holds more than was ever appended";
   if (*last > promise.durable && *last != promise.tried.size()) return "holds half of a batch";
@@ -41,7 +43,8 @@ std::string broken_promise(const std::string& folder, const SqliteOptions& optio
   std::map<std::pair<AuthorId, ClientInstance>, ClientSequence> marks;
   std::string difference;
   const auto read = store.read_log(1, *last, [&](const EditRecord& record) {
-    if (record != promise.tried[record.version.seq - 1]) difference = "holds another edit than was appended";
+    if (record != promise.tried[record.version.seq - 1])
+      difference = "holds another edit than was appended";
     marks[{record.op.author, record.op.instance}] =
         record.op.seq;  // sample client sequences rise with the log
     return difference.empty();
@@ -50,9 +53,11 @@ std::string broken_promise(const std::string& folder, const SqliteOptions& optio
   if (!difference.empty()) return difference;
   const auto high_waters = store.high_waters();
   if (!high_waters) return high_waters.error().message();
-  if (high_waters->size() != marks.size()) return "has marks of clients that edited nothing, or lacks some";
+  if (high_waters->size() != marks.size())
+    return "has marks of clients that edited nothing, or lacks some";
   for (const HighWater& mark : *high_waters) {
-    if (marks[{mark.author, mark.instance}] != mark.decided) return "has a mark that is not the log's";
+    if (marks[{mark.author, mark.instance}] != mark.resolved)
+      return "has a mark that is not the log's";
   }
   const auto checkpoint = store.checkpoint();
   if (!checkpoint) return checkpoint.error().message();
@@ -88,15 +93,16 @@ void write_until_cut(const std::string& folder, const SqliteOptions& options, Po
       for (std::uint32_t i = rng.below(30); i > 0; --i) {
         const ChunkKey key{0, {rng.between(-3, 3), 0, rng.between(-3, 3)}};
         // As in a real world, key and version decide the voxels: a job that was cut may be there or not.
-        SplitMix64 voxels(mix64(version.seq) ^ static_cast<std::uint64_t>(16 * key.at.x + key.at.z));
+        SplitMix64 voxels(mix64(version.seq) ^
+                          static_cast<std::uint64_t>(16 * key.at.x + key.at.z));
         chunks.emplace_back(key, sample_chunk(voxels, version));
       }
       if (!store.save_snapshots(chunks, promise.durable)) continue;
       for (const auto& [key, chunk] : chunks) promise.snapshots[key] = chunk;
       promise.checkpoint = promise.durable;
     } else {
-      const auto batch =
-          sample_records(rng, *epoch, promise.tried.size() + 1, 1 + rng.below(rng.below(4) == 0 ? 400 : 12));
+      const auto batch = sample_records(rng, *epoch, promise.tried.size() + 1,
+                                        1 + rng.below(rng.below(4) == 0 ? 400 : 12));
       promise.tried.insert(promise.tried.end(), batch.begin(), batch.end());
       const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
       if (!store.append(players, batch)) break;

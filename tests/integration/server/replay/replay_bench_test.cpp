@@ -32,7 +32,8 @@ nlohmann::json read_json(const std::string& file) {
 TEST_CASE("the bench rebuilds what a replay rebuilds, as often as it is told", "[store][replay]") {
   const TempFolder folder;
   make_world(folder / "w", 300);
-  const std::string world = folder / "w", bench = folder / "bench.json", replay = folder / "replay.json";
+  const std::string world = folder / "w", bench = folder / "bench.json",
+                    replay = folder / "replay.json";
   for (const std::string at : {"300", "120"}) {
     CAPTURE(at);
     const auto timed =

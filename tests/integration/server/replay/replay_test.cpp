@@ -34,7 +34,8 @@ class GroundGenerator final : public Generator {
     RunChunk chunk = uniform_chunk(extent, kEmpty, AxisOrder::xzy);
     for (int y = 0; y < extent.y; ++y) {
       if (origin.y + y >= 4) break;
-      fill(chunk, static_cast<VoxelIndex>(y * extent.x * extent.z), std::uint32_t{extent.x} * extent.z, 2);
+      fill(chunk, static_cast<VoxelIndex>(y * extent.x * extent.z),
+           std::uint32_t{extent.x} * extent.z, 2);
     }
     return chunk;
   }
@@ -65,7 +66,8 @@ struct LiveWorld {
   std::map<ChunkKey, DenseChunk> dense;  // the oracle
   std::set<ChunkKey> edited;
   std::vector<EditRecord> log;
-  std::vector<std::map<ChunkKey, AuditEntry>> history;  // digests after each edit; [0] is the base
+  std::vector<std::map<ChunkKey, DigestCheckEntry>>
+      history;  // digests after each edit; [0] is the base
 
   explicit LiveWorld(std::uint64_t seed) {
     SplitMix64 rng(seed);
@@ -92,7 +94,7 @@ struct LiveWorld {
 
   void apply(const EditRecord& record) {
     ApplyScratch scratch;
-    std::map<ChunkKey, AuditEntry> now = history.back();
+    std::map<ChunkKey, DigestCheckEntry> now = history.back();
     for (int cx = -5; cx < 5; ++cx) {
       for (int cy = -4; cy < 5; ++cy) {
         for (int cz = -5; cz < 5; ++cz) {
@@ -159,9 +161,9 @@ struct LiveWorld {
   }
 };
 
-std::vector<std::pair<ChunkKey, Digest>> pairs_of(const std::vector<AuditEntry>& entries) {
+std::vector<std::pair<ChunkKey, Digest>> pairs_of(const std::vector<DigestCheckEntry>& entries) {
   std::vector<std::pair<ChunkKey, Digest>> pairs;
-  for (const AuditEntry& entry : entries) pairs.emplace_back(entry.key, entry.digest);
+  for (const DigestCheckEntry& entry : entries) pairs.emplace_back(entry.key, entry.digest);
   return pairs;
 }
 
@@ -189,7 +191,7 @@ TEST_CASE("replay equals live editing and a dense oracle", "[store][replay]") {
     CHECK(pairs_of(report.digests) == pairs_of(list.chunks));
     CHECK(report.digests.size() == world.edited.size());
     Digest fold;
-    for (const AuditEntry& entry : report.digests) {
+    for (const DigestCheckEntry& entry : report.digests) {
       CHECK(entry.digest == world.dense.at(entry.key).digest());
       CHECK(entry.version == world.live.at(entry.key).version);
       fold = fold + world_digest_term(entry.key, entry.digest);
@@ -225,7 +227,8 @@ TEST_CASE("chunks that nobody edited are compared with base and generator", "[st
   SplitMix64 rng(8);
   const ChunkKey imported{0, {-1, 0, -1}}, generated{0, {40, 0, 40}};
   DigestList list{world.store->meta().world_id, 0, {}};
-  for (const ChunkKey& key : {imported, generated}) list.chunks.push_back({key, {}, world.chunk(key).digest});
+  for (const ChunkKey& key : {imported, generated})
+    list.chunks.push_back({key, {}, world.chunk(key).digest});
   CHECK(world.replay(kAll, &list).listed_compared == 2);
   CHECK(world.replay(kAll, &list).differences == 0);
   world.edit(rng, 50);  // edits the imported one: its base version is then met on the way
@@ -247,7 +250,8 @@ TEST_CASE("replay notices a snapshot with other voxels than the log makes", "[st
   fill(tampered.voxels, index_of({5, 5, 5}, tampered.voxels.extent, tampered.voxels.order), 1,
        there == 1 ? 2 : 1);
   tampered.digest = digest_of(tampered.voxels);
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{key, std::make_shared<const Chunk>(tampered)}};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
+      {key, std::make_shared<const Chunk>(tampered)}};
   REQUIRE(world.store->save_snapshots(chunks, std::nullopt).has_value());
   REQUIRE(world.store->check().has_value());  // a sound row with a wrong content
   const ReplayReport report = world.replay();
@@ -279,7 +283,7 @@ TEST_CASE("a version that the log never gave a chunk is a difference", "[store][
   SplitMix64 rng(11);
   world.edit(rng, 30);
   DigestList list = world.list_at(30);
-  const AuditEntry last = list.chunks.back();
+  const DigestCheckEntry last = list.chunks.back();
   list.chunks = {last};
   list.chunks[0].version.epoch += 1;  // an edit that a crash took away
   const ReplayReport report = world.replay(kAll, &list);
@@ -340,7 +344,8 @@ TEST_CASE("a damaged log row stops the replay with its name", "[store][replay]")
   LiveWorld world(13);
   SplitMix64 rng(13);
   world.edit(rng, 20);
-  REQUIRE(raw_sql(world.folder / "world.sqlite", "UPDATE edit_log SET time_us = 0 WHERE seq = 11").empty());
+  REQUIRE(raw_sql(world.folder / "world.sqlite", "UPDATE edit_log SET time_us = 0 WHERE seq = 11")
+              .empty());
   Replayer replayer(*world.store, world.generator);
   const auto report = replayer.run(kAll);
   REQUIRE_FALSE(report.has_value());
@@ -349,7 +354,8 @@ TEST_CASE("a damaged log row stops the replay with its name", "[store][replay]")
 
 TEST_CASE("the replay program answers with its exit code, a table and a list", "[store][replay]") {
   const TempFolder folder;
-  const std::string world = folder / "world", json = folder / "out.json", other = folder / "other.json";
+  const std::string world = folder / "world", json = folder / "out.json",
+                    other = folder / "other.json";
   SplitMix64 rng(14);
   {
     const auto store = *create_world(world, sample_meta());  // generator "empty"
@@ -369,8 +375,8 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
   CHECK(list->chunks.size() > 20);
   const ReplayOutcome second = run_replay({"--world", world, "--against", json, json});
   CHECK(second.code == 0);
-  CHECK(second.out.find("lists       " + std::to_string(2 * list->chunks.size()) + " chunks compared") !=
-        std::string::npos);
+  CHECK(second.out.find("lists       " + std::to_string(2 * list->chunks.size()) +
+                        " chunks compared") != std::string::npos);
   CHECK(run_replay({"--world", world, "--at", "40", "--json", other}).code == 0);
   CHECK(read_digests_json(other)->seq == 40);
   CHECK(run_replay({"--world", world, "--against", other}).code == 0);
@@ -395,10 +401,12 @@ TEST_CASE("the replay program answers with its exit code, a table and a list", "
   CHECK(run_replay({"--world", world, "--at", "minus one"}).code == 2);
   CHECK(run_replay({"--help"}).code == 0);
 
-  REQUIRE(raw_sql(world + "/world.sqlite", "UPDATE edit_log SET client_seq = 0 WHERE seq = 9").empty());
+  REQUIRE(
+      raw_sql(world + "/world.sqlite", "UPDATE edit_log SET client_seq = 0 WHERE seq = 9").empty());
   const ReplayOutcome damaged = run_replay({"--world", world});
   CHECK(damaged.code == 2);
-  CHECK(damaged.err == "runstone-replay: " + world + "/world.sqlite: edit_log seq=9: checksum is wrong\n");
+  CHECK(damaged.err ==
+        "runstone-replay: " + world + "/world.sqlite: edit_log seq=9: checksum is wrong\n");
 }
 
 namespace {
@@ -452,7 +460,8 @@ TEST_CASE("a snapshot that is sound by itself but not what the log makes exits w
   make_small_world(tampered, [&](const ChunkKey& key, RunChunk& voxels) {
     if (key.at.x != 3) return;
     replayed = digest_of(voxels);
-    fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1, 2);  // a block that nobody placed
+    fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1,
+         2);  // a block that nobody placed
     stored = digest_of(voxels);
   });
   const ReplayOutcome different = run_replay({"--world", tampered, "--verify"});
@@ -461,14 +470,16 @@ TEST_CASE("a snapshot that is sound by itself but not what the log makes exits w
   CHECK(different.err.empty());
   CHECK(different.out.find("rows        all read and sound\n") != std::string::npos);
   CHECK(different.out.find("result      1 differences\n") != std::string::npos);
-  CHECK(different.out.find("first       snapshot: chunk=3,0,0 version=1:2 digest=" + to_hex(stored) +
-                           ", replay gives digest=" + to_hex(replayed) + "\n") != std::string::npos);
+  CHECK(
+      different.out.find("first       snapshot: chunk=3,0,0 version=1:2 digest=" + to_hex(stored) +
+                         ", replay gives digest=" + to_hex(replayed) + "\n") != std::string::npos);
 }
 
 TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is overwritten",
           "[store][replay]") {
   const TempFolder folder;
-  const std::string world = folder / "world", file = world + "/world.sqlite", json = folder / "out.json";
+  const std::string world = folder / "world", file = world + "/world.sqlite",
+                    json = folder / "out.json";
   make_small_world(world, [](const ChunkKey&, RunChunk&) {});
   REQUIRE(run_replay({"--world", world, "--verify", "--json", json}).code == 0);
   // The journal is part of the file afterwards, so that its bytes can be compared.

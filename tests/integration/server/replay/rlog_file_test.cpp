@@ -28,7 +28,8 @@ std::string digest_of_world(const std::string& folder) {
   return replay.out.substr(at, replay.out.find('\n', at) - at);
 }
 
-std::unique_ptr<Store> opened(const std::string& folder, StoreAccess access = StoreAccess::read_only) {
+std::unique_ptr<Store> opened(const std::string& folder,
+                              StoreAccess access = StoreAccess::read_only) {
   auto store = open_world(folder, access);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
@@ -67,7 +68,8 @@ Bytes bytes_of(const std::string& file) {
 
 void write_bytes(const std::string& file, const Bytes& bytes) {
   std::ofstream out(file, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.write(reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::streamsize>(bytes.size()));
 }
 
 void export_small_blocks(const std::string& folder, const std::string& file) {
@@ -103,7 +105,8 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   CHECK((players[1].key == sample_player(2).key && players[1].name == "builder 2"));
   const auto marks = *a->high_waters(), marks_again = *b->high_waters();
   REQUIRE(marks.size() == marks_again.size());
-  for (std::size_t i = 0; i < marks.size(); ++i) CHECK(marks[i].decided == marks_again[i].decided);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    CHECK(marks[i].resolved == marks_again[i].resolved);
   b.reset();
 
   const ReplayOutcome again = run_replay({"--world", copy, "--import", file});
@@ -129,8 +132,9 @@ TEST_CASE("a log exported up to a sequence gives the world of that moment, and g
   CHECK(digest_of_world(copy) == digest_of_world(world));
 }
 
-TEST_CASE("an imported log stops at the first bad block: named, and what stands before is in the world",
-          "[store][rlog]") {
+TEST_CASE(
+    "an imported log stops at the first bad block: named, and what stands before is in the world",
+    "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", file = folder / "log.rlog";
   make_world(world, 40);
@@ -145,7 +149,8 @@ TEST_CASE("an imported log stops at the first bad block: named, and what stands 
     std::size_t edits, block;
   };
   const std::vector<Damage> damages = {
-      {"checksum of the block is wrong", [&](Bytes& b) { b[begins[4] + kRlogHeaderBytes + 3] ^= 8; }, 32, 4},
+      {"checksum of the block is wrong",
+       [&](Bytes& b) { b[begins[4] + kRlogHeaderBytes + 3] ^= 8; }, 32, 4},
       {"checksum of the block header is wrong", [&](Bytes& b) { b[begins[5] + 20] ^= 1; }, 48, 5},
       {"file ends inside a block", [&](Bytes& b) { b.resize(begins[4] - 5); }, 16, 3},
       {"file ends inside a block header", [&](Bytes& b) { b.resize(begins[6] + 9); }, 64, 6},
@@ -166,11 +171,12 @@ TEST_CASE("an imported log stops at the first bad block: named, and what stands 
     const ReplayOutcome imported = run_replay({"--world", copy, "--import", torn});
     CAPTURE(i, imported.out);
     CHECK(imported.code == 2);
-    CHECK(imported.err == "runstone-replay: " + torn + ": edit " + std::to_string(damage.edits + 1) +
-                              " at byte " + std::to_string(begins[damage.block]) + ": " + damage.what + "\n");
+    CHECK(imported.err == "runstone-replay: " + torn + ": edit " +
+                              std::to_string(damage.edits + 1) + " at byte " +
+                              std::to_string(begins[damage.block]) + ": " + damage.what + "\n");
     const auto stands = log_of(copy);
-    CHECK(stands ==
-          std::vector<EditRecord>(log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
+    CHECK(stands == std::vector<EditRecord>(
+                        log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
     // The sound file mends it.
     CHECK(run_replay({"--world", copy, "--import", file}).code == 0);
     CHECK(log_of(copy) == log);
@@ -216,14 +222,17 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
   std::vector<EditRecord> records;
   {
     auto store = *create_world(world, sample_meta());
-    const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{{0, {0, 0, 0}}, sample_chunk(rng, {})}};
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {
+        {{0, {0, 0, 0}}, sample_chunk(rng, {})}};
     REQUIRE(store->save_base(base).has_value());
     REQUIRE(store->raise_epoch().has_value());
     records = sample_records(rng, 1, 1, 40);
     REQUIRE(store->append({}, std::span(records).first(10)).has_value());
   }
   std::filesystem::copy(world, folder / "copy");
-  REQUIRE(opened(world, StoreAccess::read_write)->append({}, std::span(records).subspan(10)).has_value());
+  REQUIRE(opened(world, StoreAccess::read_write)
+              ->append({}, std::span(records).subspan(10))
+              .has_value());
   export_small_blocks(world, file);
   const ReplayOutcome alone = run_replay({"--world", folder / "new", "--import", file});
   CHECK(alone.code == 2);
@@ -244,7 +253,8 @@ TEST_CASE("files that cannot be had are named", "[store][rlog]") {
   const TempFolder folder;
   make_world(folder / "world", 3);
   CHECK(run_replay({"--world", folder / "new", "--import", folder / "none.rlog"}).code == 2);
-  CHECK(run_replay({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code == 2);
+  CHECK(run_replay({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code ==
+        2);
   CHECK(run_replay({"--world", folder / "world", "--export", "a", "--import", "b"}).code == 2);
   CHECK(run_replay({"--world", folder / "world", "--export", "a", "--verify"}).code == 2);
   write_bytes(folder / "text", {'n', 'o'});

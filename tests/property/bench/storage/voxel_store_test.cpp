@@ -21,9 +21,9 @@ using test::DenseChunk;
 
 namespace {
 
-#define RUNSTONE_STORES                                                                                  \
-  FlatArray, MortonArray<MortonByTable>, MortonArray<MortonByPdep>, PaletteStore, RunStore, IntervalMap, \
-      SparseOctree, VoxelDag
+#define RUNSTONE_STORES                                                                     \
+  FlatArray, MortonArray<MortonByTable>, MortonArray<MortonByPdep>, PaletteStore, RunStore, \
+      IntervalMap, SparseOctree, VoxelDag
 
 template <class Store>
 constexpr bool runs_here() {
@@ -120,8 +120,8 @@ std::vector<std::size_t> canonical(const MortonArray<Code>&) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a store stays equal to plain voxels through random sets and balls", "[storage][property]",
-                   RUNSTONE_STORES) {
+TEMPLATE_TEST_CASE("a store stays equal to plain voxels through random sets and balls",
+                   "[storage][property]", RUNSTONE_STORES) {
   if (!runs_here<TestType>()) return;
   SplitMix64 rng{Catch::rngSeed()};
   for (int round = 0; round < 40; ++round) {
@@ -157,8 +157,8 @@ TEMPLATE_TEST_CASE("a store stays equal to plain voxels through random sets and 
   }
 }
 
-TEMPLATE_TEST_CASE("a store that became one material again is as small as one that always was", "[storage]",
-                   RUNSTONE_STORES) {
+TEMPLATE_TEST_CASE("a store that became one material again is as small as one that always was",
+                   "[storage]", RUNSTONE_STORES) {
   if (!runs_here<TestType>()) return;
   SplitMix64 rng{Catch::rngSeed()};
   TestType store(random_cube(rng, 16, 5));

@@ -24,7 +24,8 @@ using Logged = std::pair<OperationId, EditDescriptor>;
 struct Rules {
   bool crashes = true;
   bool audits = true;
-  bool hide_gaps = false;  // sabotage: a dropped commit is not admitted in the next one's previous sequences
+  bool hide_gaps =
+      false;  // sabotage: a dropped commit is not admitted in the next one's previous sequences
 };
 
 EditDescriptor random_edit(SplitMix64& rng) {
@@ -47,8 +48,8 @@ EditDescriptor random_edit(SplitMix64& rng) {
       edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(7))};
       break;
     default:
-      edit.shape =
-          FillBox{{at, {at.x + rng.between(1, 9), at.y + rng.between(1, 9), at.z + rng.between(1, 9)}}};
+      edit.shape = FillBox{
+          {at, {at.x + rng.between(1, 9), at.y + rng.between(1, 9), at.z + rng.between(1, 9)}}};
   }
   switch (rng.below(4)) {
     case 0:
@@ -77,7 +78,7 @@ struct Peer {
   View view;
   std::set<ChunkCoord> subscribed;
   std::set<ChunkCoord> stale;        // commits were dropped for it: a snapshot is owed
-  ClientSequence decided = 0;        // high-water mark
+  ClientSequence resolved = 0;       // high-water mark
   std::set<ClientSequence> refused;  // until a crash
 };
 
@@ -107,18 +108,19 @@ class Simulation {
             const ChunkCoord at{x, y, z};
             if (!replica.view()->contains(at)) continue;
             const ChunkPtr held = replica.confirmed({0, at});
-            const std::string where =
-                " in chunk " + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z);
+            const std::string where = " in chunk " + std::to_string(x) + "," + std::to_string(y) +
+                                      "," + std::to_string(z);
             if (!held) return "nothing held" + where;
             const Chunk& truth = world_.chunk(at);
             if (held->version != truth.version) return "version differs" + where;
             if (digest_of(held->voxels) != truth.digest) return "voxels differ" + where;
             if (held->digest != truth.digest) return "digest did not follow" + where;
-            if (replica.shown({0, at}).get() != &held->voxels) return "a prediction is left" + where;
+            if (replica.shown({0, at}).get() != &held->voxels)
+              return "a prediction is left" + where;
           }
         }
       }
-      if (!replica.own_edits().all().empty()) return "own edits are left";
+      if (!replica.local_edits().all().empty()) return "own edits are left";
       if (replica.awaiting_count() != 0) return "a chunk still waits";
     }
     std::set<OperationId> seen;
@@ -195,7 +197,7 @@ class Simulation {
   }
 
   void offer(Peer& peer, ClientSequence seq) {
-    const EditDescriptor edit = peer.replica.own_edits().all().at(seq).edit;
+    const EditDescriptor edit = peer.replica.local_edits().all().at(seq).edit;
     peer.upstream.push_back([this, &peer, seq, edit] { order(peer, seq, edit); });
   }
 
@@ -205,8 +207,8 @@ class Simulation {
       peer.control.push_back([this, &peer, reject] { peer.replica.receive(reject, now_); });
     };
     if (peer.refused.contains(seq)) return answer(RejectReason::rate_limited, 0);
-    if (seq <= peer.decided) return answer(RejectReason::already_decided, world_.head());
-    peer.decided = seq;
+    if (seq <= peer.resolved) return answer(RejectReason::already_resolved, world_.head());
+    peer.resolved = seq;
     if (rng_.below(8) == 0) {
       owed_.erase({peer.author, 1, seq});
       peer.refused.insert(seq);
@@ -241,7 +243,8 @@ class Simulation {
           if (held) copy.edits[0].previous[c] = held->version.seq;
         }
       }
-      p.edits.push_back([this, &p, copy] { REQUIRE(p.replica.receive(copy, arrival()).has_value()); });
+      p.edits.push_back(
+          [this, &p, copy] { REQUIRE(p.replica.receive(copy, arrival()).has_value()); });
     }
   }
 
@@ -290,8 +293,8 @@ class Simulation {
     peer.upstream.clear();
     peer.subscribed.clear();
     peer.stale.clear();
-    const auto offers =
-        peer.replica.open({kEdge, peer.author, 1, world_.epoch(), durable_, world_.head(), peer.decided});
+    const auto offers = peer.replica.open(
+        {kEdge, peer.author, 1, world_.epoch(), durable_, world_.head(), peer.resolved});
     const View view = *peer.replica.view();
     peer.upstream.push_back([this, &peer, view] { subscribe(peer, view); });
     for (const ClientSequence seq : offers) offer(peer, seq);
@@ -300,10 +303,11 @@ class Simulation {
   void advance_durable() {
     durable_ = world_.head();
     for (Peer& peer : peers_) {
-      peer.control.push_back(
-          [&peer, seq = durable_, epoch = world_.epoch()] { peer.replica.receive(Durable{epoch, seq}); });
+      peer.control.push_back([&peer, seq = durable_, epoch = world_.epoch()] {
+        peer.replica.receive(Durable{epoch, seq});
+      });
       if (!rules_.audits) continue;
-      Audit audit;
+      DigestCheck audit;
       for (const ChunkCoord at : peer.subscribed) {
         audit.entries.push_back({{0, at}, world_.chunk(at).version, world_.chunk(at).digest});
       }
@@ -314,10 +318,10 @@ class Simulation {
   void crash() {
     log_.resize(durable_);
     for (Peer& peer : peers_) {
-      peer.decided = 0;
+      peer.resolved = 0;
       peer.refused.clear();
       for (const auto& [op, edit] : log_) {
-        if (op.author == peer.author) peer.decided = std::max(peer.decided, op.seq);
+        if (op.author == peer.author) peer.resolved = std::max(peer.resolved, op.seq);
       }
     }
     world_.restart(log_);
@@ -356,7 +360,8 @@ class Simulation {
 
 }  // namespace
 
-TEST_CASE("replicas agree with the authority after any interleaving, cut and crash", "[replica][property]") {
+TEST_CASE("replicas agree with the authority after any interleaving, cut and crash",
+          "[replica][property]") {
   ReplicaCounters sum;
   for (std::uint64_t round = 0; round < 60; ++round) {
     const std::uint64_t seed = mix64(Catch::rngSeed() + round);
@@ -384,7 +389,8 @@ TEST_CASE("replicas agree with the authority after any interleaving, cut and cra
   CHECK(sum.dropped_by_epoch > 0);
 }
 
-TEST_CASE("a server that hides a dropped commit is caught by the comparison", "[replica][property]") {
+TEST_CASE("a server that hides a dropped commit is caught by the comparison",
+          "[replica][property]") {
   int caught = 0;
   for (std::uint64_t round = 0; round < 8; ++round) {
     Simulation simulation(mix64(Catch::rngSeed() + round),

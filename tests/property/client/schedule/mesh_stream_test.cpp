@@ -31,7 +31,9 @@ constexpr AuthorId kMe = 1, kOther = 2;
 
 /// Small and large edits around the borders of the eight chunks that meet in the middle.
 EditDescriptor random_edit(SplitMix64& rng) {
-  const auto coordinate = [&] { return rng.below(2) == 0 ? rng.between(-2, 2) : rng.between(-18, 18); };
+  const auto coordinate = [&] {
+    return rng.below(2) == 0 ? rng.between(-2, 2) : rng.between(-18, 18);
+  };
   const VoxelPos at{coordinate(), coordinate(), coordinate()};
   EditDescriptor edit;
   edit.material = static_cast<Material>(rng.below(kMeshMaterialCount));
@@ -40,8 +42,8 @@ EditDescriptor random_edit(SplitMix64& rng) {
       edit.shape = FillSphere{at, static_cast<std::uint16_t>(rng.below(6))};
       break;
     case 1:
-      edit.shape =
-          FillBox{{at, {at.x + rng.between(1, 9), at.y + rng.between(1, 9), at.z + rng.between(1, 9)}}};
+      edit.shape = FillBox{
+          {at, {at.x + rng.between(1, 9), at.y + rng.between(1, 9), at.z + rng.between(1, 9)}}};
       break;
     case 2:
       edit.shape = random_stroke(rng, at);
@@ -85,8 +87,8 @@ class MeshStream {
   std::string mismatch() {
     if (planner_.dirty_count() != 0) return "not everything is meshed";
     for (const ChunkKey& key : replica_.confirmed_keys()) {
-      const std::string where = " in chunk " + std::to_string(key.at.x) + "," + std::to_string(key.at.y) +
-                                "," + std::to_string(key.at.z);
+      const std::string where = " in chunk " + std::to_string(key.at.x) + "," +
+                                std::to_string(key.at.y) + "," + std::to_string(key.at.z);
       const auto it = drawn_.find(key);
       if (it == drawn_.end()) return "nothing drawn" + where;
       const auto& [job, mesh] = it->second;
@@ -123,7 +125,7 @@ class MeshStream {
     } else if (dice < 58) {
       if (!control_.empty()) pop(control_)();
     } else if (dice < 72) {
-      take_news();
+      drain_changes();
     } else if (dice < 85) {
       push_job();
     } else if (dice < 98) {
@@ -165,10 +167,10 @@ class MeshStream {
   }
 
   void order(ClientSequence seq) {
-    const auto& own = replica_.own_edits().all();
+    const auto& own = replica_.local_edits().all();
     const auto it = own.find(seq);
-    if (it == own.end() || seq <= decided_) return;
-    decided_ = seq;
+    if (it == own.end() || seq <= resolved_) return;
+    resolved_ = seq;
     if (rng_.below(3) == 0) {
       control_.push_back(
           [this, seq] { replica_.receive(Reject{seq, RejectReason::rate_limited, "", 0}, now_); });
@@ -193,7 +195,8 @@ class MeshStream {
   void send_snapshot(ChunkCoord at) {
     if (!replica_.view()->contains(at)) return;
     ChunkSnapshot snapshot = world_.snapshot(at);
-    if (rng_.below(4) == 0) snapshot.chunk.voxels = reorder(snapshot.chunk.voxels, random_order(rng_));
+    if (rng_.below(4) == 0)
+      snapshot.chunk.voxels = reorder(snapshot.chunk.voxels, random_order(rng_));
     snapshots_.push_back(std::move(snapshot));
   }
 
@@ -207,16 +210,17 @@ class MeshStream {
     commits_.clear();
     control_.clear();
     snapshots_.clear();
-    const auto offers = replica_.open({kEdge, kMe, 1, world_.epoch(), durable_, world_.head(), decided_});
+    const auto offers =
+        replica_.open({kEdge, kMe, 1, world_.epoch(), durable_, world_.head(), resolved_});
     offered_.assign(offers.begin(), offers.end());
     send_view({});
   }
 
   void crash() {
     log_.resize(durable_);
-    decided_ = 0;
+    resolved_ = 0;
     for (const auto& [op, edit] : log_) {
-      if (op.author == kMe) decided_ = std::max(decided_, op.seq);
+      if (op.author == kMe) resolved_ = std::max(resolved_, op.seq);
     }
     world_.restart(log_);
     connect();
@@ -236,7 +240,9 @@ class MeshStream {
 
   // ---- the client
 
-  View random_view() { return {{rng_.between(-1, 0), rng_.between(-1, 0), rng_.between(-1, 0)}, 1, 1}; }
+  View random_view() {
+    return {{rng_.between(-1, 0), rng_.between(-1, 0), rng_.between(-1, 0)}, 1, 1};
+  }
 
   std::set<ChunkCoord> in_view() const {
     std::set<ChunkCoord> out;
@@ -264,7 +270,7 @@ class MeshStream {
     planner_.view_changed();
     const auto stayed = in_view();
     for (int i = 0; i < 20; ++i) commit({kOther, 1, ++others_}, random_edit(rng_));
-    if (rng_.below(2) == 0) take_news();
+    if (rng_.below(2) == 0) drain_changes();
     replica_.set_view(here);
     planner_.view_changed();
     send_view(stayed);
@@ -272,15 +278,15 @@ class MeshStream {
 
   void receive_snapshot() {
     if (snapshots_.empty()) return;
-    const auto one = snapshots_.begin() +
-                     rng_.below(std::min<std::uint32_t>(4, static_cast<std::uint32_t>(snapshots_.size())));
+    const auto one = snapshots_.begin() + rng_.below(std::min<std::uint32_t>(
+                                              4, static_cast<std::uint32_t>(snapshots_.size())));
     ChunkSnapshot snapshot = std::move(*one);
     snapshots_.erase(one);
     replica_.receive(std::move(snapshot), {now_, now_, now_});
   }
 
-  void take_news() {
-    std::vector<ChunkNews> news = replica_.take_news().chunks;
+  void drain_changes() {
+    std::vector<ChunkNews> news = replica_.drain_changes().chunks;
     for (ChunkNews& chunk : news) {
       if (chunk.removed) drawn_.erase(chunk.key);
       if (sabotage_.own_layers) chunk.layers.dirty = {};
@@ -294,7 +300,8 @@ class MeshStream {
     auto job = planner_.next();
     if (!job) return;
     const auto last = drawn_.find(job->key);
-    if (last != drawn_.end() && last->second.first.chunk->order != job->chunk->order) ++counts_.turned;
+    if (last != drawn_.end() && last->second.first.chunk->order != job->chunk->order)
+      ++counts_.turned;
     MeshJob kept = *job;
     kept.before = nullptr;
     jobs_[job->number] = std::move(kept);
@@ -314,7 +321,7 @@ class MeshStream {
     for (std::size_t d = 0; d < neighbours.size(); ++d) neighbours[d] = job.neighbours[d].get();
     if (!same(*result.mesh, whole_mesh(*job.chunk, neighbours))) ++counts_.wrong;
     ++(result.layers_only ? counts_.layers : counts_.whole);
-    if (result.layers_only && job.changed.beyond != PictureLayers{}.beyond) ++counts_.beyond;
+    if (result.layers_only && job.changed.beyond != VisibleLayers{}.beyond) ++counts_.beyond;
     if (planner_.finish(result.key, result.number, result.mesh)) {
       drawn_.insert_or_assign(result.key, std::pair(job, result.mesh));
     } else {
@@ -324,7 +331,8 @@ class MeshStream {
 
   void make_pool() {
     pool_.reset();
-    pool_ = std::make_unique<MeshPool>(mesh_visibility(), workers_, [] { return std::int64_t{0}; }, nullptr);
+    pool_ = std::make_unique<MeshPool>(
+        mesh_visibility(), workers_, [] { return std::int64_t{0}; }, nullptr);
   }
 
   ChunkMesh whole_mesh(const RunChunk& chunk, const MeshNeighbours& neighbours) {
@@ -343,7 +351,7 @@ class MeshStream {
       now_ += kRequestAgainUs;
       tick();
     }
-    take_news();
+    drain_changes();
     while (planner_.ready_count() != 0 || pool_->in_flight() != 0 || !held_.empty()) {
       push_job();
       take_result();
@@ -356,7 +364,7 @@ class MeshStream {
   const Sabotage sabotage_;
   AuthorityModel world_{kEdge, 1};
   std::vector<std::pair<OperationId, EditDescriptor>> log_;
-  ClientSequence others_ = 0, decided_ = 0;
+  ClientSequence others_ = 0, resolved_ = 0;
   Sequence durable_ = 0;
   TimeUs now_ = 0;
   // On their way, each in order but for the snapshots.
@@ -401,7 +409,8 @@ TEST_CASE("every mesh on its way through replica, planner and pool is a whole me
   CHECK(sum.turned > 10);
 }
 
-TEST_CASE("a planner that is not told of a layer is caught by the comparison", "[schedule][property]") {
+TEST_CASE("a planner that is not told of a layer is caught by the comparison",
+          "[schedule][property]") {
   const Sabotage sabotage = GENERATE(Sabotage{.own_layers = true}, Sabotage{.beyond_layers = true});
   std::uint64_t wrong = 0, pictures = 0;
   // Few pictures are still wrong at the end: a later edit meshes the chunk as a whole.

@@ -25,7 +25,8 @@ VoxelPos random_origin(SplitMix64& rng, Extent extent) {
     case 0:
       return {0, 0, 0};
     case 1:
-      return {-static_cast<std::int32_t>(extent.x), extent.y, -2 * static_cast<std::int32_t>(extent.z)};
+      return {-static_cast<std::int32_t>(extent.x), extent.y,
+              -2 * static_cast<std::int32_t>(extent.z)};
     case 2:
       return {rng.between(-1000, 1000), rng.between(-1000, 1000), rng.between(-1000, 1000)};
     default:  // 128 off the corner, so that edits near the chunk stay inside the world
@@ -33,7 +34,8 @@ VoxelPos random_origin(SplitMix64& rng, Extent extent) {
   }
 }
 
-std::vector<EditDescriptor> random_stack(SplitMix64& rng, VoxelPos origin, Extent extent, std::size_t depth) {
+std::vector<EditDescriptor> random_stack(SplitMix64& rng, VoxelPos origin, Extent extent,
+                                         std::size_t depth) {
   std::vector<EditDescriptor> edits(depth);
   for (EditDescriptor& edit : edits) edit = random_edit_near(rng, origin, extent);
   return edits;
@@ -80,7 +82,8 @@ const char* difference(RunChunk& chunk, Digest& digest, DenseChunk& oracle, Voxe
 
 }  // namespace
 
-TEST_CASE("stacks of edits equal the dense oracle in voxels, digest and report", "[edits][property]") {
+TEST_CASE("stacks of edits equal the dense oracle in voxels, digest and report",
+          "[edits][property]") {
   SplitMix64 rng{1 + Catch::rngSeed()};
   ApplyScratch scratch;
   std::size_t edits_done = 0;
@@ -93,8 +96,8 @@ TEST_CASE("stacks of edits equal the dense oracle in voxels, digest and report",
     for (int step = 0; step < 6; ++step) {
       const std::size_t depth = rng.below(2) == 0 ? 1 : 1 + rng.below(40);
       const auto edits = random_stack(rng, origin, chunk.extent, depth);
-      CAPTURE(Catch::rngSeed(), edits_done, step, edits, chunk.extent.x, chunk.extent.y, chunk.extent.z,
-              static_cast<int>(chunk.order));
+      CAPTURE(Catch::rngSeed(), edits_done, step, edits, chunk.extent.x, chunk.extent.y,
+              chunk.extent.z, static_cast<int>(chunk.order));
       const RunChunk before = chunk;
       const char* differs = difference(chunk, digest, oracle, origin, edits, scratch);
       INFO((differs == nullptr ? "" : differs));
@@ -121,11 +124,13 @@ TEST_CASE("a stack equals its edits one after another, by every strategy", "[edi
       RunChunk first = one_by_one;
       Digest first_digest = digest_one_by_one;
       const std::span<const EditDescriptor> single(&edit, 1);
-      const ApplyResult result = apply_stack_by(kWalkPieces, first, first_digest, origin, single, scratch);
+      const ApplyResult result =
+          apply_stack_by(kWalkPieces, first, first_digest, origin, single, scratch);
       for (const ApplyStrategy strategy : {kWalkWhole, kSweepPieces, kSweepWhole, kPaintWhole}) {
         RunChunk other = one_by_one;
         Digest other_digest = digest_one_by_one;
-        REQUIRE(same(apply_stack_by(strategy, other, other_digest, origin, single, scratch), result));
+        REQUIRE(
+            same(apply_stack_by(strategy, other, other_digest, origin, single, scratch), result));
         REQUIRE(other == first);
         REQUIRE(other_digest == first_digest);
       }
@@ -151,7 +156,8 @@ TEST_CASE("a stack deeper than a word of the active set equals its edits one aft
           "[edits][property]") {
   SplitMix64 rng{3 + Catch::rngSeed()};
   ApplyScratch scratch;
-  for (const Extent extent : {Extent::cube(32), Extent::cube(16), Extent{128, 9, 20}, Extent{64, 64, 64}}) {
+  for (const Extent extent :
+       {Extent::cube(32), Extent::cube(16), Extent{128, 9, 20}, Extent{64, 64, 64}}) {
     for (const AxisOrder order : kAxisOrders) {
       RunChunk stacked = random_chunk(rng, extent, order, 6);
       const auto edits = random_stack(rng, {}, extent, 300);
@@ -180,9 +186,10 @@ TEST_CASE("a paste lies as its orientation says, in each axis order of clipboard
         const auto clipboard = *Clipboard::of(some->palette(), reorder(some->cells(), cells_order));
         const auto at = [&] { return rng.between(-6, 9); };
         Mask mask{static_cast<MaskKind>(rng.below(4)), kEmpty};
-        if (mask.kind == MaskKind::only_material) mask.material = static_cast<Material>(rng.below(4));
-        const EditDescriptor edit{Paste{{at(), at(), at()}, clipboard, *Orientation::of_byte(byte)}, mask,
-                                  kEmpty};
+        if (mask.kind == MaskKind::only_material)
+          mask.material = static_cast<Material>(rng.below(4));
+        const EditDescriptor edit{Paste{{at(), at(), at()}, clipboard, *Orientation::of_byte(byte)},
+                                  mask, kEmpty};
         RunChunk chunk = random_chunk(rng, kChunk, order, 4);
         Digest digest = digest_of(chunk);
         DenseChunk oracle = DenseChunk::of(chunk);
@@ -195,7 +202,8 @@ TEST_CASE("a paste lies as its orientation says, in each axis order of clipboard
   }
 }
 
-TEST_CASE("an edit that reaches over many chunks changes each as the oracle says", "[edits][property]") {
+TEST_CASE("an edit that reaches over many chunks changes each as the oracle says",
+          "[edits][property]") {
   SplitMix64 rng{4 + Catch::rngSeed()};
   ApplyScratch scratch;
   constexpr std::int32_t kEdge = 16;

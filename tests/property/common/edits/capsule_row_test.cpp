@@ -15,7 +15,8 @@ namespace {
 VoxelPos far_point(SplitMix64& rng) {
   constexpr std::int32_t kReach = kWorldLimit - kStrokeStepMax - kEditRadiusMax - 1;
   const auto c = [&] {
-    return rng.below(3) == 0 ? (rng.below(2) == 0 ? -kReach : kReach) : rng.between(-kReach, kReach);
+    return rng.below(3) == 0 ? (rng.below(2) == 0 ? -kReach : kReach)
+                             : rng.between(-kReach, kReach);
   };
   return {c(), c(), c()};
 }
@@ -45,7 +46,8 @@ TEST_CASE("whole square roots are exact, also where doubles are not", "[edits][p
   }
 }
 
-TEST_CASE("rows of the longest and widest strokes equal the oracle in any order", "[edits][property]") {
+TEST_CASE("rows of the longest and widest strokes equal the oracle in any order",
+          "[edits][property]") {
   SplitMix64 rng{31 + Catch::rngSeed()};
   int rim = 0;
   for (int round = 0; round < 1500; ++round) {
@@ -61,7 +63,8 @@ TEST_CASE("rows of the longest and widest strokes equal the oracle in any order"
     // A box about the rim: from a point of the segment, a radius away in some direction.
     const std::int32_t share = rng.between(0, 16), r = stroke.radius;
     const auto beside = [&](std::int32_t from, std::int32_t step) {
-      const std::int32_t out = rng.below(2) == 0 ? rng.between(-r, r) : (rng.below(2) == 0 ? -r : r) * 9 / 16;
+      const std::int32_t out =
+          rng.below(2) == 0 ? rng.between(-r, r) : (rng.below(2) == 0 ? -r : r) * 9 / 16;
       return from + step * share / 16 + out - 5;
     };
     const VoxelPos origin{beside(a.x, d[0]), beside(a.y, d[1]), beside(a.z, d[2])};
@@ -79,14 +82,17 @@ TEST_CASE("rows of the longest and widest strokes equal the oracle in any order"
   CHECK(rim > 200);
 }
 
-TEST_CASE("a stroke on one edge of the world's largest numbers is cut where the world is", "[edits]") {
+TEST_CASE("a stroke on one edge of the world's largest numbers is cut where the world is",
+          "[edits]") {
   constexpr std::int32_t kEnd = kWorldLimit - 1 - kEditRadiusMax;
-  const FillStroke stroke{{{kEnd, kEnd, kEnd}, {kEnd - 1024, kEnd - 1024, kEnd - 1024}}, kEditRadiusMax};
+  const FillStroke stroke{{{kEnd, kEnd, kEnd}, {kEnd - 1024, kEnd - 1024, kEnd - 1024}},
+                          kEditRadiusMax};
   const EditDescriptor edit{stroke, {}, 1};
   REQUIRE(validate(edit).has_value());
   CHECK(bounding_box(edit).max == VoxelPos{kWorldLimit, kWorldLimit, kWorldLimit});
   CHECK(touches(edit, {{kWorldLimit - 1, kEnd, kEnd}, {kWorldLimit, kEnd + 1, kEnd + 1}}));
-  CHECK_FALSE(touches(edit, {{kWorldLimit - 1, kEnd, kEnd + 23}, {kWorldLimit, kEnd + 1, kEnd + 24}}));
+  CHECK_FALSE(
+      touches(edit, {{kWorldLimit - 1, kEnd, kEnd + 23}, {kWorldLimit, kEnd + 1, kEnd + 24}}));
   CHECK(touched_chunks_bound(edit, 128) == 17 * 17 * 17);  // 2,049 voxels a side, off the grid
 }
 

@@ -24,7 +24,8 @@ TEST_CASE("voxel counts and bounding boxes equal a count of single voxels", "[ed
     }
     VoxelBox tight{voxels.front(), voxels.front()};
     for (const VoxelPos p : voxels) {
-      tight.min = {std::min(tight.min.x, p.x), std::min(tight.min.y, p.y), std::min(tight.min.z, p.z)};
+      tight.min = {std::min(tight.min.x, p.x), std::min(tight.min.y, p.y),
+                   std::min(tight.min.z, p.z)};
       tight.max = {std::max(tight.max.x, p.x + 1), std::max(tight.max.y, p.y + 1),
                    std::max(tight.max.z, p.z + 1)};
     }
@@ -69,7 +70,8 @@ TEST_CASE("touched chunks are the chunks of the single voxels", "[edits][propert
         const auto chunk = [edge](std::int32_t c) { return (c + 64 * edge) / edge - 64; };
         expected.insert({chunk(p.x), chunk(p.y), chunk(p.z)});
       }
-      REQUIRE(touched_chunks(edit, edge) == std::vector<ChunkCoord>(expected.begin(), expected.end()));
+      REQUIRE(touched_chunks(edit, edge) ==
+              std::vector<ChunkCoord>(expected.begin(), expected.end()));
       REQUIRE(touched_chunks_bound(edit, edge) >= expected.size());
     }
   }
@@ -109,8 +111,8 @@ TEST_CASE("an edit touches a box when one of its voxels is inside", "[edits][pro
   for (int round = 0; round < 2000; ++round) {
     const EditDescriptor edit = random_edit_near(rng, {}, Extent::cube(16));
     const VoxelPos min{rng.between(-10, 26), rng.between(-10, 26), rng.between(-10, 26)};
-    const VoxelBox box{min,
-                       {min.x + rng.between(0, 5), min.y + rng.between(0, 5), min.z + rng.between(0, 5)}};
+    const VoxelBox box{
+        min, {min.x + rng.between(0, 5), min.y + rng.between(0, 5), min.z + rng.between(0, 5)}};
     bool expected = false;
     for (VoxelPos p = min; p.x < box.max.x; ++p.x) {
       for (p.y = min.y; p.y < box.max.y; ++p.y) {
@@ -122,7 +124,8 @@ TEST_CASE("an edit touches a box when one of its voxels is inside", "[edits][pro
   }
 }
 
-TEST_CASE("a paste touches a box inside it where a cell of the box is touched", "[edits][property]") {
+TEST_CASE("a paste touches a box inside it where a cell of the box is touched",
+          "[edits][property]") {
   SplitMix64 rng{26 + Catch::rngSeed()};
   int misses = 0;
   for (int round = 0; round < 400; ++round) {
@@ -132,7 +135,9 @@ TEST_CASE("a paste touches a box inside it where a cell of the box is touched", 
     const EditDescriptor edit{paste, {}, kEmpty};
     const VoxelBox whole = bounding_box(edit);
     for (int i = 0; i < 30; ++i) {
-      const auto low = [&rng](std::int32_t from, std::int32_t to) { return rng.between(from, to - 1); };
+      const auto low = [&rng](std::int32_t from, std::int32_t to) {
+        return rng.between(from, to - 1);
+      };
       const VoxelPos min{low(whole.min.x, whole.max.x), low(whole.min.y, whole.max.y),
                          low(whole.min.z, whole.max.z)};
       const auto side = [&rng] { return rng.between(1, 3); };

@@ -43,18 +43,21 @@ std::vector<EditDescriptor> stack_near(SplitMix64& rng, Extent extent, std::size
 }
 
 // A stroke that passes the chunk somewhere on its way, as long and as wide as asked for.
-EditDescriptor stroke_through(SplitMix64& rng, Extent extent, std::int32_t step, std::int32_t radius) {
+EditDescriptor stroke_through(SplitMix64& rng, Extent extent, std::int32_t step,
+                              std::int32_t radius) {
   const auto far = [&] { return rng.below(4) == 0 ? 0 : rng.between(-step, step); };
   std::array<std::int32_t, 3> d = {far(), far(), far()};
   if (d == std::array<std::int32_t, 3>{}) d[rng.below(3)] = step;
   // A radius away in some direction, so that it is the rim that lies in the chunk.
   const auto from = [&](std::int32_t side, std::int32_t along) {
-    const std::int32_t out = rng.below(3) == 0 ? (rng.below(2) == 0 ? -radius : radius) : rng.between(-4, 4);
+    const std::int32_t out =
+        rng.below(3) == 0 ? (rng.below(2) == 0 ? -radius : radius) : rng.between(-4, 4);
     return side / 2 - along * rng.between(0, 8) / 8 + out;
   };
   const VoxelPos a{from(extent.x, d[0]), from(extent.y, d[1]), from(extent.z, d[2])};
   EditDescriptor edit;
-  edit.shape = FillStroke{{a, {a.x + d[0], a.y + d[1], a.z + d[2]}}, static_cast<std::uint16_t>(radius)};
+  edit.shape =
+      FillStroke{{a, {a.x + d[0], a.y + d[1], a.z + d[2]}}, static_cast<std::uint16_t>(radius)};
   edit.material = static_cast<Material>(rng.below(6));
   if (rng.below(2) == 0) edit.mask.kind = MaskKind::only_empty;
   return edit;
@@ -62,11 +65,12 @@ EditDescriptor stroke_through(SplitMix64& rng, Extent extent, std::int32_t step,
 
 }  // namespace
 
-TEST_CASE("painted stacks equal the dense oracle at every chunk edge and axis order", "[edits][property]") {
+TEST_CASE("painted stacks equal the dense oracle at every chunk edge and axis order",
+          "[edits][property]") {
   SplitMix64 rng{41 + Catch::rngSeed()};
   ApplyScratch scratch;
-  for (const Extent extent : {Extent::cube(16), Extent::cube(32), Extent::cube(64), Extent::cube(128),
-                              Extent{33, 9, 47}, Extent{31, 65, 8}}) {
+  for (const Extent extent : {Extent::cube(16), Extent::cube(32), Extent::cube(64),
+                              Extent::cube(128), Extent{33, 9, 47}, Extent{31, 65, 8}}) {
     for (const AxisOrder order : kAxisOrders) {
       const RunChunk start = random_chunk(rng, extent, order, rng.below(4) == 0 ? 65536 : 6);
       const auto edits = stack_near(rng, extent, extent.volume() > 40'000 ? 4 : 1 + rng.below(80));
@@ -123,7 +127,8 @@ TEST_CASE("painted strokes equal the oracle from the shortest to the longest and
       edit = stroke_through(rng, extent, huge ? kStrokeStepMax : rng.between(1, 60),
                             huge ? rng.between(300, 512) : rng.between(1, 9));
     }
-    CAPTURE(Catch::rngSeed(), round, edits, extent.x, extent.y, extent.z, static_cast<int>(start.order));
+    CAPTURE(Catch::rngSeed(), round, edits, extent.x, extent.y, extent.z,
+            static_cast<int>(start.order));
     require_same(start, {}, edits, scratch);
   }
 }

@@ -14,7 +14,8 @@ namespace {
 /// Keeps of every voxel all that was ever written to it, and by whom.
 class HistoryOracle {
  public:
-  HistoryOracle(DenseChunk start, VoxelPos origin) : start_(std::move(start)), origin_(origin), now_(start_) {
+  HistoryOracle(DenseChunk start, VoxelPos origin)
+      : start_(std::move(start)), origin_(origin), now_(start_) {
     writers_.resize(std::size_t{1} * start_.extent().volume());
   }
 
@@ -22,7 +23,8 @@ class HistoryOracle {
     const DenseChunk before = now_;
     oracle_apply(now_, origin_, {&edit, 1});
     for_each([&](int x, int y, int z, std::vector<Writer>& writers) {
-      if (now_.at(x, y, z) != before.at(x, y, z)) writers.push_back({now_.at(x, y, z), is_selected});
+      if (now_.at(x, y, z) != before.at(x, y, z))
+        writers.push_back({now_.at(x, y, z), is_selected});
     });
   }
 
@@ -79,7 +81,8 @@ bool tells_the_differences(const std::vector<Difference>& listed, const DenseChu
 
 }  // namespace
 
-TEST_CASE("restoring equals going back through each voxel's own history", "[edits][restore][property]") {
+TEST_CASE("restoring equals going back through each voxel's own history",
+          "[edits][restore][property]") {
   SplitMix64 rng{41 + Catch::rngSeed()};
   ApplyScratch scratch;
   std::size_t with_differences = 0;
@@ -119,7 +122,8 @@ TEST_CASE("restoring equals going back through each voxel's own history", "[edit
   CHECK(told_apart > 100);  // an oracle that treats others' later work wrongly would be noticed
 }
 
-TEST_CASE("changes written into another chunk are those stretches and nothing else", "[edits][property]") {
+TEST_CASE("changes written into another chunk are those stretches and nothing else",
+          "[edits][property]") {
   SplitMix64 rng{42 + Catch::rngSeed()};
   ApplyScratch scratch;
   for (int round = 0; round < 300; ++round) {

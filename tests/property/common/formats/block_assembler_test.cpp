@@ -21,8 +21,8 @@ Blocks random_blocks(SplitMix64& random, std::int32_t edge, ChunkCoord at) {
     const ChunkCoord block{at.x * side + i % side, at.y * side + i / side % side,
                            at.z * side + i / side / side};
     const auto shape = static_cast<Shape>(random.below(kShapeCount));
-    blocks.emplace(block,
-                   random_chunk(random, Extent::cube(16), AxisOrder::xyz, 1 + random.below(20), shape));
+    blocks.emplace(
+        block, random_chunk(random, Extent::cube(16), AxisOrder::xyz, 1 + random.below(20), shape));
   }
   return blocks;
 }
@@ -53,7 +53,8 @@ DenseChunk assemble_dense(const Blocks& blocks, std::int32_t edge, ChunkCoord at
 
 }  // namespace
 
-TEST_CASE("blocks put together run by run equal blocks copied voxel by voxel", "[formats][property]") {
+TEST_CASE("blocks put together run by run equal blocks copied voxel by voxel",
+          "[formats][property]") {
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 60; ++round) {
     const std::int32_t edge = round == 0 ? 128 : 16 << random.below(3);
@@ -88,7 +89,8 @@ TEST_CASE("equal blocks make a single run, and no blocks an empty chunk", "[form
 TEST_CASE("materials are replaced run by run and equal neighbours merge", "[formats][property]") {
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 100; ++round) {
-    const RunChunk chunk = random_chunk(random, random_extent(random, 24), random_order(random), 12);
+    const RunChunk chunk =
+        random_chunk(random, random_extent(random, 24), random_order(random), 12);
     std::vector<Material> to(kMaterialCountMax);
     for (Material& material : to) material = static_cast<Material>(random.below(5));
     const RunChunk mapped = with_materials(chunk, to);

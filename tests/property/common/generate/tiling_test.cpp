@@ -12,12 +12,14 @@ Material voxel(const Generator& generator, VoxelPos at, Extent extent, VoxelPos 
   const RunChunk chunk = generator.generate(origin, extent);
   REQUIRE(validate(chunk).has_value());
   REQUIRE(chunk.extent == extent);
-  return material_at(chunk,
-                     {static_cast<std::uint8_t>(at.x - origin.x), static_cast<std::uint8_t>(at.y - origin.y),
-                      static_cast<std::uint8_t>(at.z - origin.z)});
+  return material_at(chunk, {static_cast<std::uint8_t>(at.x - origin.x),
+                             static_cast<std::uint8_t>(at.y - origin.y),
+                             static_cast<std::uint8_t>(at.z - origin.z)});
 }
 
-std::uint8_t random_side(SplitMix64& random) { return static_cast<std::uint8_t>(random.between(8, 48)); }
+std::uint8_t random_side(SplitMix64& random) {
+  return static_cast<std::uint8_t>(random.between(8, 48));
+}
 
 }  // namespace
 
@@ -32,7 +34,8 @@ TEST_CASE("a voxel is the same in every chunk that holds it", "[generate][proper
     const VoxelPos at{random.between(-reach, reach),
                       random.between(generator.y_min() - 20, generator.y_max() + 20),
                       random.between(-reach, reach)};
-    const Material expected = voxel(generator, at, Extent::cube(32), origin_of(chunk_of(at, 32), 32));
+    const Material expected =
+        voxel(generator, at, Extent::cube(32), origin_of(chunk_of(at, 32), 32));
     CAPTURE(name, at.x, at.y, at.z);
     REQUIRE(voxel(generator, at, Extent::cube(16), origin_of(chunk_of(at, 16), 16)) == expected);
     REQUIRE(voxel(generator, at, Extent::cube(64), origin_of(chunk_of(at, 64), 64)) == expected);
@@ -44,7 +47,8 @@ TEST_CASE("a voxel is the same in every chunk that holds it", "[generate][proper
   }
 }
 
-TEST_CASE("the surface is the top of the voxels, and the bounds hold them all", "[generate][property]") {
+TEST_CASE("the surface is the top of the voxels, and the bounds hold them all",
+          "[generate][property]") {
   const auto name = GENERATE(as<std::string>{}, "flat", "terrain");
   SplitMix64 random(Catch::rngSeed());
   const auto made = make_generator({name, 1, 11, ""}, default_material_table());

@@ -36,9 +36,10 @@ int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
       auto& neighbour = scene.neighbours.at(d);
       if (neighbour) beyond.at(d) = change(rng, *neighbour);
     }
-    by_layers +=
-        mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond, scratch, mesh) ? 1
-                                                                                                        : 0;
+    by_layers += mesh_rdm_layers(scene.chunk, scene.pointers(), mesh_visibility(), dirty, beyond,
+                                 scratch, mesh)
+                     ? 1
+                     : 0;
     mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, full);
     CAPTURE(Catch::rngSeed(), step, scene.chunk.order);
     require_equal(mesh.opaque, full.opaque);

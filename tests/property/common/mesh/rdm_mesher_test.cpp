@@ -31,7 +31,8 @@ MeshScene scene_of_many(SplitMix64& rng, int i) {
   const auto longest = static_cast<std::uint8_t>(rng.between(65, 128));
   const auto other = static_cast<std::uint8_t>(rng.between(8, 128));
   const auto least = static_cast<std::uint8_t>(rng.between(8, 10));
-  const Extent turns[] = {{longest, other, least}, {least, longest, other}, {other, least, longest}};
+  const Extent turns[] = {
+      {longest, other, least}, {least, longest, other}, {other, least, longest}};
   const Extent extent = turns[rng.below(3)];
   return scene_of_extent(rng, extent, random_order(rng));
 }
@@ -60,8 +61,8 @@ TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property
 
 TEST_CASE("the largest and the flattest extents mesh to the exposed faces", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 2);
-  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{128, 128, 8},
-                              Extent{8, 127, 128}, Extent{65, 64, 63}}) {
+  for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128},
+                              Extent{128, 128, 8}, Extent{8, 127, 128}, Extent{65, 64, 63}}) {
     for (const AxisOrder order : kAxisOrders) {
       const MeshScene scene = scene_of_extent(rng, extent, order);
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
@@ -78,8 +79,10 @@ TEST_CASE("meshes stay right while a chunk is edited by fills", "[mesh][property
     MeshScene scene = random_scene(rng, 12);
     for (int step = 0; step < 20; ++step) {
       const std::uint32_t first = rng.below(scene.chunk.volume());
-      const std::uint32_t longest = std::min(scene.chunk.volume() - first, rng.below(2) == 0 ? 4u : 400u);
-      fill(scene.chunk, first, 1 + rng.below(longest), static_cast<Material>(rng.below(kMeshMaterialCount)));
+      const std::uint32_t longest =
+          std::min(scene.chunk.volume() - first, rng.below(2) == 0 ? 4u : 400u);
+      fill(scene.chunk, first, 1 + rng.below(longest),
+           static_cast<Material>(rng.below(kMeshMaterialCount)));
       mesh_rdm(scene.chunk, scene.pointers(), mesh_visibility(), scratch, mesh);
       CAPTURE(Catch::rngSeed(), round, step);
       REQUIRE(scene_difference(scene, mesh).value_or("") == "");
@@ -100,7 +103,8 @@ TEST_CASE("all six axis orders mesh to the same unit faces", "[mesh][property]")
   }
 }
 
-TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch", "[mesh][property]") {
+TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch",
+          "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 5);
   RdmScratch used;
   ChunkMesh mesh;
@@ -116,7 +120,8 @@ TEST_CASE("the same scene meshes to the same quads in used and in fresh scratch"
   }
 }
 
-TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces", "[mesh][property]") {
+TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces",
+          "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 7);
   RdmScratch scratch;
   ChunkMesh mesh;

@@ -32,7 +32,8 @@ TEST_CASE("every instruction set gives the quads of the plain path", "[mesh][pro
     const unsigned side_max = i % 20 == 0 ? 64 : i % 20 == 10 ? 128 : 20;
     trials.push_back({random_scene(rng, side_max), &mesh_visibility(), {}});
   }
-  for (const Extent extent : {Extent{12, 9, 11}, Extent{64, 8, 33}, Extent{65, 9, 12}, Extent{8, 128, 10}}) {
+  for (const Extent extent :
+       {Extent{12, 9, 11}, Extent{64, 8, 33}, Extent{65, 9, 12}, Extent{8, 128, 10}}) {
     for (int i = 0; i < 5; ++i) {
       trials.push_back({scene_of_many_materials(rng, extent), &many_visibility(), {}});
     }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/mesher_jury.hpp"
+#include "tests/support/mesher_checks.hpp"
 #include "tests/support/scenario_scene.hpp"
 
 namespace runstone::test {
@@ -14,7 +14,8 @@ TEST_CASE("scenarios alone mesh to the faces each mesher owes", "[mesh][property
   for (const unsigned edge : {8u, 16u, 32u}) {
     for (unsigned number = 1; number <= 37; ++number) {
       if (number == 5 && edge != 32) continue;
-      const MeshScene scene = scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
+      const MeshScene scene =
+          scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
       CAPTURE(edge, number);
       REQUIRE(jury.fault(scene) == "");
       const ChunkMesh ours = mesh_of(scene);
@@ -37,7 +38,8 @@ TEST_CASE("scenarios in their world of 27 chunks mesh to the faces each mesher o
       CAPTURE(number, at.x, at.y, at.z);
       REQUIRE(jury.fault(scene) == "");
       const ChunkMesh ours = mesh_of(scene);
-      CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed()).value_or("") == "");
+      CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed())
+                .value_or("") == "");
       CHECK(ours.quad_count() >= jury.optimal_quads());
     }
   }
@@ -48,17 +50,21 @@ void judge_large_scenarios(unsigned edge, std::string (MesherJury::*fault)(const
   MesherJury jury;
   for (unsigned number = 1; number <= 37; ++number) {
     if (number == 5) continue;
-    const MeshScene scene = scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
+    const MeshScene scene =
+        scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
     CAPTURE(edge, number);
     REQUIRE((jury.*fault)(scene) == "");
     const ChunkMesh ours = mesh_of(scene);
-    CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed()).value_or("") == "");
+    CHECK(
+        mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed()).value_or("") ==
+        "");
     CHECK(ours.quad_count() <= jury.culled_quads());
     CHECK(ours.quad_count() >= jury.optimal_quads());
   }
 }
 
-TEST_CASE("scenarios of edge 64 alone mesh to the faces each mesher owes", "[mesh][property][scenarios]") {
+TEST_CASE("scenarios of edge 64 alone mesh to the faces each mesher owes",
+          "[mesh][property][scenarios]") {
   judge_large_scenarios(64, &MesherJury::fault);
 }
 
@@ -67,11 +73,13 @@ TEST_CASE("scenarios of edge 128 alone mesh to their faces", "[mesh][property][s
   judge_large_scenarios(128, &MesherJury::fault_of_exposed);
 }
 
-TEST_CASE("large scenarios in the middle of their world mesh to their faces", "[mesh][property][scenarios]") {
+TEST_CASE("large scenarios in the middle of their world mesh to their faces",
+          "[mesh][property][scenarios]") {
   for (const unsigned edge : {64u, 128u}) {
     for (unsigned number = 1; number <= 37; ++number) {
       if (number == 5) continue;
-      const MeshScene scene = scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, false);
+      const MeshScene scene =
+          scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, false);
       CAPTURE(edge, number);
       CHECK(scene_difference(scene, mesh_of(scene)).value_or("") == "");
     }

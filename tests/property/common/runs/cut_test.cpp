@@ -9,7 +9,8 @@
 
 namespace runstone::test {
 
-TEST_CASE("a cut has the voxels of its cuboid, mirrored as asked, in canonical runs", "[runs][property]") {
+TEST_CASE("a cut has the voxels of its cuboid, mirrored as asked, in canonical runs",
+          "[runs][property]") {
   SplitMix64 rng{61 + Catch::rngSeed()};
   int whole_lines = 0;
   for (int round = 0; round < 2000; ++round) {
@@ -53,7 +54,8 @@ TEST_CASE("a cut has the voxels of its cuboid, mirrored as asked, in canonical r
   CHECK(whole_lines > 20);
 }
 
-TEST_CASE("the boxes of a stretch are at most five and hold its voxels in index order", "[runs][property]") {
+TEST_CASE("the boxes of a stretch are at most five and hold its voxels in index order",
+          "[runs][property]") {
   SplitMix64 rng{62 + Catch::rngSeed()};
   for (int round = 0; round < 3000; ++round) {
     const OrderedExtent e{1 + rng.below(9), 1 + rng.below(9), 1 + rng.below(9)};

@@ -129,7 +129,8 @@ TEST_CASE("random fills keep a run chunk equal to the dense oracle", "[runs][pro
   CHECK(fills >= 10000);
 }
 
-TEST_CASE("fills keep chunks just below and above 65,535 voxels equal to the oracle", "[runs][property]") {
+TEST_CASE("fills keep chunks just below and above 65,535 voxels equal to the oracle",
+          "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 1};
   CAPTURE(Catch::rngSeed());
   const Extent extents[] = {{71, 71, 13}, {8, 90, 91}, {32, 32, 64}, {8, 64, 128}, {128, 8, 65}};
@@ -144,7 +145,8 @@ TEST_CASE("fills keep chunks just below and above 65,535 voxels equal to the ora
 TEST_CASE("long fill histories stay equal to the oracle as runs pile up", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   CAPTURE(Catch::rngSeed());
-  for (const AxisOrder order : kAxisOrders) chunk_fills(rng, uniform_chunk({9, 10, 11}, 0, order), 800);
+  for (const AxisOrder order : kAxisOrders)
+    chunk_fills(rng, uniform_chunk({9, 10, 11}, 0, order), 800);
 }
 
 // An oracle that is wrong at the end of every fill, by one voxel, or forgets one material.

@@ -17,8 +17,8 @@ void check_orders(const RunChunk& chunk) {
   REQUIRE(digest == oracle.digest());
   const auto counts = runs_per_order(chunk);
   for (const AxisOrder order : kAxisOrders) {
-    CAPTURE(static_cast<int>(chunk.order), static_cast<int>(order), int{chunk.extent.x}, int{chunk.extent.y},
-            int{chunk.extent.z}, chunk.runs.size());
+    CAPTURE(static_cast<int>(chunk.order), static_cast<int>(order), int{chunk.extent.x},
+            int{chunk.extent.y}, int{chunk.extent.z}, chunk.runs.size());
     const RunChunk turned = reorder(chunk, order);
     REQUIRE(turned.order == order);
     REQUIRE(validate(turned).has_value());
@@ -37,7 +37,8 @@ void check_orders(const RunChunk& chunk) {
 
 }  // namespace
 
-TEST_CASE("changing the axis order keeps every voxel, the digest and the counted runs", "[runs][property]") {
+TEST_CASE("changing the axis order keeps every voxel, the digest and the counted runs",
+          "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   CAPTURE(Catch::rngSeed());
   for (int round = 0; round < 150; ++round) {
@@ -55,7 +56,8 @@ TEST_CASE("every shape turns from every order into every order", "[runs][propert
   }
 }
 
-TEST_CASE("the axis order changes between the narrow and the wide form's limits too", "[runs][property]") {
+TEST_CASE("the axis order changes between the narrow and the wide form's limits too",
+          "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   CAPTURE(Catch::rngSeed());
   check_orders(test::random_chunk(rng, {71, 71, 13}, AxisOrder::zxy, 4, test::Shape::noise));
@@ -63,15 +65,16 @@ TEST_CASE("the axis order changes between the narrow and the wide form's limits 
   check_orders(test::random_chunk(rng, {8, 128, 65}, AxisOrder::xyz, 4, test::Shape::columns));
 }
 
-TEST_CASE("a layer reads as the oracle's voxels, along every axis and either way round", "[runs][property]") {
+TEST_CASE("a layer reads as the oracle's voxels, along every axis and either way round",
+          "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 3};
   CAPTURE(Catch::rngSeed());
   const auto at = [](const DenseChunk& dense, std::array<std::uint32_t, 3> c) {
     return dense.at(static_cast<int>(c[0]), static_cast<int>(c[1]), static_cast<int>(c[2]));
   };
   for (int round = 0; round < 60; ++round) {
-    const RunChunk chunk = test::random_chunk(rng, test::random_extent(rng, round % 10 == 9 ? 70 : 16),
-                                              test::random_order(rng), 4);
+    const RunChunk chunk = test::random_chunk(
+        rng, test::random_extent(rng, round % 10 == 9 ? 70 : 16), test::random_order(rng), 4);
     const DenseChunk oracle = DenseChunk::of(chunk);
     const auto sides = chunk.extent.sides();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -99,7 +102,8 @@ TEST_CASE("a layer reads as the oracle's voxels, along every axis and either way
   }
 }
 
-TEST_CASE("a span's digest is the sum over its voxels, wherever it begins and ends", "[runs][property]") {
+TEST_CASE("a span's digest is the sum over its voxels, wherever it begins and ends",
+          "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 4};
   CAPTURE(Catch::rngSeed());
   for (int round = 0; round < 400; ++round) {
@@ -115,7 +119,8 @@ TEST_CASE("a span's digest is the sum over its voxels, wherever it begins and en
     REQUIRE(digest_of_span(shape, std::min(a, b), std::max(a, b), material) == oracle.digest());
   }
   const RunChunk largest = uniform_chunk(Extent::cube(128), 1, AxisOrder::zxy);
-  CHECK(digest_of_span(largest, 0, largest.volume(), 5) == digest_of_box(5, {0, 0, 0}, {128, 128, 128}));
+  CHECK(digest_of_span(largest, 0, largest.volume(), 5) ==
+        digest_of_box(5, {0, 0, 0}, {128, 128, 128}));
   CHECK(digest_of_span(largest, 77, 77, 5) == Digest{});
   CHECK(digest_of_span(largest, largest.volume(), largest.volume(), 5) == Digest{});
 }

@@ -36,11 +36,13 @@ TEST_CASE("packed is no larger than raw but for its few bytes of palette", "[pro
   }
 }
 
-TEST_CASE("no truncation and no extra byte of a chunk passes for that chunk", "[protocol][property]") {
+TEST_CASE("no truncation and no extra byte of a chunk passes for that chunk",
+          "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   for (int step = 0; step < 30; ++step) {
     const RunChunk chunk = random_chunk(rng, 16, 1 + rng.below(6));
-    for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+    for (const ChunkEncoding encoding :
+         {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       const Bytes bytes = encode_chunk(chunk, encoding);
       const std::size_t stride = 1 + bytes.size() / 500;
       for (std::size_t size = 0; size < bytes.size(); size += stride) {
@@ -64,7 +66,8 @@ TEST_CASE("a flipped byte of a chunk gives an error or a valid chunk", "[protoco
   SplitMix64 rng{Catch::rngSeed() + 3};
   for (int step = 0; step < 40; ++step) {
     const RunChunk chunk = random_chunk(rng, 16, 1 + rng.below(300));
-    for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+    for (const ChunkEncoding encoding :
+         {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       Bytes bytes = encode_chunk(chunk, encoding);
       const std::size_t stride = 1 + bytes.size() / 300;
       for (std::size_t at = 0; at < bytes.size(); at += stride) {

@@ -15,17 +15,18 @@ constexpr std::size_t kCommitKind = 8;
 Result<Message> walked(ByteView bytes) {
   CommitWalk walk;
   Commit commit;
-  const auto is_commit = walk.read(bytes, kMessageEdge, [&](const WalkedEdit& edit) -> Result<void> {
-    if (commit.edits.empty()) {
-      commit.epoch = edit.version.epoch;
-      commit.first = edit.version.seq;
-    }
-    CHECK(edit.version == Version{commit.epoch, commit.first + commit.edits.size()});
-    CHECK(std::vector<ChunkCoord>(edit.chunks.begin(), edit.chunks.end()) ==
-          touched_chunks(edit.ordered.edit, kMessageEdge));
-    commit.edits.push_back(edit.ordered);
-    return {};
-  });
+  const auto is_commit =
+      walk.read(bytes, kMessageEdge, [&](const WalkedEdit& edit) -> Result<void> {
+        if (commit.edits.empty()) {
+          commit.epoch = edit.version.epoch;
+          commit.first = edit.version.seq;
+        }
+        CHECK(edit.version == Version{commit.epoch, commit.first + commit.edits.size()});
+        CHECK(std::vector<ChunkCoord>(edit.chunks.begin(), edit.chunks.end()) ==
+              touched_chunks(edit.ordered.edit, kMessageEdge));
+        commit.edits.push_back(edit.ordered);
+        return {};
+      });
   if (!is_commit) return Unexpected<Error>{is_commit.error()};
   REQUIRE(*is_commit);
   return Message{std::move(commit)};
@@ -70,12 +71,15 @@ TEST_CASE("a walk refuses what the decoder refuses", "[protocol][property]") {
 
 TEST_CASE("a walk leaves other messages alone, and passes on an error of who walks", "[protocol]") {
   CommitWalk walk;
-  const auto none = [](const WalkedEdit&) -> Result<void> { return fail(ErrorCode::bad_value, "enough"); };
+  const auto none = [](const WalkedEdit&) -> Result<void> {
+    return fail(ErrorCode::bad_value, "enough");
+  };
   const auto left = walk.read(*encode_message(Durable{1, 2}).bytes, kMessageEdge, none);
   REQUIRE(left.has_value());
   CHECK_FALSE(*left);
   SplitMix64 rng{Catch::rngSeed() + 22};
-  const auto stopped = walk.read(*encode_message(random_message(rng, kCommitKind)).bytes, kMessageEdge, none);
+  const auto stopped =
+      walk.read(*encode_message(random_message(rng, kCommitKind)).bytes, kMessageEdge, none);
   REQUIRE_FALSE(stopped.has_value());
   CHECK(std::string_view(stopped.error().what) == "enough");
 }

@@ -46,8 +46,9 @@ Bytes random_stream(SplitMix64& rng, const Messages& messages) {
     const std::size_t c = unfinished[rng.below(static_cast<std::uint32_t>(unfinished.size()))];
     const Bytes& body = messages[c][message[c]];
     const std::size_t left = body.size() - at[c];
-    const std::size_t size = std::min(
-        {left, kFragmentBytesMax, rng.below(3) == 0 ? std::size_t{1} + rng.below(20) : kFragmentBytesMax});
+    const std::size_t size =
+        std::min({left, kFragmentBytesMax,
+                  rng.below(3) == 0 ? std::size_t{1} + rng.below(20) : kFragmentBytesMax});
     const FrameHeader header = writer.next(static_cast<FrameClass>(c), size, size < left);
     stream.insert(stream.end(), header.begin(), header.end());
     const auto from = body.begin() + static_cast<std::ptrdiff_t>(at[c]);
@@ -102,7 +103,8 @@ TEST_CASE("a lost, repeated or swapped frame is noticed at once", "[protocol][pr
     FrameWriter writer;
     for (int i = 0; i < 6; ++i) {
       const Bytes body = random_body(rng, 200);
-      const FrameHeader header = writer.next(static_cast<FrameClass>(rng.below(3)), body.size(), false);
+      const FrameHeader header =
+          writer.next(static_cast<FrameClass>(rng.below(3)), body.size(), false);
       frames.emplace_back(header.begin(), header.end());
       frames.back().insert(frames.back().end(), body.begin(), body.end());
     }
@@ -123,7 +125,8 @@ TEST_CASE("a flipped byte of a frame header never crashes the reader", "[protoco
     const Messages sent = random_messages(rng, Sender::server);
     Bytes stream = random_stream(rng, sent);
     if (stream.empty()) continue;
-    const std::size_t at = rng.below(static_cast<std::uint32_t>(std::min<std::size_t>(stream.size(), 400)));
+    const std::size_t at =
+        rng.below(static_cast<std::uint32_t>(std::min<std::size_t>(stream.size(), 400)));
     stream[at] = static_cast<std::uint8_t>(stream[at] ^ (1u << rng.below(8)));
     const auto received = read_in_pieces(rng, Sender::server, stream);
     // Bodies are not the frame's business; a header that was changed cannot give the same messages.

@@ -8,7 +8,8 @@ namespace {
 /// Such a message says nothing but its version.
 bool of_other_protocol(const Message& message) {
   if (const auto* hello = std::get_if<Hello>(&message)) return hello->protocol != kProtocolVersion;
-  if (const auto* welcome = std::get_if<Welcome>(&message)) return welcome->protocol != kProtocolVersion;
+  if (const auto* welcome = std::get_if<Welcome>(&message))
+    return welcome->protocol != kProtocolVersion;
   return false;
 }
 
@@ -51,7 +52,8 @@ TEST_CASE("a packed snapshot carries what a raw one does", "[protocol][property]
     CAPTURE(Catch::rngSeed(), step);
     const Message message = random_message(rng, 6);
     const auto& snapshot = std::get<ChunkSnapshot>(message);
-    for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+    for (const ChunkEncoding encoding :
+         {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
       const auto decoded = decode(message, encode_snapshot(snapshot.key, snapshot.chunk, encoding));
       REQUIRE(decoded.has_value());
       REQUIRE(*decoded == message);
@@ -68,8 +70,10 @@ TEST_CASE("no truncation of a message passes for it", "[protocol][property]") {
     for (std::size_t size = 0; size < encoded.bytes->size(); ++size) {
       CAPTURE(Catch::rngSeed(), kind, size);
       // A buffer of just that size, so that sanitizers see a read behind its end.
-      const Bytes cut(encoded.bytes->begin(), encoded.bytes->begin() + static_cast<std::ptrdiff_t>(size));
-      const auto decoded = decode_message(sender_of(message), encoded.frame_class, cut, kMessageEdge);
+      const Bytes cut(encoded.bytes->begin(),
+                      encoded.bytes->begin() + static_cast<std::ptrdiff_t>(size));
+      const auto decoded =
+          decode_message(sender_of(message), encoded.frame_class, cut, kMessageEdge);
       // The last bytes may be padding that carries nothing.
       if (decoded) REQUIRE((size + 8 > encoded.bytes->size() && *decoded == message));
     }
@@ -82,7 +86,8 @@ TEST_CASE("a flipped byte gives an error or a valid message", "[protocol][proper
     const EncodedMessage encoded = encode_message(random_message(rng, kind));
     Bytes bytes = *encoded.bytes;
     const std::size_t step = 1 + bytes.size() / 400;
-    for (std::size_t at = rng.below(static_cast<std::uint32_t>(step)); at < bytes.size(); at += step) {
+    for (std::size_t at = rng.below(static_cast<std::uint32_t>(step)); at < bytes.size();
+         at += step) {
       CAPTURE(Catch::rngSeed(), kind, at);
       const std::uint8_t before = bytes[at];
       for (const unsigned flip : {0x01u, 0x80u, 0xffu, 1u + rng.below(255)}) {
@@ -102,13 +107,15 @@ TEST_CASE("bytes after a message change nothing", "[protocol][property]") {
     const EncodedMessage encoded = encode_message(message);
     Bytes longer = *encoded.bytes;
     longer.push_back(0xa5);
-    const auto decoded = decode_message(sender_of(message), encoded.frame_class, longer, kMessageEdge);
+    const auto decoded =
+        decode_message(sender_of(message), encoded.frame_class, longer, kMessageEdge);
     REQUIRE(decoded.has_value());
     CHECK(*decoded == message);
   }
 }
 
-TEST_CASE("a message is refused from the wrong side and in the wrong class", "[protocol][property]") {
+TEST_CASE("a message is refused from the wrong side and in the wrong class",
+          "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 5};
   for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
     CAPTURE(kind);
@@ -118,7 +125,8 @@ TEST_CASE("a message is refused from the wrong side and in the wrong class", "[p
     for (const Sender sender : {Sender::client, Sender::server}) {
       for (const FrameClass c : {FrameClass::control, FrameClass::edits, FrameClass::chunks}) {
         const auto decoded = decode_message(sender, c, *encoded.bytes, kMessageEdge);
-        const bool right = (either_side || sender == sender_of(message)) && c == encoded.frame_class;
+        const bool right =
+            (either_side || sender == sender_of(message)) && c == encoded.frame_class;
         CHECK(decoded.has_value() == right);
       }
     }

@@ -72,8 +72,8 @@ class Joined {
       for (const auto& sent : std::exchange(bench.ports.sent, {}))
         goes_on |= deliver(sent.session, sent.message);
       for (const auto& snapshot : std::exchange(bench.ports.snapshots, {})) {
-        goes_on |=
-            deliver(snapshot.session, encode_snapshot(snapshot.key, *snapshot.chunk, ChunkEncoding::packed));
+        goes_on |= deliver(snapshot.session,
+                           encode_snapshot(snapshot.key, *snapshot.chunk, ChunkEncoding::packed));
       }
     }
   }
@@ -95,14 +95,17 @@ class Joined {
   std::size_t to_client = 0;  // what is said of chunks
 
  private:
-  static bool is_of_chunks(const Message& message) { return std::holds_alternative<Held>(message); }
+  static bool is_of_chunks(const Message& message) {
+    return std::holds_alternative<CachedChunks>(message);
+  }
 
   /// Ground with a chunk's own pattern, so that no two chunks weigh the same.
   static Chunk hills(ChunkCoord at) {
     RunBuilder builder(Extent::cube(kEdge), AxisOrder::yxz);
     for (unsigned column = 0; column < kEdge * kEdge; ++column) {
       const auto height =
-          1 + static_cast<unsigned>((at.x * 7 + at.y * 3 + at.z * 5 + static_cast<int>(column / 3)) & 7);
+          1 + static_cast<unsigned>(
+                  (at.x * 7 + at.y * 3 + at.z * 5 + static_cast<int>(column / 3)) & 7);
       builder.append(height, Material{1});
       builder.append(kEdge - height, kEmpty);
     }
@@ -151,7 +154,8 @@ TEST_CASE("a rejoin of an unchanged view costs at most 32 bytes a chunk, both wa
   for (const ChunkKey& key : joined.replica().confirmed_keys()) {
     if (++seq % 2 == 0) continue;
     const VoxelPos o = origin_of(key.at, kEdge);
-    REQUIRE(joined.session().submit({SetVoxel{{o.x + 3, o.y + 14, o.z + 5}}, {}, 2}, 0, 0).has_value());
+    REQUIRE(
+        joined.session().submit({SetVoxel{{o.x + 3, o.y + 14, o.z + 5}}, {}, 2}, 0, 0).has_value());
   }
   joined.second();
   joined.second();
@@ -217,7 +221,7 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
   bench.view(2, kSmall);
   std::int32_t next = -30'000;
   for (int message = 0; message <= static_cast<int>(kHeldClaimsMax / 64); ++message) {
-    Held held;
+    CachedChunks held;
     for (int i = 0; i < 64; ++i) held.chunks.push_back({{0, {next++, 0, 0}}, {}, 1});
     bench.server.received(1, held, bench.now());
   }
@@ -232,7 +236,7 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
   bench.join(3, 3);
   for (int round = 0; round < 20; ++round) {
     for (int message = 0; message < 100; ++message) {
-      Held held;
+      CachedChunks held;
       for (int i = 0; i < 64; ++i) held.chunks.push_back({{0, {next++ % 30'000, 1, 0}}, {}, 1});
       std::sort(held.chunks.begin(), held.chunks.end(),
                 [](const auto& a, const auto& b) { return a.key < b.key; });

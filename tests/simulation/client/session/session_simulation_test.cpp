@@ -99,13 +99,15 @@ class Simulation {
 
   std::string told(const Reckoning& r) const {
     std::ostringstream out;
-    out << r.edits << " edits, " << r.chunks << " chunks, " << crashes_ << " crashes, " << cuts_ << " cuts, "
-        << r.rejected << " rejected, " << r.unknown << " never explained: all digests equal";
+    out << r.edits << " edits, " << r.chunks << " chunks, " << crashes_ << " crashes, " << cuts_
+        << " cuts, " << r.rejected << " rejected, " << r.unknown
+        << " never explained: all digests equal";
     return out.str();
   }
 
  private:
-  static constexpr TimeUs kAuditRoundUs = 30'000'000;  // of all 145 chunks of the largest view, 8 a second
+  static constexpr TimeUs kAuditRoundUs =
+      30'000'000;  // of all 145 chunks of the largest view, 8 a second
 
   void come_to_rest() {
     const TimeUs give_up = time_.now() + 300'000'000;
@@ -122,7 +124,8 @@ class Simulation {
     config.materials = default_material_table();
     config.server_keys = key_pair_of(KeySeed{7});
     config.edits_per_second = 0;
-    config.snapshots.edits_max = 300;  // many rounds, so that crashes fall between snapshots and checkpoints
+    config.snapshots.edits_max =
+        300;  // many rounds, so that crashes fall between snapshots and checkpoints
     config.snapshots.interval_us = 3'000'000;
     config.snapshots.slice_chunks = 5;
     config.resident_bytes_max = 20'000;  // and chunks leave memory
@@ -142,11 +145,13 @@ class Simulation {
       if (what == 0) return reader.restart();
       if (what == 1) return reader.cut();
       if (what == 2) {
-        return reader.look(
-            {{rng_.between(-2, 2), 0, rng_.between(-2, 2)}, static_cast<std::uint8_t>(1 + rng_.below(3)), 1});
+        return reader.look({{rng_.between(-2, 2), 0, rng_.between(-2, 2)},
+                            static_cast<std::uint8_t>(1 + rng_.below(3)),
+                            1});
       }
     }
-    SimClient& client = *clients_[rng_.below(static_cast<std::uint32_t>(clients_.size()) - readers_)];
+    SimClient& client =
+        *clients_[rng_.below(static_cast<std::uint32_t>(clients_.size()) - readers_)];
     switch (rng_.below(100)) {
       case 0:
         client.cut();
@@ -154,14 +159,16 @@ class Simulation {
         break;
       case 1:
         // Now and then so often that the server passes over some views, and once to more than it remembers.
-        for (std::uint64_t looks = rng_.below(3) == 0 ? 2 + rng_.below(14) : 1; looks > 0; --looks) {
+        for (std::uint64_t looks = rng_.below(3) == 0 ? 2 + rng_.below(14) : 1; looks > 0;
+             --looks) {
           client.look({{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
                        static_cast<std::uint8_t>(1 + rng_.below(3)),
                        static_cast<std::uint8_t>(rng_.below(3))});
         }
         break;
       case 2: {
-        EditDescriptor bad{SetVoxel{{0, 0, 0}}, {}, 60'000};  // no such material: must be taken back
+        EditDescriptor bad{
+            SetVoxel{{0, 0, 0}}, {}, 60'000};  // no such material: must be taken back
         client.edit(bad);
         break;
       }
@@ -195,7 +202,8 @@ class Simulation {
   bool at_rest() {
     server_.log_full = false;
     if (!server_.running() || server_.world().durable() != server_.world().head()) return false;
-    return std::all_of(clients_.begin(), clients_.end(), [](const auto& c) { return c->settled(); });
+    return std::all_of(clients_.begin(), clients_.end(),
+                       [](const auto& c) { return c->settled(); });
   }
 
   /// What was durable before a crash is in the log, at the same place.
@@ -239,7 +247,8 @@ class Simulation {
     for (const auto& client : clients_) {
       r.beyond += client->refused();
       for (const auto& [seq, reason] : client->rejected()) {
-        r.expect(reason != RejectReason::outside_world, "a client predicted an edit beyond the heights");
+        r.expect(reason != RejectReason::outside_world,
+                 "a client predicted an edit beyond the heights");
       }
     }
   }
@@ -262,17 +271,19 @@ class Simulation {
       DenseChunk oracle = DenseChunk::of(sim_base_chunk(key.at));
       oracle_apply(oracle, origin_of(key.at, kSimEdge), stack);
       const Digest expected = oracle.digest();
-      const std::string name = "chunk " + std::to_string(key.at.x) + "," + std::to_string(key.at.y) + "," +
-                               std::to_string(key.at.z);
+      const std::string name = "chunk " + std::to_string(key.at.x) + "," +
+                               std::to_string(key.at.y) + "," + std::to_string(key.at.z);
       if (const ChunkPtr live = server_.world().find_chunk(key)) {
         r.expect(digest_of(live->voxels) == expected, name + ": the server differs from the log");
-        r.expect(live->digest == expected, name + ": the server's digest does not follow its voxels");
+        r.expect(live->digest == expected,
+                 name + ": the server's digest does not follow its voxels");
       }
       for (const auto& client : clients_) {
         const ChunkPtr held = client->replica().confirmed(key);
         if (!held) continue;
         r.expect(digest_of(held->voxels) == expected, name + ": a replica differs from the log");
-        r.expect(held->version.seq == versions[key], name + ": a replica stands at another version");
+        r.expect(held->version.seq == versions[key],
+                 name + ": a replica stands at another version");
         r.expect(*client->replica().shown(key) == held->voxels,
                  name + ": something is shown that nobody confirmed");
       }
@@ -300,7 +311,8 @@ std::string joined(const std::vector<std::string>& lines) {
 
 }  // namespace
 
-TEST_CASE("three replicas and a server that loses power agree after thousands of steps", "[simulation]") {
+TEST_CASE("three replicas and a server that loses power agree after thousands of steps",
+          "[simulation]") {
   const auto seed = static_cast<std::uint64_t>(GENERATE(1, 2, 3, 4));
   CAPTURE(seed);
   Simulation simulation(seed);
@@ -373,7 +385,8 @@ TEST_CASE("clients that are killed come back with what their caches have, and no
                << " brought up to date by edits");
 }
 
-TEST_CASE("commits that vanish between server and replica are noticed and repaired", "[simulation]") {
+TEST_CASE("commits that vanish between server and replica are noticed and repaired",
+          "[simulation]") {
   Simulation simulation(11);
   simulation.server().drop_commits = 40;
   simulation.run(1500, 0);
@@ -383,8 +396,9 @@ TEST_CASE("commits that vanish between server and replica are noticed and repair
   CHECK(r.faults.empty());
 }
 
-TEST_CASE("without synchronous writes the same simulation loses durable edits, and the reckoning says so",
-          "[simulation]") {
+TEST_CASE(
+    "without synchronous writes the same simulation loses durable edits, and the reckoning says so",
+    "[simulation]") {
   bool caught = false;
   for (std::uint64_t seed = 1; seed <= 5 && !caught; ++seed) {
     try {

@@ -14,13 +14,19 @@ namespace runstone::test {
 
 class SimClient {
  public:
-  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number)
-      : time_(time), rng_(rng), server_(server), faults_(faults), number_(number), session_(config(number)) {
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults,
+            unsigned number)
+      : time_(time),
+        rng_(rng),
+        server_(server),
+        faults_(faults),
+        number_(number),
+        session_(config(number)) {
     pump();
   }
   /// One that keeps chunks in this folder, and only looks: what it edits would be forgotten with restart().
-  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults, unsigned number,
-            const std::string& cache_folder)
+  SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults,
+            unsigned number, const std::string& cache_folder)
       : SimClient(time, rng, server, faults, number) {
     auto cache = ChunkCache::open(cache_folder, std::uint64_t{1} << 20);
     if (!cache) throw SimFault(cache.error());
@@ -62,7 +68,7 @@ class SimClient {
   const std::set<ClientSequence>& durable() const { return durable_; }
   const std::set<ClientSequence>& unseen() const { return unseen_; }
   bool settled() {
-    return session_.is_open() && session_.loaded() && replica().own_edits().all().empty() &&
+    return session_.is_open() && session_.loaded() && replica().local_edits().all().empty() &&
            replica().awaiting_count() == 0;
   }
 
@@ -91,7 +97,7 @@ class SimClient {
           connection_->send_from_client(encode_message(message));
         if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
       }
-      for (const RejectNews& r : take_news().rejects) rejected_[r.seq] = r.reason;
+      for (const RejectNews& r : drain_changes().rejects) rejected_[r.seq] = r.reason;
       pump();
     });
   }
@@ -105,8 +111,8 @@ class SimClient {
     const auto world = session_.cached_world();
     if (world && rng_.below(50) == 0) cache_->keep(*world, session_.replica().take_unkept(40));
   }
-  ReplicaNews take_news() {
-    ReplicaNews news = replica().take_news();
+  ReplicaChanges drain_changes() {
+    ReplicaChanges news = replica().drain_changes();
     durable_.insert(news.durable.begin(), news.durable.end());
     unseen_.insert(news.unseen.begin(), news.unseen.end());
     return news;

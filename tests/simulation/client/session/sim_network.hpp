@@ -23,20 +23,26 @@ struct SimEnd {
 /// moment later.
 class SimConnection {
  public:
-  SimConnection(VirtualTime& time, SplitMix64& rng, const LinkFaults& faults, std::size_t server_queue_bytes,
-                SimEnd server, SimEnd client)
+  SimConnection(VirtualTime& time, SplitMix64& rng, const LinkFaults& faults,
+                std::size_t server_queue_bytes, SimEnd server, SimEnd client)
       : time_(time),
         server_(std::move(server)),
         client_(std::move(client)),
         server_reader_(Sender::client),
         client_reader_(Sender::server),
-        to_server_(time, rng, faults, [this](ByteView bytes) { feed(server_reader_, server_, bytes); }),
-        to_client_(time, rng, faults, [this](ByteView bytes) { feed(client_reader_, client_, bytes); }),
+        to_server_(time, rng, faults,
+                   [this](ByteView bytes) { feed(server_reader_, server_, bytes); }),
+        to_client_(time, rng, faults,
+                   [this](ByteView bytes) { feed(client_reader_, client_, bytes); }),
         server_sender_(time, rng, to_client_, server_queue_bytes, [this] { server_.on_drained(); }),
         client_sender_(time, rng, to_server_, SIZE_MAX / 2, [this] { client_.on_drained(); }) {}
 
-  bool send_from_server(const EncodedMessage& message) { return open_ && server_sender_.send(message); }
-  bool send_from_client(const EncodedMessage& message) { return open_ && client_sender_.send(message); }
+  bool send_from_server(const EncodedMessage& message) {
+    return open_ && server_sender_.send(message);
+  }
+  bool send_from_client(const EncodedMessage& message) {
+    return open_ && client_sender_.send(message);
+  }
   bool open() const { return open_; }
   bool server_idle() const { return server_sender_.idle(); }
 

@@ -20,7 +20,8 @@ struct LinkFaults {
 
 class SimPipe {
  public:
-  SimPipe(VirtualTime& time, SplitMix64& rng, const LinkFaults& faults, std::function<void(ByteView)> deliver)
+  SimPipe(VirtualTime& time, SplitMix64& rng, const LinkFaults& faults,
+          std::function<void(ByteView)> deliver)
       : time_(time),
         rng_(rng),
         faults_(faults),
@@ -28,16 +29,18 @@ class SimPipe {
 
   void send(ByteView bytes) {
     while (!bytes.empty()) {
-      const std::size_t piece = std::min<std::size_t>(bytes.size(), 1 + rng_.below(faults_.piece_bytes_max));
+      const std::size_t piece =
+          std::min<std::size_t>(bytes.size(), 1 + rng_.below(faults_.piece_bytes_max));
       TimeUs due = time_.now() + rng_.between(faults_.delay_us_min, faults_.delay_us_max);
       if (rng_.below(1000) < faults_.stalls_per_1000) due += rng_.between(0, 2'000'000);
       last_due_ = std::max(last_due_, due);
       // The event holds the callback weakly: a cut pipe delivers nothing, whatever is still under way.
-      time_.after(last_due_ - time_.now(),
-                  [weak = std::weak_ptr(deliver_),
-                   data = Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(piece))] {
-                    if (const auto deliver = weak.lock()) (*deliver)(data);
-                  });
+      time_.after(
+          last_due_ - time_.now(),
+          [weak = std::weak_ptr(deliver_),
+           data = Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(piece))] {
+            if (const auto deliver = weak.lock()) (*deliver)(data);
+          });
       bytes = bytes.subspan(piece);
     }
   }

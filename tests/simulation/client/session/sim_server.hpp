@@ -43,7 +43,7 @@ inline RunChunk sim_base_chunk(ChunkCoord at) {
   return builder.finish();
 }
 
-class SimServer final : public WorldPorts {
+class SimServer final : public WorldEnvironment {
  public:
   /// `open` opens the world's store; called at each start.
   SimServer(VirtualTime& time, SplitMix64& rng, WorldConfig config,
@@ -64,7 +64,7 @@ class SimServer final : public WorldPorts {
     start.checkpoint = value(store_->checkpoint());
     start.snapshots = value(store_->snapshot_keys());
     start.players = value(store_->players());
-    start.decided = value(store_->high_waters());
+    start.resolved = value(store_->high_waters());
     std::vector<EditRecord> tail;
     if (start.log.last > start.checkpoint) {
       done(store_->read_log(start.checkpoint + 1, start.log.last, [&](const EditRecord& r) {
@@ -72,10 +72,11 @@ class SimServer final : public WorldPorts {
         return true;
       }));
     }
-    world_ = std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
-      for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
-    });
-    for (const EditRecord& r : tail) world_->restack(r);
+    world_ =
+        std::make_unique<WorldServer>(config_, start, *this, [this](std::span<std::uint8_t> out) {
+          for (auto& b : out) b = static_cast<std::uint8_t>(rng_.next());
+        });
+    for (const EditRecord& r : tail) world_->replay_onto_stack(r);
     ++life_;
     tick_later();
   }
@@ -112,17 +113,18 @@ class SimServer final : public WorldPorts {
     end.on_drained = [this, id, life = life_] {
       if (life == life_ && sessions_.contains(id)) world_->drained(id, now());
     };
-    auto connection = std::make_shared<SimConnection>(time_, rng_, faults, server_queue_bytes, std::move(end),
-                                                      std::move(client));
+    auto connection = std::make_shared<SimConnection>(time_, rng_, faults, server_queue_bytes,
+                                                      std::move(end), std::move(client));
     sessions_[id].connection = connection;
     world_->connected(id, now());
     return connection;
   }
 
-  Now now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
+  Clocks now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
 
   // Faults, in occurrences per 1000.
-  std::uint32_t drop_commits = 0;  // a send that says "queued" and loses a commit: a bug no queue would have
+  std::uint32_t drop_commits =
+      0;  // a send that says "queued" and loses a commit: a bug no queue would have
   std::size_t server_queue_bytes = 200'000;
   bool log_full = false;
   std::uint64_t dropped = 0;
@@ -143,7 +145,8 @@ class SimServer final : public WorldPorts {
 
   static bool is_commit(const EncodedMessage& message) {
     if (message.frame_class != FrameClass::edits) return false;
-    const auto decoded = decode_message(Sender::server, message.frame_class, *message.bytes, kSimEdge);
+    const auto decoded =
+        decode_message(Sender::server, message.frame_class, *message.bytes, kSimEdge);
     return decoded && std::holds_alternative<Commit>(*decoded);
   }
 
@@ -171,7 +174,7 @@ class SimServer final : public WorldPorts {
     });
   }
 
-  // ---- WorldPorts
+  // ---- WorldEnvironment
   // ------------------------------------------------------------------------------------------
   bool send(SessionId id, const EncodedMessage& message) override {
     const auto it = sessions_.find(id);
@@ -197,7 +200,8 @@ class SimServer final : public WorldPorts {
     });
     return true;
   }
-  bool send_update(SessionId id, const ChunkKey& key, const ChunkPtr& chunk, Version held) override {
+  bool send_update(SessionId id, const ChunkKey& key, const ChunkPtr& chunk,
+                   Version held) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
     ++it->second.encoding_now;
@@ -206,8 +210,8 @@ class SimServer final : public WorldPorts {
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
       const ChunkEncoding encoding = session->second.encoding;
-      const auto edits =
-          value(missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
+      const auto edits = value(
+          missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
       updates += edits ? 1 : 0;
       send_encoded(id, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
     });
@@ -255,7 +259,8 @@ class SimServer final : public WorldPorts {
       world_->chunk_loaded(key, std::move(chunk), now());
     });
   }
-  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks, Sequence checkpoint) override {
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
+                      Sequence checkpoint) override {
     later(500, 30'000, [this, saved = std::move(chunks), checkpoint] {
       done(store_->save_snapshots(saved, checkpoint));
       world_->snapshots_saved(now());

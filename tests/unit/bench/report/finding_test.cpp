@@ -64,7 +64,8 @@ TEST_CASE("a finding that cannot be used says why, and names its file") {
 TEST_CASE("findings tell what is missing, what failed and what is of another commit") {
   const test::TempFolder folder;
   const std::string out = folder / "out";
-  for (const char* step : {"a", "b"}) REQUIRE(write_finding(out, finding_of(step, "new")).has_value());
+  for (const char* step : {"a", "b"})
+    REQUIRE(write_finding(out, finding_of(step, "new")).has_value());
   REQUIRE(write_finding(out, finding_of("c", "old")).has_value());
   const auto findings = Findings::read(out, {"a", "b", "c", "d", "e"}, {{"e", "no namespaces"}});
 

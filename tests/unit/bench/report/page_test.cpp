@@ -26,13 +26,17 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 Finding edits_finding() {
   nlohmann::json rows = nlohmann::json::array();
   for (const double edits : {1.0, 10.0, 100.0, 1000.0}) {
-    rows.push_back({{"case", "mixed edits by hand as a stack"}, {"edits", edits}, {"median_us", edits / 4}});
-    rows.push_back({{"case", "mixed edits by hand one by one"}, {"edits", edits}, {"median_us", edits}});
+    rows.push_back(
+        {{"case", "mixed edits by hand as a stack"}, {"edits", edits}, {"median_us", edits / 4}});
+    rows.push_back(
+        {{"case", "mixed edits by hand one by one"}, {"edits", edits}, {"median_us", edits}});
   }
   return {"edits", this_machine(), true, "a world", "2026-01-31T23:59:59Z", 2, {{"rows", rows}}};
 }
@@ -136,7 +140,9 @@ TEST_CASE("frames are compared over the worlds that most meshers drew; who drew 
   const auto made = write_page(options_of(folder / "out"), {});
   REQUIRE(made.has_value());
   const std::string page = text_of(made->file);
-  CHECK(holds(page, "A frame takes 3.63 ms (geometric mean of 3 worlds) with our mesh, 8 with culled faces"));
+  CHECK(holds(
+      page,
+      "A frame takes 3.63 ms (geometric mean of 3 worlds) with our mesh, 8 with culled faces"));
   CHECK(holds(page, "Too large to be drawn in most worlds, so not in the means: simple."));
   CHECK(holds(page, "Drawn by llvmpipe, 640 by 360 pixels."));
 }

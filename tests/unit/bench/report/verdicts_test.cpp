@@ -28,7 +28,12 @@ Finding meshers_of(double ours_ns, double dense_ns) {
     add("optimal_greedy", 9000, 10);
     if (s != 3) add("simple", 1, 1);  // skipped in one
   }
-  return {"meshers",       {"a cpu", 2, "g++ 12", "abc", "AVX2"}, true, "a world", "2026-01-31T23:59:59Z", 1,
+  return {"meshers",
+          {"a cpu", 2, "g++ 12", "abc", "AVX2"},
+          true,
+          "a world",
+          "2026-01-31T23:59:59Z",
+          1,
           {{"rows", rows}}};
 }
 
@@ -45,7 +50,9 @@ Told told(const Finding& finding) {
   return {verdicts_of({findings, thesis}), summary_of({findings, thesis})};
 }
 
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST_CASE("where runs are faster, the answer says so, by both means, and where they are not") {
   const auto [verdicts, summary] = told(meshers_of(100, 200));
@@ -54,8 +61,9 @@ TEST_CASE("where runs are faster, the answer says so, by both means, and where t
   CHECK(holds(verdicts.answer, "takes 1.91 times as long"));  // (2^36 * 0.4)^(1/37)
   CHECK(holds(verdicts.answer, "and 1.8 times by the sum"));  // 37 * 200 / (36 * 100 + 500)
   CHECK(holds(verdicts.answer, "faster in 36 of 37, not in number 37."));
-  CHECK(holds(summary,
-              "Doubt: Not measured: landscapes, facts, bytes, transfer-loopback, transfer-broadband."));
+  CHECK(holds(
+      summary,
+      "Doubt: Not measured: landscapes, facts, bytes, transfer-loopback, transfer-broadband."));
   CHECK(holds(summary, "quick run"));
 }
 

@@ -8,7 +8,8 @@
 using namespace runstone;
 using bench::storage::Ball;
 
-TEST_CASE("the rows of a ball are its voxels inside the chunk, in index order, once each", "[storage]") {
+TEST_CASE("the rows of a ball are its voxels inside the chunk, in index order, once each",
+          "[storage]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (int step = 0; step < 200; ++step) {
     const Extent extent = Extent::cube(8u << rng.below(2));
@@ -33,11 +34,12 @@ TEST_CASE("the rows of a ball are its voxels inside the chunk, in index order, o
       for (int cy = 0; cy < extent.y; ++cy) {
         for (int cx = 0; cx < extent.x; ++cx) {
           const int dx = cx - centre.x, dy = cy - centre.y, dz = z - centre.z;
-          const bool inside = 4 * (dx * dx + dy * dy + dz * dz) < (2 * radius + 1) * (2 * radius + 1);
+          const bool inside =
+              4 * (dx * dx + dy * dy + dz * dz) < (2 * radius + 1) * (2 * radius + 1);
           REQUIRE(ball.contains(cx, cy, z) == inside);
           if (inside) {
-            plain.insert(
-                {static_cast<std::uint8_t>(cx), static_cast<std::uint8_t>(cy), static_cast<std::uint8_t>(z)});
+            plain.insert({static_cast<std::uint8_t>(cx), static_cast<std::uint8_t>(cy),
+                          static_cast<std::uint8_t>(z)});
           }
         }
       }
@@ -58,8 +60,11 @@ TEST_CASE("how a ball lies to a cube is what its voxels say", "[storage]") {
     const LocalPos low = {low_x, low_y, along(12)};
     unsigned inside = 0;
     for (unsigned i = 0; i < side * side * side; ++i) {
-      const auto at = [&](unsigned first, unsigned rank) { return static_cast<int>(first + rank % side); };
-      inside += ball.contains(at(low.x, i), at(low.y, i / side), at(low.z, i / side / side)) ? 1 : 0;
+      const auto at = [&](unsigned first, unsigned rank) {
+        return static_cast<int>(first + rank % side);
+      };
+      inside +=
+          ball.contains(at(low.x, i), at(low.y, i / side), at(low.z, i / side / side)) ? 1 : 0;
     }
     const Ball::Against against = ball.against(low, static_cast<std::int32_t>(side));
     ++seen[static_cast<int>(against)];

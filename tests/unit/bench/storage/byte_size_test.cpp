@@ -18,13 +18,15 @@
 using namespace runstone;
 using namespace runstone::bench::storage;
 
-TEMPLATE_TEST_CASE("a store counts all that it keeps, and keeps nothing to spare", "[storage]", FlatArray,
-                   MortonArray<MortonByTable>, PaletteStore, RunStore, IntervalMap, SparseOctree, VoxelDag) {
+TEMPLATE_TEST_CASE("a store counts all that it keeps, and keeps nothing to spare", "[storage]",
+                   FlatArray, MortonArray<MortonByTable>, PaletteStore, RunStore, IntervalMap,
+                   SparseOctree, VoxelDag) {
   SplitMix64 rng{Catch::rngSeed()};
   for (const unsigned edge : {8u, 16u, 32u, 64u}) {
     for (const unsigned materials : {1u, 3u, 40u, 2000u}) {
       CAPTURE(Catch::rngSeed(), edge, materials);
-      const TestType store(test::random_chunk(rng, Extent::cube(edge), test::random_order(rng), materials));
+      const TestType store(
+          test::random_chunk(rng, Extent::cube(edge), test::random_order(rng), materials));
       std::size_t copy_bytes = 0;
       const test::Allocations taken = test::allocations_of([&] {
         const TestType copy = store;

@@ -16,7 +16,8 @@ TEST_CASE("a section keeps its voxels while its palette grows until it has none"
     std::size_t bytes = 0;
     for (unsigned i = 0; i + 1 < materials; ++i) store.set(place(i), material(i));
     bytes = store.byte_size();
-    for (unsigned i = 0; i < 4096; ++i) REQUIRE(store.at(place(i)) == (i + 1 < materials ? material(i) : 3));
+    for (unsigned i = 0; i < 4096; ++i)
+      REQUIRE(store.at(place(i)) == (i + 1 < materials ? material(i) : 3));
     return bytes;
   };
   // Longs of 64 / bits numbers each, beside a palette of some bytes.

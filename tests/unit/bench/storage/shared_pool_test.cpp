@@ -7,7 +7,8 @@
 using namespace runstone;
 using bench::storage::SharedPool;
 
-TEST_CASE("a shared pool keeps equal records once, as long as somebody refers to them", "[storage]") {
+TEST_CASE("a shared pool keeps equal records once, as long as somebody refers to them",
+          "[storage]") {
   using Record = std::array<std::uint32_t, 2>;
   SharedPool<Record> pool;
   std::map<Record, std::pair<std::uint32_t, std::uint32_t>> plain;  // slot and references

@@ -7,7 +7,8 @@
 using namespace runstone;
 using bench::PackedLongs;
 
-TEST_CASE("packed numbers come back, whatever their bits, and lie where Minecraft has them", "[storage]") {
+TEST_CASE("packed numbers come back, whatever their bits, and lie where Minecraft has them",
+          "[storage]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (unsigned bits = 1; bits <= 16; ++bits) {
     for (const std::size_t count : {std::size_t{1}, std::size_t{512}, PackedLongs::kCountMax}) {

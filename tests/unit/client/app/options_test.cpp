@@ -47,7 +47,8 @@ TEST_CASE("a program that draws for others needs no server, and takes none", "[c
   CHECK(refused({"--draw", "--help"}) == 0);
 }
 
-TEST_CASE("a client that somebody watches keeps a cache, the others where they are told to", "[client_app]") {
+TEST_CASE("a client that somebody watches keeps a cache, the others where they are told to",
+          "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).cache);
   CHECK(accepted({"--connect", "a:1"}).cache_mib == 256);
   CHECK_FALSE(accepted({"--connect", "a:1", "--no-cache"}).cache);
@@ -64,8 +65,8 @@ TEST_CASE("of two equal flags the last one counts", "[client_app]") {
 }
 
 TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {
-  const ClientOptions options = accepted(
-      {"--connect", "a:1", "--size", "640x360", "--view", "9", "--encoding", "packed", "--headless"});
+  const ClientOptions options = accepted({"--connect", "a:1", "--size", "640x360", "--view", "9",
+                                          "--encoding", "packed", "--headless"});
   CHECK(options.width == 640);
   CHECK(options.height == 360);
   CHECK(options.view_radius == 9);

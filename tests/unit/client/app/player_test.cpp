@@ -71,8 +71,10 @@ TEST_CASE("the chunk of the eye is found by floor", "[client_app]") {
   CHECK(player.chunk(16).x == (kWorldLimit - 1) / 16);
 }
 
-TEST_CASE("a player enters a world at its spawn, stays in place when it is back, and begins anew in another",
-          "[client_app]") {
+TEST_CASE(
+    "a player enters a world at its spawn, stays in place when it is back, and begins anew in "
+    "another",
+    "[client_app]") {
   Player player;
   const WorldId first{1}, second{2};
   player.enter(first, {10, 20, 30});

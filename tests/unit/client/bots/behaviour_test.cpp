@@ -32,7 +32,8 @@ Replica flat_replica(ChunkCoord centre, std::uint8_t radius) {
   return replica;
 }
 
-std::vector<EditDescriptor> edits_of(BotRole role, const BotPlace& place, std::uint64_t seed, int count) {
+std::vector<EditDescriptor> edits_of(BotRole role, const BotPlace& place, std::uint64_t seed,
+                                     int count) {
   const VoxelPos corner = site_corner(place);
   const Replica replica = flat_replica(chunk_of({corner.x + 24, 8, corner.z + 24}, kEdge), 3);
   const auto behaviour = make_behaviour(role, place, default_material_table(), seed);
@@ -51,7 +52,8 @@ TEST_CASE("sites of a fleet do not touch", "[bots]") {
       for (std::size_t b = a + 1; b < count; ++b) {
         const VoxelPos first = site_corner({{0.5, 9, -3.5}, a, count});
         const VoxelPos second = site_corner({{0.5, 9, -3.5}, b, count});
-        CHECK((std::abs(first.x - second.x) >= kSiteSide || std::abs(first.z - second.z) >= kSiteSide));
+        CHECK((std::abs(first.x - second.x) >= kSiteSide ||
+               std::abs(first.z - second.z) >= kSiteSide));
       }
     }
   }
@@ -85,14 +87,15 @@ TEST_CASE("builders and brushes stay on their site", "[bots]") {
 TEST_CASE("a builder waits until it sees its plot; idlers and walkers edit nothing", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
   const Replica far = flat_replica({40, 0, 40}, 1);
-  CHECK_FALSE(
-      make_behaviour(BotRole::build, place, default_material_table(), 1)->next_edit(ReplicaGround(far)));
+  CHECK_FALSE(make_behaviour(BotRole::build, place, default_material_table(), 1)
+                  ->next_edit(ReplicaGround(far)));
   CHECK(edits_of(BotRole::idle, place, 1, 10).empty());
   CHECK(edits_of(BotRole::walk, place, 1, 10).empty());
 }
 
 TEST_CASE("a walker goes round its site at a steady speed", "[bots]") {
-  const auto behaviour = make_behaviour(BotRole::walk, {{0, 8, 0}, 0, 1}, default_material_table(), 1);
+  const auto behaviour =
+      make_behaviour(BotRole::walk, {{0, 8, 0}, 0, 1}, default_material_table(), 1);
   for (double t = 0; t < 60; t += 1) {
     const WorldPos a = behaviour->position(t), b = behaviour->position(t + 0.01);
     const double speed = std::hypot(b.x - a.x, b.z - a.z) / 0.01;

@@ -1,14 +1,15 @@
 // What a crowd shares, and when its bots act.
 #include <catch2/catch.hpp>
 
-#include "client/bots/crowd_book.hpp"
 #include "client/bots/due_times.hpp"
 #include "client/bots/edit_schedule.hpp"
+#include "client/bots/fleet_statistics.hpp"
 #include "client/bots/shared_ground.hpp"
 
 using namespace runstone;
 
-TEST_CASE("due times are found by instance and sequence, the newest ones of each", "[bots][light]") {
+TEST_CASE("due times are found by instance and sequence, the newest ones of each",
+          "[bots][light]") {
   DueTimes due;
   for (ClientSequence seq = 1; seq <= 3; ++seq) due.add(7, seq, static_cast<TimeUs>(seq * 100));
   due.add(8, 1, 5);
@@ -16,7 +17,7 @@ TEST_CASE("due times are found by instance and sequence, the newest ones of each
   CHECK(due.find(8, 1) == 5);
   CHECK_FALSE(due.find(7, 4));
   CHECK_FALSE(due.find(9, 1));
-  for (ClientSequence seq = 4; seq <= kOwnEditsMax + 1; ++seq) due.add(7, seq, 0);
+  for (ClientSequence seq = 4; seq <= kLocalEditsMax + 1; ++seq) due.add(7, seq, 0);
   CHECK_FALSE(due.find(7, 1));
   CHECK(due.find(7, 2) == 200);
 }
@@ -56,7 +57,7 @@ TEST_CASE("the shared ground is that of the first who saw it", "[bots][light]") 
 }
 
 TEST_CASE("a crowd book keeps every sight, and the slowest of each second", "[bots][light]") {
-  CrowdBook book;
+  FleetStatistics book;
   book.begin(1'000'000);
   book.see(1'000'000, 1'000'300);
   book.see(1'999'999, 2'500'000);

@@ -18,7 +18,9 @@ Replica empty_replica() {
   return replica;
 }
 
-EditDescriptor voxel(std::int32_t x, Material material) { return {SetVoxel{{x, 1, 1}}, {}, material}; }
+EditDescriptor voxel(std::int32_t x, Material material) {
+  return {SetVoxel{{x, 1, 1}}, {}, material};
+}
 
 }  // namespace
 

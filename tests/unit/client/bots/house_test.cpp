@@ -8,7 +8,8 @@ using namespace runstone;
 
 TEST_CASE("a house sets no voxel twice and stays on its plot", "[bots]") {
   const VoxelPos corner = {-24, 7, 36};
-  const VoxelBox plot = {corner, {corner.x + kPlotSide, corner.y + kHouseHeight, corner.z + kPlotSide}};
+  const VoxelBox plot = {corner,
+                         {corner.x + kPlotSide, corner.y + kHouseHeight, corner.z + kPlotSide}};
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     SplitMix64 random(seed);
     const HouseMaterials materials = draw_house_materials(default_material_table(), random);
@@ -29,8 +30,8 @@ TEST_CASE("a house stands from the ground up, with windows", "[bots]") {
   const auto plan = plan_house({0, 0, 0}, materials, random);
   CHECK(std::is_sorted(plan.begin(), plan.end(),
                        [](const Placement& a, const Placement& b) { return a.at.y < b.at.y; }));
-  const auto windows = std::count_if(plan.begin(), plan.end(),
-                                     [&](const Placement& p) { return p.material == materials.window; });
+  const auto windows = std::count_if(
+      plan.begin(), plan.end(), [&](const Placement& p) { return p.material == materials.window; });
   CHECK(windows >= 4);
 }
 

@@ -67,7 +67,8 @@ TEST_CASE("a tiny speed and a far time stay numbers", "[bots][play]") {
   CHECK(take_all(schedule, kBegin + kSecond) == std::vector<std::size_t>{0});
 }
 
-TEST_CASE("only so many edits wait for an answer, and only so many go in a second", "[bots][play]") {
+TEST_CASE("only so many edits wait for an answer, and only so many go in a second",
+          "[bots][play]") {
   PlaySchedule schedule(std::vector<TimeUs>(100'000, 0), 0);
   schedule.begin(kBegin);
   std::size_t handed = 0;
@@ -83,8 +84,10 @@ TEST_CASE("only so many edits wait for an answer, and only so many go in a secon
   CHECK(handed < 33'000);
 }
 
-TEST_CASE("after a push back all that is on its way is answered first, and what came back goes first again",
-          "[bots][play]") {
+TEST_CASE(
+    "after a push back all that is on its way is answered first, and what came back goes first "
+    "again",
+    "[bots][play]") {
   PlaySchedule schedule({0, 1, 2, 3, 4, 5}, 1);
   schedule.begin(kBegin);
   std::deque<PlaySchedule::Turn> sent;
@@ -104,12 +107,14 @@ TEST_CASE("after a push back all that is on its way is answered first, and what 
   CHECK(take_all(schedule, kBegin + 10 + kPlayPauseUs).empty());  // nothing to catch up
   std::vector<std::size_t> rest;
   for (TimeUs us = 0; us < 5'000; us += 100) {
-    for (const std::size_t index : take_all(schedule, kBegin + 10 + kPlayPauseUs + us)) rest.push_back(index);
+    for (const std::size_t index : take_all(schedule, kBegin + 10 + kPlayPauseUs + us))
+      rest.push_back(index);
   }
   CHECK(rest == std::vector<std::size_t>{2, 4, 5});
 }
 
-TEST_CASE("the rate settles below a server's limit, and every edit is taken in the end", "[bots][play]") {
+TEST_CASE("the rate settles below a server's limit, and every edit is taken in the end",
+          "[bots][play]") {
   constexpr std::size_t kEdits = 30'000;
   PlaySchedule schedule(std::vector<TimeUs>(kEdits, 0), 0);
   schedule.begin(kBegin);

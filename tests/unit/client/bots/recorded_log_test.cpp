@@ -29,7 +29,8 @@ RlogWorld world_of_defaults() {
 }
 
 Bytes three_authors() {
-  const std::vector<RlogPlayer> players = {{1, {}, "ada"}, {2, {}, std::string(100, 'b')}, {3, {}, "idle"}};
+  const std::vector<RlogPlayer> players = {
+      {1, {}, "ada"}, {2, {}, std::string(100, 'b')}, {3, {}, "idle"}};
   const std::vector<EditRecord> records = {voxel(1, 2, 5'000, 1), voxel(2, 1, 5'000, 2),
                                            voxel(3, 0, 6'500, 0), voxel(4, 2, 9'000, 4)};
   return rlog_of(world_of_defaults(), players, records, {0, 2});
@@ -95,6 +96,6 @@ TEST_CASE("the world must know by id and name what the edits use, and only that"
   add("other");
   const auto other = check_materials(*log, live);
   REQUIRE_FALSE(other.has_value());
-  CHECK(other.error() ==
-        "material 4 is \"" + default_material_table()[4].name + "\" in the file and \"other\" in the world");
+  CHECK(other.error() == "material 4 is \"" + default_material_table()[4].name +
+                             "\" in the file and \"other\" in the world");
 }

@@ -92,7 +92,8 @@ TEST_CASE("of a server that came back, only common history is found", "[cache]")
   cache->keep(world_at(1, 100, 110), chunks_at(0, 1, {}));
   cache->keep(world_at(1, 100, 110), chunks_at(1, 1, {1, 100}));
   cache->keep(world_at(1, 100, 110), chunks_at(2, 1, {1, 105}));  // not known to be durable
-  SECTION("a crash: what was not known to be durable is gone, though the log has grown past it again") {
+  SECTION(
+      "a crash: what was not known to be durable is gone, though the log has grown past it again") {
     CHECK(cache->find(world_at(2, 500, 500), keys_of(0, 3)).size() == 2);
     CHECK(cache->counters().not_common == 1);
     // And it stays gone, when later marks are beyond it.
@@ -142,7 +143,8 @@ TEST_CASE("flipped bits never give a wrong chunk", "[cache]") {
     CAPTURE(Catch::rngSeed(), round);
     std::string damaged = whole;
     for (int flips = 1 + round % 20; flips > 0; --flips) {
-      damaged[rng.below(static_cast<std::uint32_t>(damaged.size()))] ^= static_cast<char>(1 << rng.below(8));
+      damaged[rng.below(static_cast<std::uint32_t>(damaged.size()))] ^=
+          static_cast<char>(1 << rng.below(8));
     }
     const TempFolder other;
     std::ofstream(other / "cache.sqlite", std::ios::binary) << damaged;

@@ -31,7 +31,8 @@ class Bench {
   Bench() { append_draw_world(16, default_material_table(), orders); }
   Outcome run() {
     std::ofstream(folder / "orders", std::ios::binary)
-        .write(reinterpret_cast<const char*>(orders.data()), static_cast<std::streamsize>(orders.size()));
+        .write(reinterpret_cast<const char*>(orders.data()),
+               static_cast<std::streamsize>(orders.size()));
     const int in = ::open((folder / "orders").c_str(), O_RDONLY | O_CLOEXEC);
     const int out = ::open((folder / "answers").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0644);
     REQUIRE(in >= 0);
@@ -50,7 +51,9 @@ class Bench {
     outcome.screen = book.lines();
     return outcome;
   }
-  void order_picture(const std::string& name) { append_draw_picture({{}, {64, 48}, folder / name}, orders); }
+  void order_picture(const std::string& name) {
+    append_draw_picture({{}, {64, 48}, folder / name}, orders);
+  }
 
   test::TempFolder folder;
   test::FakeScreenBook book;
@@ -81,16 +84,18 @@ TEST_CASE("the draw program answers each picture once it is on the disk", "[clie
   CHECK(std::get<PictureDrawn>(outcome.answers[2]).file == bench.folder / "b.png");
   CHECK(std::filesystem::file_size(bench.folder / "a.png") > 0);
   CHECK(std::filesystem::exists(bench.folder / "b.png"));
-  const std::vector<std::string> screen = {"materials " + std::to_string(default_material_table().size()),
-                                           "upload 2 quads 6",
-                                           "draw",
-                                           "remove 2",
-                                           "draw",
-                                           "gone"};
+  const std::vector<std::string> screen = {
+      "materials " + std::to_string(default_material_table().size()),
+      "upload 2 quads 6",
+      "draw",
+      "remove 2",
+      "draw",
+      "gone"};
   CHECK(outcome.screen == screen);
 }
 
-TEST_CASE("a picture that cannot be written is answered by name, and the next one is drawn", "[client_app]") {
+TEST_CASE("a picture that cannot be written is answered by name, and the next one is drawn",
+          "[client_app]") {
   Bench bench;
   bench.order_picture("no/such/folder/a.png");
   bench.order_picture("b.png");
@@ -102,7 +107,8 @@ TEST_CASE("a picture that cannot be written is answered by name, and the next on
   CHECK(std::filesystem::exists(bench.folder / "b.png"));
 }
 
-TEST_CASE("orders that are wrong or break off end the draw program with the reason", "[client_app]") {
+TEST_CASE("orders that are wrong or break off end the draw program with the reason",
+          "[client_app]") {
   Bench bench;
   const auto begun = std::to_string(bench.orders.size());
   SECTION("wrong") {
@@ -126,7 +132,9 @@ TEST_CASE("no OpenGL, or a driver that fails, ends the draw program with what th
   bench.order_picture("a.png");
   append_draw_end(bench.orders);
   SECTION("none") {
-    bench.make_screen = []() -> std::unique_ptr<Screen> { throw std::runtime_error("no headless context"); };
+    bench.make_screen = []() -> std::unique_ptr<Screen> {
+      throw std::runtime_error("no headless context");
+    };
     const Outcome outcome = bench.run();
     CHECK(outcome.code == kExitNoStart);
     REQUIRE(outcome.answers.size() == 1);

@@ -82,11 +82,14 @@ TEST_CASE("what changes during a frame waits for its end, and only the newest of
   bench.thread.draw(small_frame());
   bench.take_frames(2);
   CHECK(bench.thread.waiting() == 0);
-  CHECK(bench.book.lines() == Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
+  CHECK(bench.book.lines() ==
+        Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
 }
 
-TEST_CASE("what is reported comes in the order of the draw thread: uploads, then the frame that shows them",
-          "[client_app]") {
+TEST_CASE(
+    "what is reported comes in the order of the draw thread: uploads, then the frame that shows "
+    "them",
+    "[client_app]") {
   Bench bench;
   bench.book.hold();
   bench.thread.upload(chunk(1), mesh_of(10, 1));
@@ -118,14 +121,16 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
   CHECK(bench.book.lines() == Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
 }
 
-TEST_CASE("a screenshot is written from its frame, and one that cannot be is named", "[client_app]") {
+TEST_CASE("a screenshot is written from its frame, and one that cannot be is named",
+          "[client_app]") {
   const test::TempFolder folder;
   Bench bench;
   FrameOrder order = small_frame();
   order.screenshots = {folder / "picture.png", folder / "no-such-folder/picture.png"};
   bench.thread.draw(order);
   bench.take_frames(1);
-  CHECK(std::get<FrameDone>(bench.done.back()).unwritten == Lines{folder / "no-such-folder/picture.png"});
+  CHECK(std::get<FrameDone>(bench.done.back()).unwritten ==
+        Lines{folder / "no-such-folder/picture.png"});
   CHECK(std::filesystem::file_size(folder / "picture.png") > 0);
 }
 

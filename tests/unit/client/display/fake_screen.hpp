@@ -74,7 +74,8 @@ class FakeScreen final : public Screen {
     book_.write("materials " + std::to_string(materials.size()));
   }
   void upload(const ChunkKey& key, std::int32_t /*edge*/, const ChunkMesh& mesh) override {
-    book_.write("upload " + std::to_string(key.at.x) + " quads " + std::to_string(mesh.quad_count()));
+    book_.write("upload " + std::to_string(key.at.x) + " quads " +
+                std::to_string(mesh.quad_count()));
   }
   void remove(const ChunkKey& key) override { book_.write("remove " + std::to_string(key.at.x)); }
   RenderStats draw(const Camera& /*camera*/, int width, int height,
@@ -85,9 +86,9 @@ class FakeScreen final : public Screen {
     return {};
   }
   Image read_image() override {
-    return {
-        width_, height_,
-        std::vector<std::uint8_t>(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 3)};
+    return {width_, height_,
+            std::vector<std::uint8_t>(static_cast<std::size_t>(width_) *
+                                      static_cast<std::size_t>(height_) * 3)};
   }
 
  private:

@@ -34,7 +34,8 @@ TEST_CASE("a recorded log is played at a speed", "[client_app][play]") {
 }
 
 TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]") {
-  for (const char* other : {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
+  for (const char* other :
+       {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
     CAPTURE(other);
     CHECK(parse({other, "3"}).options.has_value());
     CHECK(parse({"--play", "a.rlog", other, "3"}).exit_code == 2);
@@ -46,10 +47,12 @@ TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]")
 
 TEST_CASE("a crowd has one behaviour, or several by their shares", "[client_app]") {
   CHECK(parse({}).options->roles == std::vector<BotRole>{BotRole::build});
-  CHECK(parse({"--behaviour", "run-away"}).options->roles == std::vector<BotRole>{BotRole::run_away});
+  CHECK(parse({"--behaviour", "run-away"}).options->roles ==
+        std::vector<BotRole>{BotRole::run_away});
   CHECK(parse({"--mix", "idle=2,join-storm=1"}).options->roles ==
         std::vector<BotRole>{BotRole::idle, BotRole::idle, BotRole::join_storm});
-  for (const char* wrong : {"", "idle", "idle=", "idle=0", "idle=x", "fly=1", "idle=600,walk=600"}) {
+  for (const char* wrong :
+       {"", "idle", "idle=", "idle=0", "idle=x", "fly=1", "idle=600,walk=600"}) {
     CAPTURE(wrong);
     CHECK(parse({"--mix", wrong}).exit_code == 2);
   }

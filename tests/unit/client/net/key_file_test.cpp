@@ -22,7 +22,8 @@ struct Folder : test::TempFolder {
 
 }  // namespace
 
-TEST_CASE_METHOD(Folder, "a missing key is made, private, and read again the same", "[client_net]") {
+TEST_CASE_METHOD(Folder, "a missing key is made, private, and read again the same",
+                 "[client_net]") {
   const KeyPair made = load_or_create_key(file("k"));
   struct stat info{};
   REQUIRE(::stat(file("k").c_str(), &info) == 0);
@@ -39,7 +40,8 @@ TEST_CASE_METHOD(Folder, "a key file has golden text", "[client_net]") {
   CHECK(load_or_create_key(file("k")).public_key == key_pair_of(seed).public_key);
 }
 
-TEST_CASE_METHOD(Folder, "a key that others may read, or that is none, is refused and kept", "[client_net]") {
+TEST_CASE_METHOD(Folder, "a key that others may read, or that is none, is refused and kept",
+                 "[client_net]") {
   write("open", std::string(64, 'a') + "\n", 0644);
   CHECK_THROWS_WITH(load_or_create_key(file("open")), Catch::Contains("others may read"));
   write("short", std::string(63, 'a') + "\n");

@@ -34,12 +34,13 @@ struct Peer {
       std::uint8_t byte = 0;  // one by one, so that nothing of the next message is read
       std::error_code error;
       if (socket.read_some(asio::buffer(&byte, 1), error) == 0) return std::nullopt;
-      const auto fed = reader->feed({&byte, 1}, [&](FrameClass frame_class, ByteView body) -> Result<void> {
-        auto message = decode_message(Sender::client, frame_class, body, 0);
-        REQUIRE(message.has_value());
-        got = std::move(*message);
-        return {};
-      });
+      const auto fed =
+          reader->feed({&byte, 1}, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+            auto message = decode_message(Sender::client, frame_class, body, 0);
+            REQUIRE(message.has_value());
+            got = std::move(*message);
+            return {};
+          });
       REQUIRE(fed.has_value());
     }
     return got;
@@ -135,7 +136,8 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   CHECK(of_class(received, FrameClass::chunks) == KindTraffic{1, second.bytes, 1});
 }
 
-TEST_CASE_METHOD(Fixture, "a connection that breaks is made again, and the old one's messages are dropped",
+TEST_CASE_METHOD(Fixture,
+                 "a connection that breaks is made again, and the old one's messages are dropped",
                  "[client_net]") {
   start(config());
   peer.accept();
@@ -151,7 +153,8 @@ TEST_CASE_METHOD(Fixture, "a connection that breaks is made again, and the old o
   CHECK(std::get<Ping>(*got).sent_us == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "bytes that are no frames end the connection with a reason", "[client_net]") {
+TEST_CASE_METHOD(Fixture, "bytes that are no frames end the connection with a reason",
+                 "[client_net]") {
   start(config());
   peer.accept();
   next_as<NetConnected>();
@@ -198,7 +201,8 @@ TEST_CASE_METHOD(Fixture, "closing sends what is queued first", "[client_net]") 
   CHECK(next_as<NetDisconnected>().connection == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect again", "[client_net]") {
+TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect again",
+                 "[client_net]") {
   start(config());
   peer.accept();
   const auto up = next_as<NetConnected>();
@@ -211,7 +215,8 @@ TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect ag
   CHECK(client->stats().connections == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "while events are not taken reading stops, and nothing is lost", "[client_net]") {
+TEST_CASE_METHOD(Fixture, "while events are not taken reading stops, and nothing is lost",
+                 "[client_net]") {
   NetConfig net = config();
   net.events_max = 16;
   start(net);

@@ -30,7 +30,7 @@ struct Server {
   WorldId world_id{1, 2, 3};
   Hello hello;
   Welcome welcome;
-  ClientSequence decided = 0;
+  ClientSequence resolved = 0;
   AuthorityModel world{kEdge, 3};
 
   Welcome make_welcome() {
@@ -73,10 +73,11 @@ struct Fixture {
     greet();
     receive(server.make_welcome());
     auto out = sent();
-    const auto proofs = take<Proof>(out);
+    const auto proofs = take<ClientAuth>(out);
     REQUIRE(proofs.size() == 1);
-    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome), proofs[0].signature));
-    receive(Ready{6, server.decided});
+    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome),
+                 proofs[0].signature));
+    receive(SessionAccepted{6, server.resolved});
     REQUIRE(session.is_open());
     return sent();
   }
@@ -91,7 +92,8 @@ EditDescriptor set(VoxelPos at, Material material) { return {SetVoxel{at}, {}, m
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a session opens by hello, welcome, proof and ready, then asks for its view",
+TEST_CASE_METHOD(Fixture,
+                 "a session opens by hello, welcome, proof and ready, then asks for its view",
                  "[replica]") {
   auto out = open();
   CHECK(server.hello.name == "ada");
@@ -144,7 +146,7 @@ TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that we
   welcome.edit_volume_max = 27;
   welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
   receive(welcome);
-  receive(Ready{6, 0});
+  receive(SessionAccepted{6, 0});
   REQUIRE(session.is_open());
   CHECK(session.submit(set({0, 3, 0}, 1), now, now).has_value());
   CHECK_FALSE(session.submit(set({0, 4, 0}, 1), now, now).has_value());
@@ -182,7 +184,7 @@ TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[rep
   CHECK_FALSE(session.end()->by_server);
   CHECK(session.end()->reason == GoodbyeReason::not_authenticated);
   auto out = sent();
-  CHECK(take<Proof>(out).empty());
+  CHECK(take<ClientAuth>(out).empty());
   CHECK(take<Goodbye>(out).size() == 1);
 }
 
@@ -204,7 +206,7 @@ TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
     receive(std::move(message));
     return session.wants_close();
   };
-  CHECK(refused(Ready{1, 0}));
+  CHECK(refused(SessionAccepted{1, 0}));
   CHECK(refused(Durable{1, 1}));
   CHECK(refused(Hello{}));
   session = ClientSession(config());
@@ -213,7 +215,8 @@ TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
   CHECK(session.wants_close());
 }
 
-TEST_CASE_METHOD(Fixture, "edits wait for the clock offset and carry the server's time of the click",
+TEST_CASE_METHOD(Fixture,
+                 "edits wait for the clock offset and carry the server's time of the click",
                  "[replica]") {
   static_cast<void>(open());
   const auto seq = session.submit(set({1, 2, 3}, 4), now - 300, now);
@@ -234,7 +237,8 @@ TEST_CASE_METHOD(Fixture, "edits wait for the clock offset and carry the server'
   CHECK(take<EditRequest>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unknown time", "[replica]") {
+TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unknown time",
+                 "[replica]") {
   static_cast<void>(open());
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
   now += kOffsetWaitUsMax;
@@ -262,13 +266,14 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
   };
   CHECK_FALSE(session.submit(paste(last), now, now).has_value());
   CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // no clipboard at all
-  CHECK(session.replica().own_edits().all().empty());
+  CHECK(session.replica().local_edits().all().empty());
   const auto known = static_cast<Material>(last - 1);
   CHECK(session.submit(masked(known), now, now).has_value());
   CHECK(session.submit(paste(known), now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture, "after a cut the undecided edits are offered again in order, before newer ones",
+TEST_CASE_METHOD(Fixture,
+                 "after a cut the undecided edits are offered again in order, before newer ones",
                  "[replica]") {
   static_cast<void>(open());
   pong();
@@ -277,7 +282,7 @@ TEST_CASE_METHOD(Fixture, "after a cut the undecided edits are offered again in 
   session.disconnected();
   REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while away
   CHECK(sent().empty());
-  server.decided = 1;
+  server.resolved = 1;
   auto out = open();
   const auto edits = take<EditRequest>(out);
   REQUIRE(edits.size() == 4);
@@ -285,7 +290,7 @@ TEST_CASE_METHOD(Fixture, "after a cut the undecided edits are offered again in 
   CHECK(edits[1].client_seq == 2);
   CHECK(edits[2].client_seq == 3);
   CHECK(edits[3].client_seq == 4);
-  CHECK(session.openings() == 2);
+  CHECK(session.connect_count() == 2);
 }
 
 TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
@@ -309,7 +314,7 @@ TEST_CASE_METHOD(Fixture, "another world under the same address starts from noth
   server.world_id = {9};
   auto out = open();
   CHECK(session.replica().confirmed_count() == 0);
-  CHECK(session.replica().own_edits().all().empty());
+  CHECK(session.replica().local_edits().all().empty());
   CHECK(take<EditRequest>(out).empty());
 }
 
@@ -325,7 +330,8 @@ TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") 
   CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
 }
 
-TEST_CASE_METHOD(Fixture, "an edit without an answer is offered again after a while, once per while",
+TEST_CASE_METHOD(Fixture,
+                 "an edit without an answer is offered again after a while, once per while",
                  "[replica]") {
   static_cast<void>(open());
   pong();
@@ -381,9 +387,10 @@ TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a secon
   CHECK(take<Move>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses", "[replica]") {
+TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses",
+                 "[replica]") {
   static_cast<void>(open());
-  receive(Roster{{{6, "ada"}, {7, "bob"}}, false, {}});
+  receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
   REQUIRE(session.others().size() == 1);
   CHECK(session.others().at(7).name == "bob");
   Pose pose;
@@ -391,21 +398,22 @@ TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their p
   receive(PlayerPoses{{{7, pose}, {6, pose}}});
   CHECK(session.others().at(7).pose == pose);
   CHECK(session.others().size() == 1);
-  receive(Roster{{{6, "ada"}, {7, "bob"}, {8, "eve"}}, false, {}});
+  receive(PlayerList{{{6, "ada"}, {7, "bob"}, {8, "eve"}}, false, {}});
   CHECK(session.others().at(7).pose == pose);
-  receive(Roster{{{9, "mallory"}, {8, "eva"}}, true, {7}});
+  receive(PlayerList{{{9, "mallory"}, {8, "eva"}}, true, {7}});
   REQUIRE(session.others().size() == 2);
   CHECK(session.others().at(8).name == "eva");
   CHECK(session.others().at(9).name == "mallory");
   receive(PlayerPoses{{{9, pose}}});
-  receive(Roster{{{9, "trudy"}}, true, {}});
+  receive(PlayerList{{{9, "trudy"}}, true, {}});
   CHECK(session.others().at(9).pose == pose);
   CHECK(session.others().size() == 2);
-  receive(Roster{{{6, "ada"}}, false, {}});
+  receive(PlayerList{{{6, "ada"}}, false, {}});
   CHECK(session.others().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a silent server and a goodbye both end the connection, the former not for good",
+TEST_CASE_METHOD(Fixture,
+                 "a silent server and a goodbye both end the connection, the former not for good",
                  "[replica]") {
   static_cast<void>(open());
   session.tick(now + kServerSilenceUsMax + 1);
@@ -438,39 +446,41 @@ std::vector<ChunkKey> view_keys(const ClientSession& session) {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture,
-                 "what was kept over a cut is claimed before the view, and called the same it is loaded",
-                 "[replica]") {
+TEST_CASE_METHOD(
+    Fixture,
+    "what was kept over a cut is claimed before the view, and called the same it is loaded",
+    "[replica]") {
   static_cast<void>(open());
   for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
   REQUIRE(session.loaded());
   session.disconnected();
   auto out = open();
   REQUIRE(out.size() >= 2);
-  REQUIRE(std::holds_alternative<Held>(out[0]));
+  REQUIRE(std::holds_alternative<CachedChunks>(out[0]));
   CHECK(std::holds_alternative<View>(out[1]));
-  const auto& held = std::get<Held>(out[0]).chunks;
+  const auto& held = std::get<CachedChunks>(out[0]).chunks;
   REQUIRE(held.size() == 15);
   CHECK(held[0].digest == claim_digest(server.world.chunk(held[0].key.at).digest));
   CHECK_FALSE(session.loaded());
-  Same same;
+  ChunksNotModified same;
   for (const HeldChunk& chunk : held) same.chunks.push_back({chunk.key, chunk.version.seq});
   receive(same);
   CHECK(session.loaded());
   // Nothing is claimed twice.
   session.set_view({{0, 0, 0}, 2, 1});
   auto more = sent();
-  CHECK(take<Held>(more).empty());
+  CHECK(take<CachedChunks>(more).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "chunks that a restarted server may have lost are not claimed", "[replica]") {
+TEST_CASE_METHOD(Fixture, "chunks that a restarted server may have lost are not claimed",
+                 "[replica]") {
   static_cast<void>(open());
   for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
   receive(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));  // never durable
   session.disconnected();
   server.world.restart({});
   auto out = open();
-  const auto held = take<Held>(out);
+  const auto held = take<CachedChunks>(out);
   REQUIRE(held.size() == 1);
   CHECK(held[0].chunks.size() == 14);
 }
@@ -491,8 +501,8 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     session.answer({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
     CHECK(session.replica().shown(key) != nullptr);
     out = sent();
-    REQUIRE(take<Held>(out).size() == 1);
-    CHECK(take<Held>(out)[0].chunks.size() == 1);
+    REQUIRE(take<CachedChunks>(out).size() == 1);
+    CHECK(take<CachedChunks>(out)[0].chunks.size() == 1);
     CHECK(take<View>(out).size() == 1);
     // It is kept in the cache as it is: only others are to be written.
     for (const ChunkKey& other : view_keys(session)) receive(server.world.snapshot(other.at));
@@ -509,7 +519,8 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     REQUIRE(left.size() == 1);
     CHECK(left[0].second->version.seq == 2);
   }
-  SECTION("without an answer the view goes out after a while, and a late answer counts all the same") {
+  SECTION(
+      "without an answer the view goes out after a while, and a late answer counts all the same") {
     now += kCacheWaitUsMax;
     receive(Pong{0, 0});
     session.tick(now);
@@ -517,7 +528,7 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     CHECK(take<View>(out).size() == 1);
     session.answer({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
     out = sent();
-    CHECK(take<Held>(out).size() == 1);
+    CHECK(take<CachedChunks>(out).size() == 1);
   }
   SECTION("an answer to an earlier connection is not taken for one of this") {
     session.disconnected();
@@ -534,7 +545,8 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
   }
 }
 
-TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever it stands", "[replica]") {
+TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever it stands",
+                 "[replica]") {
   static_cast<void>(open());
   const ChunkKey key{0, {0, 0, 0}};
   receive(server.world.snapshot(key.at));
@@ -570,7 +582,9 @@ TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever 
     CHECK(session.replica().confirmed(key)->version.seq == 4);
     CHECK(session.replica().confirmed(key)->digest == server.world.chunk(key.at).digest);
   }
-  SECTION("edits that start elsewhere, or end in another digest, are not taken: the chunk is asked for") {
+  SECTION(
+      "edits that start elsewhere, or end in another digest, are not taken: the chunk is asked "
+      "for") {
     const bool starts_elsewhere = GENERATE(true, false);
     if (starts_elsewhere) {
       update.from = 1;
@@ -587,7 +601,7 @@ TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever 
     CHECK(session.replica().confirmed(key)->version == server.world.chunk(key.at).version);
   }
   SECTION("the same, of a newer version than is held, is not believed") {
-    receive(Same{{{key, 2}}});
+    receive(ChunksNotModified{{{key, 2}}});
     session.tick(now);
     auto out = sent();
     CHECK(take<ChunkRequest>(out).size() == 1);

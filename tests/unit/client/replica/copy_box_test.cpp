@@ -27,7 +27,8 @@ struct Fixture {
         for (std::int32_t z = -2; z < 2; ++z) {
           ChunkSnapshot snapshot;
           snapshot.key = {0, {x, y, z}};
-          snapshot.chunk.voxels = random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, Shape::boxes);
+          snapshot.chunk.voxels =
+              random_chunk(rng, Extent::cube(kEdge), random_order(rng), 4, Shape::boxes);
           snapshot.chunk.digest = digest_of(snapshot.chunk.voxels);
           replica.receive(std::move(snapshot), kNow);
         }
@@ -44,12 +45,15 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, empty ones as asked", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, empty ones as asked",
+                 "[replica]") {
   load();
   for (int round = 0; round < 60; ++round) {
     const auto low = [&] { return rng.between(-32, 31); };
     const VoxelPos min{low(), low(), low()};
-    const auto end = [&](std::int32_t from) { return rng.between(from + 1, std::min(from + 40, 32)); };
+    const auto end = [&](std::int32_t from) {
+      return rng.between(from + 1, std::min(from + 40, 32));
+    };
     const VoxelBox box{min, {end(min.x), end(min.y), end(min.z)}};
     const CopyEmpty empty = round % 2 == 0 ? CopyEmpty::as_empty : CopyEmpty::as_untouched;
     const auto copied = copy_box(replica, box, empty);
@@ -61,7 +65,8 @@ TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, empty ones as
           const bool leaves = shown == kEmpty && empty == CopyEmpty::as_untouched;
           any = any || !leaves;
           if (!copied) continue;
-          const LocalPos cell{static_cast<std::uint8_t>(p.x - min.x), static_cast<std::uint8_t>(p.y - min.y),
+          const LocalPos cell{static_cast<std::uint8_t>(p.x - min.x),
+                              static_cast<std::uint8_t>(p.y - min.y),
                               static_cast<std::uint8_t>(p.z - min.z)};
           REQUIRE((*copied)->at(cell) == (leaves ? std::nullopt : std::optional<Material>(shown)));
         }
@@ -95,7 +100,8 @@ TEST_CASE_METHOD(Fixture, "a copy says why it cannot be made", "[replica]") {
   CHECK(error_of({{-33, 0, 0}, {1, 1, 1}}) == "a chunk of the box to copy is not here");
   CHECK(error_of({{0, 0, 0}, {129, 1, 1}}) == "box to copy is longer than 128 voxels");
   CHECK(error_of({{0, 0, 0}, {0, 1, 1}}) == "box to copy is empty");
-  CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) == "box to copy reaches outside the world");
+  CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) ==
+        "box to copy reaches outside the world");
   ChunkSnapshot air;
   air.key = {0, {0, 2, 0}};
   air.chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);

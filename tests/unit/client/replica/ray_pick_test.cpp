@@ -19,7 +19,8 @@ void fill_world(Replica& replica, SplitMix64& rng) {
   for (ClientSequence i = 1; i <= 5000; ++i) {
     const auto at = [&] { return rng.between(-16, 31); };
     const VoxelPos pos{at(), at(), at()};
-    static_cast<void>(world.commit({9, 1, i}, {SetVoxel{pos}, {}, static_cast<Material>(1 + rng.below(4))}));
+    static_cast<void>(
+        world.commit({9, 1, i}, {SetVoxel{pos}, {}, static_cast<Material>(1 + rng.below(4))}));
   }
   replica.set_view({{0, 0, 0}, 2, 1});
   static_cast<void>(replica.open({kEdge, 1, 1, 1, 0, 0, 0}));
@@ -40,8 +41,8 @@ struct Brute {
   VoxelPos voxel;
   double distance;
 };
-std::optional<Brute> brute_pick(const Replica& replica, const WorldPos& eye, const LookDirection& look,
-                                double reach) {
+std::optional<Brute> brute_pick(const Replica& replica, const WorldPos& eye,
+                                const LookDirection& look, double reach) {
   std::optional<Brute> best;
   for (int x = -16; x < 32; ++x) {
     for (int y = -16; y < 32; ++y) {
@@ -122,8 +123,9 @@ TEST_CASE("a ray names the face it came in by", "[replica]") {
   CHECK_FALSE(inside->face);
   CHECK_FALSE(place_against(*inside));
 
-  CHECK_FALSE(pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 3.9));         // out of reach
-  CHECK_FALSE(pick(replica, {5.5, 5.5, 1}, look_direction(turn / 2, 0), 100));  // leaves what is shown
+  CHECK_FALSE(pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 3.9));  // out of reach
+  CHECK_FALSE(
+      pick(replica, {5.5, 5.5, 1}, look_direction(turn / 2, 0), 100));  // leaves what is shown
   CHECK_FALSE(pick(replica, {NAN, 5.5, 1}, look_direction(0, 0), 10));
   CHECK_FALSE(pick(Replica{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
 }

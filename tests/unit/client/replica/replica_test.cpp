@@ -29,12 +29,12 @@ struct Fixture {
     replica.set_view({{0, 0, 0}, 2, 2});
     static_cast<void>(replica.open(opening()));
   }
-  Opening opening(ClientSequence decided = 0, Sequence durable = 0) const {
-    return {kEdge, kMe, kInstance, world.epoch(), durable, world.head(), decided};
+  SessionParameters opening(ClientSequence resolved = 0, Sequence durable = 0) const {
+    return {kEdge, kMe, kInstance, world.epoch(), durable, world.head(), resolved};
   }
   void load(const ChunkKey& key) {
     replica.receive(world.snapshot(key.at), kNow);
-    static_cast<void>(replica.take_news());
+    static_cast<void>(replica.drain_changes());
   }
   void take(const Commit& commit) { REQUIRE(replica.receive(commit, kNow).has_value()); }
   ClientSequence submit(const EditDescriptor& edit) {
@@ -55,13 +55,14 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a commit that follows the snapshot is applied and reported with its layers",
+TEST_CASE_METHOD(Fixture,
+                 "a commit that follows the snapshot is applied and reported with its layers",
                  "[replica]") {
   load(kHere);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   require_in_step(kHere);
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.chunks.size() == 1);
   CHECK(news.chunks[0].key == kHere);
   CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
@@ -90,18 +91,19 @@ TEST_CASE_METHOD(Fixture, "where nothing is pending the shown runs are the confi
   CHECK(material_at(replica.confirmed(kHere)->voxels, {1, 1, 1}) == kEmpty);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit at the border tells the neighbour to mesh its side again", "[replica]") {
+TEST_CASE_METHOD(Fixture, "an edit at the border tells the neighbour to mesh its side again",
+                 "[replica]") {
   load(kHere);
   load(kRight);
   take(world.commit(other(1), set({15, 4, 5}, 2)));
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.chunks.size() == 2);
   CHECK(news.chunks[1].key == kRight);
   CHECK_FALSE(news.chunks[1].layers.dirty.any());
-  PictureLayers beside;
+  VisibleLayers beside;
   beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = news.chunks[0].layers.dirty;
   CHECK(news.chunks[1].layers == beside);
-  CHECK(news.chunks[0].layers.beyond == PictureLayers{}.beyond);
+  CHECK(news.chunks[0].layers.beyond == VisibleLayers{}.beyond);
   CHECK(news.edits[0].chunks == std::vector{kHere, kRight});
 }
 
@@ -115,22 +117,24 @@ TEST_CASE_METHOD(Fixture, "commits that overtake their snapshot are held back an
   replica.receive(early, kNow);
   require_in_step(kHere);
   CHECK(replica.counters().chunk_edits_applied == 2);
-  CHECK(replica.take_news().edits.size() == 2);
+  CHECK(replica.drain_changes().edits.size() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a snapshot that contains held back commits replaces them and still names them",
+TEST_CASE_METHOD(Fixture,
+                 "a snapshot that contains held back commits replaces them and still names them",
                  "[replica]") {
   take(world.commit(other(1), set({1, 2, 3}, 2)));
   replica.receive(world.snapshot(kHere.at), kNow);
   require_in_step(kHere);
   CHECK(replica.counters().chunk_edits_contained == 1);
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.edits.size() == 1);
   CHECK(news.edits[0].in_snapshot);
   CHECK(news.edits[0].chunks == std::vector{kHere});
 }
 
-TEST_CASE_METHOD(Fixture, "chunks of one material come as snapshots do, and with their digest", "[replica]") {
+TEST_CASE_METHOD(Fixture, "chunks of one material come as snapshots do, and with their digest",
+                 "[replica]") {
   const ChunkKey above{0, {kHere.at.x, kHere.at.y + 1, kHere.at.z}};
   const Version old{1, 4}, newer{1, 9};
   replica.receive(UniformChunks{{{kHere, 3, newer}, {above, 3, {}}}}, kNow);
@@ -158,7 +162,8 @@ TEST_CASE_METHOD(Fixture, "a stale snapshot never erases a newer edit", "[replic
   CHECK(replica.shown_at({1, 2, 3}) == Material{2});
 }
 
-TEST_CASE_METHOD(Fixture, "a gap stops the chunk and asks for a snapshot until it comes", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a gap stops the chunk and asks for a snapshot until it comes",
+                 "[replica]") {
   load(kHere);
   static_cast<void>(world.commit(other(1), set({1, 2, 3}, 2)));  // lost
   take(world.commit(other(2), set({2, 2, 3}, 4)));
@@ -179,7 +184,8 @@ TEST_CASE_METHOD(Fixture, "a gap stops the chunk and asks for a snapshot until i
   CHECK(replica.awaiting_count() == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "a snapshot that still leaves a gap is followed by another request", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a snapshot that still leaves a gap is followed by another request",
+                 "[replica]") {
   load(kHere);
   static_cast<void>(world.commit(other(1), set({1, 2, 3}, 2)));  // lost
   const ChunkSnapshot between = world.snapshot(kHere.at);
@@ -199,7 +205,8 @@ TEST_CASE_METHOD(Fixture, "the same commit twice is applied once", "[replica]") 
   load(kHere);
   // Not idempotent: the second application would fill what the mask left empty in between.
   take(world.commit(other(1), set({4, 4, 4}, 2)));
-  const Commit fill = world.commit(other(2), box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty}));
+  const Commit fill =
+      world.commit(other(2), box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty}));
   take(fill);
   take(world.commit(other(3), set({5, 4, 4}, kEmpty)));
   take(fill);
@@ -220,7 +227,8 @@ TEST_CASE_METHOD(Fixture, "a commit in several chunks counts each chunk's own or
   CHECK(replica.confirmed(kRight)->version.seq == 3);
 }
 
-TEST_CASE_METHOD(Fixture, "a commit whose previous list does not fit its edit is refused", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a commit whose previous list does not fit its edit is refused",
+                 "[replica]") {
   load(kHere);
   Commit commit = world.commit(other(1), set({1, 1, 1}, 2));
   commit.edits[0].previous.push_back(0);
@@ -231,7 +239,7 @@ TEST_CASE_METHOD(Fixture, "chunks outside the view are neither kept nor taken", 
   load(kHere);
   replica.set_view({{10, 0, 0}, 1, 1});
   CHECK(replica.confirmed(kHere) == nullptr);
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.chunks.size() == 1);
   CHECK(news.chunks[0].removed);
   replica.receive(world.snapshot(kHere.at), kNow);
@@ -246,7 +254,7 @@ TEST_CASE_METHOD(Fixture, "the own edit shows at once and is not meshed again wh
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
-  ReplicaNews news = replica.take_news();
+  ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.edits.size() == 1);
   CHECK(news.edits[0].predicted);
   CHECK(news.edits[0].chunks == std::vector{kHere});
@@ -255,7 +263,7 @@ TEST_CASE_METHOD(Fixture, "the own edit shows at once and is not meshed again wh
   take(world.commit(mine(seq), set({3, 4, 5}, 2)));
   require_in_step(kHere);
   CHECK(replica.shown_serial(kHere) == serial);
-  news = replica.take_news();
+  news = replica.drain_changes();
   CHECK(news.chunks.empty());
   REQUIRE(news.edits.size() == 1);
   CHECK(news.edits[0].own);
@@ -268,23 +276,24 @@ TEST_CASE_METHOD(Fixture, "an own edit leaves when the durable watermark passes 
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   take(world.commit(mine(seq), set({3, 4, 5}, 2)));
-  CHECK(replica.own_edits().all().size() == 1);
-  CHECK(replica.own_edits().undecided() == 0);
+  CHECK(replica.local_edits().all().size() == 1);
+  CHECK(replica.local_edits().undecided() == 0);
   replica.receive(Durable{world.epoch(), 0});
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
   replica.receive(Durable{world.epoch(), 1});
-  CHECK(replica.own_edits().all().empty());
-  CHECK(replica.take_news().durable == std::vector{seq});
+  CHECK(replica.local_edits().all().empty());
+  CHECK(replica.drain_changes().durable == std::vector{seq});
 }
 
-TEST_CASE_METHOD(Fixture, "a watermark that overtakes the commit still lets the own edit go", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a watermark that overtakes the commit still lets the own edit go",
+                 "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   const Commit commit = world.commit(mine(seq), set({3, 4, 5}, 2));
   replica.receive(Durable{world.epoch(), 1});
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
   take(commit);
-  CHECK(replica.own_edits().all().empty());
+  CHECK(replica.local_edits().all().empty());
 }
 
 TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the others", "[replica]") {
@@ -293,18 +302,18 @@ TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the oth
   submit(box({3, 4, 5}, {5, 5, 6}, 6, {MaskKind::only_empty, kEmpty}));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
-  static_cast<void>(replica.take_news());
+  static_cast<void>(replica.drain_changes());
   replica.receive(Reject{first, RejectReason::rate_limited, "slow down"}, 2000);
   // The second edit is applied afresh: what the first one had filled is empty to it now.
   CHECK(replica.shown_at({3, 4, 5}) == Material{6});
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.rejects.size() == 1);
   CHECK(news.rejects[0].seq == first);
   CHECK(news.rejects[0].reason == RejectReason::rate_limited);
   REQUIRE(news.chunks.size() == 1);
   CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "pending edits lie on top of commits that come in between", "[replica]") {
@@ -321,7 +330,8 @@ TEST_CASE_METHOD(Fixture, "pending edits lie on top of commits that come in betw
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
 }
 
-TEST_CASE_METHOD(Fixture, "an own edit in a chunk that is not here yet shows once its snapshot comes",
+TEST_CASE_METHOD(Fixture,
+                 "an own edit in a chunk that is not here yet shows once its snapshot comes",
                  "[replica]") {
   submit(set({3, 4, 5}, 2));
   CHECK_FALSE(replica.shown_at({3, 4, 5}).has_value());
@@ -330,7 +340,8 @@ TEST_CASE_METHOD(Fixture, "an own edit in a chunk that is not here yet shows onc
   CHECK(material_at(replica.confirmed(kHere)->voxels, {3, 4, 5}) == kEmpty);
 }
 
-TEST_CASE_METHOD(Fixture, "an own edit confirmed by a snapshot that overtook its commit is not shown twice",
+TEST_CASE_METHOD(Fixture,
+                 "an own edit confirmed by a snapshot that overtook its commit is not shown twice",
                  "[replica]") {
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
@@ -345,9 +356,10 @@ TEST_CASE_METHOD(Fixture, "an own edit confirmed by a snapshot that overtook its
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "after a restart chunks newer than what was kept are distrusted and own edits offered again",
-                 "[replica]") {
+TEST_CASE_METHOD(
+    Fixture,
+    "after a restart chunks newer than what was kept are distrusted and own edits offered again",
+    "[replica]") {
   load(kHere);
   load(kRight);
   std::vector<std::pair<OperationId, EditDescriptor>> kept;
@@ -374,7 +386,7 @@ TEST_CASE_METHOD(Fixture,
   take(world.commit(mine(third), set({21, 1, 1}, 4)));
   require_in_step(kRight);
   replica.receive(Durable{world.epoch(), world.head()});
-  CHECK(replica.own_edits().all().empty());
+  CHECK(replica.local_edits().all().empty());
 }
 
 TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is not offered again",
@@ -382,61 +394,67 @@ TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is no
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
   const ClientSequence seq = submit(fill);
-  static_cast<void>(world.commit(mine(seq), fill));  // applied, but the connection broke before we heard
+  static_cast<void>(
+      world.commit(mine(seq), fill));  // applied, but the connection broke before we heard
   static_cast<void>(world.commit(other(1), set({5, 4, 4}, kEmpty)));
   CHECK(replica.open(opening(seq)) == std::vector{seq});  // to ask how it was decided
   CHECK(replica.counters().own_offered_again == 0);
   CHECK(replica.shown_at({5, 4, 4}) == Material{3});  // until the snapshot
-  CHECK(replica.own_edits().all().size() == 1);       // and it is kept until durable
-  replica.receive(Reject{seq, RejectReason::already_decided, "", world.head()}, 2000);
-  CHECK(replica.take_news().rejects.empty());
+  CHECK(replica.local_edits().all().size() == 1);     // and it is kept until durable
+  replica.receive(Reject{seq, RejectReason::already_resolved, "", world.head()}, 2000);
+  CHECK(replica.drain_changes().rejects.empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({5, 4, 4}) == kEmpty);
   require_in_step(kHere);
   replica.receive(Durable{world.epoch(), world.head() - 1});
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
   replica.receive(Durable{world.epoch(), world.head()});
-  CHECK(replica.own_edits().all().empty());
-  const ReplicaNews news = replica.take_news();
+  CHECK(replica.local_edits().all().empty());
+  const ReplicaChanges news = replica.drain_changes();
   CHECK(news.unseen == std::vector{seq});
   CHECK(news.durable.empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a prediction that was rejected while we were away goes with an equal snapshot",
+TEST_CASE_METHOD(Fixture,
+                 "a prediction that was rejected while we were away goes with an equal snapshot",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   CHECK(replica.open(opening(seq)) == std::vector{seq});
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
-  replica.receive(Reject{seq, RejectReason::rate_limited, "", 0}, 2000);  // the answer, heard at last
-  CHECK(replica.take_news().rejects.size() == 1);
-  CHECK(replica.own_edits().all().empty());
+  replica.receive(Reject{seq, RejectReason::rate_limited, "", 0},
+                  2000);  // the answer, heard at last
+  CHECK(replica.drain_changes().rejects.size() == 1);
+  CHECK(replica.local_edits().all().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "already decided means: the commit was missed, so ask for the chunk", "[replica]") {
+TEST_CASE_METHOD(Fixture, "already decided means: the commit was missed, so ask for the chunk",
+                 "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   static_cast<void>(world.commit(mine(seq), set({3, 4, 5}, 2)));
-  replica.receive(Reject{seq, RejectReason::already_decided, ""}, 2000);
+  replica.receive(Reject{seq, RejectReason::already_resolved, ""}, 2000);
   CHECK(replica.take_requests() == std::vector{kHere});
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
-  CHECK(replica.take_news().rejects.empty());
+  CHECK(replica.drain_changes().rejects.empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   require_in_step(kHere);
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
 }
 
-TEST_CASE_METHOD(Fixture, "an audit finds a chunk whose runs went wrong and the next snapshot repairs it",
+TEST_CASE_METHOD(Fixture,
+                 "an audit finds a chunk whose runs went wrong and the next snapshot repairs it",
                  "[replica]") {
   ChunkSnapshot damaged = world.snapshot(kHere.at);
   REQUIRE(fill(damaged.chunk.voxels, 100, 3, 9));  // one run too many; the digest claims otherwise
   replica.receive(damaged, kNow);
   const Chunk& truth = world.chunk(kHere.at);
-  replica.receive(Audit{{{kHere, {3, 99}, truth.digest}}}, 2000);  // another version says nothing
+  replica.receive(DigestCheck{{{kHere, {3, 99}, truth.digest}}},
+                  2000);  // another version says nothing
   CHECK(replica.counters().audited == 0);
-  replica.receive(Audit{{{kHere, truth.version, truth.digest}}}, 2000);
+  replica.receive(DigestCheck{{{kHere, truth.version, truth.digest}}}, 2000);
   CHECK(replica.counters().audited == 1);
   CHECK(replica.counters().drifted == 1);
   CHECK(replica.take_requests() == std::vector{kHere});
@@ -447,16 +465,19 @@ TEST_CASE_METHOD(Fixture, "an audit finds a chunk whose runs went wrong and the 
   CHECK(replica.confirmed(kHere)->version == repair.chunk.version);
   replica.receive(repair, kNow);
   require_in_step(kHere);
-  replica.receive(Audit{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 3000);
+  replica.receive(
+      DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 3000);
   CHECK(replica.counters().audited == 2);
   CHECK(replica.counters().drifted == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, one does not", "[replica]") {
+TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, one does not",
+                 "[replica]") {
   replica.receive(world.snapshot(kHere.at), kNow);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never comes
   const auto audit = [&] {
-    replica.receive(Audit{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
+    replica.receive(
+        DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
   };
   audit();  // may have overtaken the commit
   CHECK(replica.take_requests().empty());
@@ -470,22 +491,25 @@ TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, o
   CHECK(replica.counters().drifted == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "edits that keep coming are no reason to call a chunk behind", "[replica]") {
+TEST_CASE_METHOD(Fixture, "edits that keep coming are no reason to call a chunk behind",
+                 "[replica]") {
   replica.receive(world.snapshot(kHere.at), kNow);
   for (ClientSequence i = 1; i <= 3; ++i) {
     const auto commit = world.commit(other(i), set({1, 1, 1}, static_cast<Material>(1 + i)));
-    replica.receive(Audit{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
+    replica.receive(
+        DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
     take(commit);
   }
   CHECK(replica.counters().fell_behind == 0);
   CHECK(replica.take_requests().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a full inbox is dropped and made good by a newer snapshot", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a full inbox is dropped and made good by a newer snapshot",
+                 "[replica]") {
   const ChunkSnapshot early = world.snapshot(kHere.at);
   for (ClientSequence i = 1; i <= kInboxEditsMax + 5; ++i) {
-    take(
-        world.commit(other(i), set({static_cast<std::int32_t>(i % 16), 1, 1}, static_cast<Material>(i % 7))));
+    take(world.commit(
+        other(i), set({static_cast<std::int32_t>(i % 16), 1, 1}, static_cast<Material>(i % 7))));
   }
   CHECK(replica.counters().buffer_overflows == 1);
   replica.receive(early, kNow);
@@ -500,12 +524,14 @@ TEST_CASE("own edits beyond the bound are refused before anything is shown", "[r
   CHECK_FALSE(replica.submit(set({0, 0, 0}, 1), 0, 0).has_value());  // no world yet
   static_cast<void>(replica.open({kEdge, kMe, kInstance, 1, 0, 0, 0}));
   CHECK_FALSE(replica.submit(box({0, 0, 0}, {0, 1, 1}, 1), 0, 0).has_value());
-  for (std::size_t i = 0; i < kOwnEditsMax; ++i) REQUIRE(replica.submit(set({0, 0, 0}, 1), 0, 0).has_value());
+  for (std::size_t i = 0; i < kLocalEditsMax; ++i)
+    REQUIRE(replica.submit(set({0, 0, 0}, 1), 0, 0).has_value());
   CHECK_FALSE(replica.submit(set({0, 0, 0}, 1), 0, 0).has_value());
-  CHECK(replica.own_edits().all().size() == kOwnEditsMax);
+  CHECK(replica.local_edits().all().size() == kLocalEditsMax);
 }
 
-TEST_CASE_METHOD(Fixture, "a stale snapshot after a resumption still settles what was answered meanwhile",
+TEST_CASE_METHOD(Fixture,
+                 "a stale snapshot after a resumption still settles what was answered meanwhile",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -517,25 +543,29 @@ TEST_CASE_METHOD(Fixture, "a stale snapshot after a resumption still settles wha
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
 
-TEST_CASE_METHOD(Fixture, "a prediction whose edit is gone does not survive a crash that forgets the reject",
+TEST_CASE_METHOD(Fixture,
+                 "a prediction whose edit is gone does not survive a crash that forgets the reject",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   static_cast<void>(replica.open(opening(seq)));
-  replica.receive(Reject{seq, RejectReason::already_decided, "", 0}, 2000);  // nobody knows how any more
-  CHECK(replica.own_edits().all().empty());
+  replica.receive(Reject{seq, RejectReason::already_resolved, "", 0},
+                  2000);  // nobody knows how any more
+  CHECK(replica.local_edits().all().empty());
   world.restart({});
   CHECK(replica.open(opening(0)).empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
 
-TEST_CASE_METHOD(Fixture, "a log that grew past its old end with other edits does not vouch for ours",
+TEST_CASE_METHOD(Fixture,
+                 "a log that grew past its old end with other edits does not vouch for ours",
                  "[replica]") {
   load(kHere);
   take(world.commit(other(1), set({3, 4, 5}, 2)));  // sequence 1, seen, lost in the crash
   world.restart({});
-  static_cast<void>(world.commit(other(2), set({30, 4, 5}, 2)));  // sequence 1 again, elsewhere, and durable
+  static_cast<void>(
+      world.commit(other(2), set({30, 4, 5}, 2)));  // sequence 1 again, elsewhere, and durable
   static_cast<void>(replica.open(opening(0, 1)));
   CHECK(replica.confirmed(kHere) == nullptr);
   replica.receive(world.snapshot(kHere.at), kNow);
@@ -543,9 +573,9 @@ TEST_CASE_METHOD(Fixture, "a log that grew past its old end with other edits doe
   require_in_step(kHere);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "after a resumption a commit ahead of its snapshot waits for it and asks for nothing",
-                 "[replica]") {
+TEST_CASE_METHOD(
+    Fixture, "after a resumption a commit ahead of its snapshot waits for it and asks for nothing",
+    "[replica]") {
   load(kHere);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // while we were away
   CHECK(replica.open(opening()).empty());
@@ -560,7 +590,8 @@ TEST_CASE_METHOD(Fixture,
   CHECK(replica.counters().gaps == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "a gap that the first snapshot after a resumption does not close is asked for",
+TEST_CASE_METHOD(Fixture,
+                 "a gap that the first snapshot after a resumption does not close is asked for",
                  "[replica]") {
   load(kHere);
   CHECK(replica.open(opening()).empty());
@@ -574,7 +605,8 @@ TEST_CASE_METHOD(Fixture, "a gap that the first snapshot after a resumption does
   require_in_step(kHere);
 }
 
-TEST_CASE_METHOD(Fixture, "an unavailable chunk is settled: nothing is shown, and edits into it are refused",
+TEST_CASE_METHOD(Fixture,
+                 "an unavailable chunk is settled: nothing is shown, and edits into it are refused",
                  "[replica]") {
   load(kRight);
   take(world.commit(other(1), set({1, 1, 1}, 2)));  // held back for a snapshot that will not come
@@ -582,7 +614,7 @@ TEST_CASE_METHOD(Fixture, "an unavailable chunk is settled: nothing is shown, an
   CHECK(replica.unavailable(kHere));
   CHECK_FALSE(replica.unavailable(kRight));
   CHECK(replica.unavailable_count() == 1);  // the other one is out of view
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.unavailable.size() == 1);
   CHECK(news.unavailable[0].key == kHere);
   CHECK(news.unavailable[0].reason == UnavailableReason::damaged);
@@ -591,7 +623,7 @@ TEST_CASE_METHOD(Fixture, "an unavailable chunk is settled: nothing is shown, an
 
   CHECK_FALSE(replica.submit(set({3, 3, 3}, 2), 0, 0).has_value());
   CHECK_FALSE(replica.submit(box({14, 0, 0}, {18, 1, 1}, 2), 0, 0).has_value());  // partly
-  CHECK(replica.own_edits().all().empty());
+  CHECK(replica.local_edits().all().empty());
   CHECK(replica.shown_at({17, 0, 0}) == kEmpty);
   submit(set({17, 0, 0}, 2));
   for (ClientSequence i = 2; i < 10; ++i) take(world.commit(other(i), set({2, 1, 1}, 2)));
@@ -614,10 +646,10 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.shown(kHere) == nullptr);
   CHECK(replica.confirmed_count() == 1);
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.chunks.size() == 2);
   CHECK(news.chunks[0].removed);
-  PictureLayers beside;
+  VisibleLayers beside;
   beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = all_layers(Extent::cube(kEdge));
   CHECK(news.chunks[1].layers == beside);
   static_cast<void>(replica.open(opening()));  // the next server may have it repaired
@@ -627,8 +659,9 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
   CHECK(replica.unavailable_count() == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before it is shown", "[replica]") {
-  Opening low = opening();
+TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before it is shown",
+                 "[replica]") {
+  SessionParameters low = opening();
   low.heights = {-16, 8};
   static_cast<void>(replica.open(low));
   load(kHere);
@@ -636,12 +669,12 @@ TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before 
   CHECK_FALSE(replica.submit(set({1, 8, 1}, 2), 0, 0).has_value());
   CHECK_FALSE(replica.submit({FillSphere{{4, 4, 4}, 4}, {}, 2}, 0, 0).has_value());
   CHECK(replica.shown_at({4, 4, 4}) == kEmpty);
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "an edit larger than the server allows is refused before it is shown",
                  "[replica]") {
-  Opening small = opening();
+  SessionParameters small = opening();
   small.edit_volume_max = 8;
   static_cast<void>(replica.open(small));
   load(kHere);
@@ -650,7 +683,7 @@ TEST_CASE_METHOD(Fixture, "an edit larger than the server allows is refused befo
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == ErrorCode::limit_exceeded);
   CHECK(replica.shown_at({4, 1, 1}) == kEmpty);
-  CHECK(replica.own_edits().all().size() == 1);
+  CHECK(replica.local_edits().all().size() == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing that was edited",
@@ -663,7 +696,7 @@ TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing t
   replica.receive(Durable{world.epoch(), 2});
   REQUIRE(replica.confirmed(kHere) != nullptr);
   REQUIRE(replica.confirmed(kRight) != nullptr);
-  Opening restored = opening();
+  SessionParameters restored = opening();
   SECTION("an older epoch") { restored.epoch = 0; }
   SECTION("a log that is shorter than what was durable here") {
     restored.epoch += 3;
@@ -675,7 +708,8 @@ TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing t
     restored.head = 1;
     restored.durable = 2;
   }
-  CHECK(replica.open(restored).empty());  // the own edit was durable: it is not ours to offer any more
+  CHECK(replica.open(restored)
+            .empty());  // the own edit was durable: it is not ours to offer any more
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.confirmed(kRight) == nullptr);
 }
@@ -687,7 +721,7 @@ TEST_CASE_METHOD(Fixture, "news of an edit says which earlier one it answers", "
   undo.edits[0].cause = Cause::undo;
   undo.edits[0].subject = 1;
   take(undo);
-  const ReplicaNews news = replica.take_news();
+  const ReplicaChanges news = replica.drain_changes();
   REQUIRE(news.edits.size() == 2);
   CHECK(news.edits[0].subject == 0);
   CHECK(news.edits[1].subject == 1);

@@ -9,7 +9,7 @@ using runstone::test::keys;
 
 namespace {
 
-using Heard = ServerConnection::Heard;
+using Dispatch = ServerConnection::Dispatch;
 
 SessionConfig config() {
   SessionConfig out;
@@ -21,7 +21,7 @@ SessionConfig config() {
 
 /// A connection, and its server answered by hand.
 struct Fixture {
-  Heard receive(Message message) { return connection.receive(message, {now, now, now}); }
+  Dispatch receive(Message message) { return connection.receive(message, {now, now, now}); }
   /// Of what is to be sent now, all of one kind; the rest is dropped.
   template <class T>
   std::vector<T> take() {
@@ -51,7 +51,7 @@ struct Fixture {
   void open() {
     greet();
     receive(welcome());
-    REQUIRE(receive(Ready{6, 0}) == Heard::ready);
+    REQUIRE(receive(SessionAccepted{6, 0}) == Dispatch::ready);
     REQUIRE(connection.is_open());
     connection.take_outgoing();
   }
@@ -75,21 +75,21 @@ Pose pose_at(double x) {
 
 TEST_CASE_METHOD(Fixture, "a connection opens by hello, welcome, proof and ready", "[replica]") {
   CHECK(connection.state() == SessionState::offline);
-  CHECK_FALSE(connection.listens());
+  CHECK_FALSE(connection.accepts_input());
   greet();
   CHECK(hello.name == "ada");
   CHECK(connection.state() == SessionState::greeting);
-  CHECK(connection.listens());
-  CHECK(receive(welcome()) == Heard::handled);
+  CHECK(connection.accepts_input());
+  CHECK(receive(welcome()) == Dispatch::handled);
   CHECK(connection.state() == SessionState::proving);
-  const auto proofs = take<Proof>();
+  const auto proofs = take<ClientAuth>();
   REQUIRE(proofs.size() == 1);
   CHECK(verify(hello.key, client_transcript(hello, welcome()), proofs[0].signature));
   CHECK_FALSE(goes_on());
-  CHECK(receive(Ready{6, 0}) == Heard::ready);
+  CHECK(receive(SessionAccepted{6, 0}) == Dispatch::ready);
   CHECK(connection.is_open());
   CHECK(connection.author() == 6);
-  CHECK(connection.openings() == 1);
+  CHECK(connection.connect_count() == 1);
   CHECK(goes_on());
   connection.disconnected();
   CHECK(connection.state() == SessionState::offline);
@@ -97,29 +97,30 @@ TEST_CASE_METHOD(Fixture, "a connection opens by hello, welcome, proof and ready
   CHECK(connection.take_outgoing().empty());
   CHECK(connection.welcome());
   open();
-  CHECK(connection.openings() == 2);
+  CHECK(connection.connect_count() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with one goodbye", "[replica]") {
+TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with one goodbye",
+                 "[replica]") {
   SECTION("ready before welcome") {
     greet();
-    CHECK(receive(Ready{6, 0}) == Heard::handled);
+    CHECK(receive(SessionAccepted{6, 0}) == Dispatch::handled);
   }
   SECTION("welcome twice") {
     greet();
     receive(welcome());
-    CHECK(receive(welcome()) == Heard::handled);
+    CHECK(receive(welcome()) == Dispatch::handled);
   }
   SECTION("ready twice") {
     open();
-    CHECK(receive(Ready{6, 0}) == Heard::handled);
+    CHECK(receive(SessionAccepted{6, 0}) == Dispatch::handled);
   }
   REQUIRE(connection.wants_close());
   REQUIRE(connection.end());
   CHECK(connection.end()->reason == GoodbyeReason::unexpected_message);
   CHECK_FALSE(connection.end()->by_server);
   CHECK_FALSE(connection.end()->final);
-  CHECK(receive(Ready{6, 0}) == Heard::handled);
+  CHECK(receive(SessionAccepted{6, 0}) == Dispatch::handled);
   connection.fail_with(GoodbyeReason::malformed_message, "and another fault");
   connection.close(GoodbyeReason::closing, "done");
   CHECK_FALSE(goes_on());
@@ -128,22 +129,24 @@ TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with o
   CHECK(goodbyes[0].reason == GoodbyeReason::unexpected_message);
 }
 
-TEST_CASE_METHOD(Fixture, "what is not of the connection is left to the session, whole", "[replica]") {
+TEST_CASE_METHOD(Fixture, "what is not of the connection is left to the session, whole",
+                 "[replica]") {
   greet();
   Message message = Durable{1, 7};
-  CHECK(connection.receive(message, {now, now, now}) == Heard::for_session);
+  CHECK(connection.receive(message, {now, now, now}) == Dispatch::for_session);
   CHECK(std::get<Durable>(message).seq == 7);
   receive(welcome());
-  CHECK(receive(Pong{now, now}) == Heard::for_session);  // to no ping: none is sent before ready
+  CHECK(receive(Pong{now, now}) == Dispatch::for_session);  // to no ping: none is sent before ready
   CHECK(connection.pongs() == 0);
-  receive(Ready{6, 0});
-  CHECK(receive(Durable{1, 7}) == Heard::for_session);
+  receive(SessionAccepted{6, 0});
+  CHECK(receive(Durable{1, 7}) == Dispatch::for_session);
   CHECK_FALSE(connection.wants_close());
   connection.disconnected();
-  CHECK(receive(Durable{1, 7}) == Heard::handled);
+  CHECK(receive(Durable{1, 7}) == Dispatch::handled);
 }
 
-TEST_CASE_METHOD(Fixture, "a server's goodbye is not answered, and says whether trying again is any use",
+TEST_CASE_METHOD(Fixture,
+                 "a server's goodbye is not answered, and says whether trying again is any use",
                  "[replica]") {
   greet();
   GoodbyeReason reason = GoodbyeReason::closing;
@@ -157,7 +160,7 @@ TEST_CASE_METHOD(Fixture, "a server's goodbye is not answered, and says whether 
     reason = GoodbyeReason::not_authenticated;
     is_final = true;
   }
-  CHECK(receive(Goodbye{reason, "bye"}) == Heard::handled);
+  CHECK(receive(Goodbye{reason, "bye"}) == Dispatch::handled);
   CHECK(connection.wants_close());
   CHECK(connection.end()->by_server);
   CHECK(connection.end()->text == "bye");
@@ -168,7 +171,8 @@ TEST_CASE_METHOD(Fixture, "a server's goodbye is not answered, and says whether 
   CHECK_FALSE(connection.wants_close());
 }
 
-TEST_CASE_METHOD(Fixture, "a server is silent for so long and no longer, ready or not", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a server is silent for so long and no longer, ready or not",
+                 "[replica]") {
   bool is_opened = false;
   SECTION("while greeting") { greet(); }
   SECTION("once open") {
@@ -212,14 +216,15 @@ TEST_CASE_METHOD(Fixture, "pings go out at once and then as often as asked", "[r
   CHECK(take<Ping>().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a pong tells the server's clock, with which edits are sent", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a pong tells the server's clock, with which edits are sent",
+                 "[replica]") {
   open();
   OwnEdit own;
   own.edit = {SetVoxel{{1, 2, 3}}, {}, 4};
   own.submitted_us = now;
   connection.send_edit(1, own);
   CHECK(take<EditRequest>() == std::vector{EditRequest{1, 0, own.edit}});
-  CHECK(receive(Pong{now - 200, now + 4'900}) == Heard::handled);
+  CHECK(receive(Pong{now - 200, now + 4'900}) == Dispatch::handled);
   CHECK(connection.pongs() == 1);
   connection.send_edit(2, own);
   CHECK(take<EditRequest>() == std::vector{EditRequest{2, now + 5'000, own.edit}});
@@ -228,7 +233,8 @@ TEST_CASE_METHOD(Fixture, "a pong tells the server's clock, with which edits are
 TEST_CASE_METHOD(Fixture, "poses go out when they change, one in so long", "[replica]") {
   open();
   CHECK(goes_on());
-  CHECK(take<Move>() == std::vector{Move{pose_at(0)}});  // the first one of a connection, wherever it is
+  CHECK(take<Move>() ==
+        std::vector{Move{pose_at(0)}});  // the first one of a connection, wherever it is
   connection.set_pose(pose_at(1));
   now += kMoveEveryUs - 1;
   goes_on();
@@ -264,7 +270,8 @@ TEST_CASE_METHOD(Fixture, "a connection knows when its next tick is due", "[repl
   CHECK(connection.tick_due_us(kPingEveryUs) == now + 1);  // nothing was heard meanwhile
 }
 
-TEST_CASE_METHOD(Fixture, "a view goes out within the server's limits, when it is another one", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a view goes out within the server's limits, when it is another one",
+                 "[replica]") {
   CHECK(connection.view() == View{{0, 0, 0}, 9, 2});
   open();
   CHECK(connection.view() == View{{0, 0, 0}, 4, 2});
@@ -302,7 +309,8 @@ TEST_CASE_METHOD(Fixture, "chunks are asked for in messages that a server takes"
   CHECK(asked == keys);
 }
 
-TEST_CASE_METHOD(Fixture, "a server keeps its pin through a restart, and another world gets its own",
+TEST_CASE_METHOD(Fixture,
+                 "a server keeps its pin through a restart, and another world gets its own",
                  "[replica]") {
   open();
   receive(Pong{now - 200, now});
@@ -312,23 +320,23 @@ TEST_CASE_METHOD(Fixture, "a server keeps its pin through a restart, and another
   CHECK(connection.clock().known());
   ++epoch;
   greet();
-  CHECK(receive(welcome()) == Heard::handled);
+  CHECK(receive(welcome()) == Dispatch::handled);
   CHECK_FALSE(connection.clock().known());  // a restarted server has another clock
-  receive(Ready{6, 0});
+  receive(SessionAccepted{6, 0});
   receive(Pong{now - 200, now});
   const WorldId first = world_id;
   const PublicKey first_key = server.public_key;
   world_id[0] ^= 1U;
   server = keys(8);
   greet();
-  CHECK(receive(welcome()) == Heard::another_world);
+  CHECK(receive(welcome()) == Dispatch::another_world);
   CHECK_FALSE(connection.clock().known());
   CHECK(connection.config().pinned.at(first) == first_key);
   CHECK(connection.config().pinned.at(world_id) == server.public_key);
   // Back at the first world, whoever has its key is believed, and nobody else.
   world_id = first;
   greet();
-  CHECK(receive(welcome()) == Heard::handled);
+  CHECK(receive(welcome()) == Dispatch::handled);
   CHECK(connection.wants_close());
   CHECK(connection.end()->reason == GoodbyeReason::not_authenticated);
   CHECK(connection.end()->final);
@@ -336,5 +344,5 @@ TEST_CASE_METHOD(Fixture, "a server keeps its pin through a restart, and another
   CHECK(take<Goodbye>().size() == 1);
   server = keys(9);
   greet();
-  CHECK(receive(welcome()) == Heard::another_world);
+  CHECK(receive(welcome()) == Dispatch::another_world);
 }

@@ -6,13 +6,15 @@
 using namespace runstone;
 using nlohmann::json;
 
-TEST_CASE("a histogram's report has every duration in a row or among the infinite ones", "[client_app]") {
+TEST_CASE("a histogram's report has every duration in a row or among the infinite ones",
+          "[client_app]") {
   Histogram us;
   for (const std::int64_t value : {-3, 16'383, 16'384, 24'575, 24'576}) us.add(value);
   us.add_infinite();
   us.add_infinite();
   const json out = json::parse(histogram_json(us).dump());
-  CHECK(out["rows"] == json::parse("[[0, 1, 1], [12288, 16384, 1], [16384, 24576, 2], [24576, 32768, 1]]"));
+  CHECK(out["rows"] ==
+        json::parse("[[0, 1, 1], [12288, 16384, 1], [16384, 24576, 2], [24576, 32768, 1]]"));
   CHECK(out["infinite"] == 2);
   CHECK(out["below_zero"] == 1);
   CHECK(out["count"] == 7);

@@ -84,7 +84,8 @@ TEST_CASE("merging is adding all values", "[schedule]") {
   b.add_infinite();
   both.add_infinite();
   a.merge(b);
-  for (const double share : {0.1, 0.5, 0.9, 1.0}) CHECK(a.percentile(share) == both.percentile(share));
+  for (const double share : {0.1, 0.5, 0.9, 1.0})
+    CHECK(a.percentile(share) == both.percentile(share));
   CHECK(a.count() == both.count());
   CHECK(a.mean() == both.mean());
 }

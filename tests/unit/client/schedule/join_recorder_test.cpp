@@ -51,7 +51,8 @@ TEST_CASE("a join is through when four fifths and all of the first view are mesh
   CHECK(report.near.all_us < 1470);
 }
 
-TEST_CASE("a join that is not through says how far it came; a later view changes nothing", "[join]") {
+TEST_CASE("a join that is not through says how far it came; a later view changes nothing",
+          "[join]") {
   JoinRecorder join;
   join.begin(kView, 0);
   join.begin({{0, 0, 0}, 1, 0}, 50);

@@ -47,8 +47,8 @@ EditNews own(bool predicted, std::vector<ChunkKey> chunks, TimeUs applied) {
   news.chunks = std::move(chunks);
   return news;
 }
-ReplicaNews news(std::vector<ChunkNews> chunks, std::vector<EditNews> edits) {
-  ReplicaNews out;
+ReplicaChanges news(std::vector<ChunkNews> chunks, std::vector<EditNews> edits) {
+  ReplicaChanges out;
   out.chunks = std::move(chunks);
   out.edits = std::move(edits);
   return out;
@@ -62,10 +62,10 @@ std::int64_t only(const Histogram& histogram) {
   REQUIRE(histogram.count() == 1);
   return *histogram.max();
 }
-const Histogram& since(const LatencyReport& report, LatencyWay way, LatencyStage stage) {
+const Histogram& since(const LatencyReport& report, EditPath way, LatencyStage stage) {
   return report[way].since_submit[static_cast<std::size_t>(stage)];
 }
-const Histogram& step(const LatencyReport& report, LatencyWay way, LatencyStage stage) {
+const Histogram& step(const LatencyReport& report, EditPath way, LatencyStage stage) {
   return report[way].step[static_cast<std::size_t>(stage)];
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("a remote edit is timed through every stage, in this client's clock", 
   recorder.presented(500);
   CHECK(recorder.open_edits() == 0);
   const LatencyReport report = recorder.report();
-  const auto way = LatencyWay::remote;
+  const auto way = EditPath::remote;
   CHECK(only(since(report, way, LatencyStage::ordered)) == 100);
   CHECK(only(since(report, way, LatencyStage::received)) == 200);
   CHECK(only(since(report, way, LatencyStage::unpacked)) == 210);
@@ -104,8 +104,8 @@ TEST_CASE("an edit is through a stage when the last of its chunks is", "[schedul
   recorder.uploaded(kB, 2, 610);
   recorder.presented(620);
   const LatencyReport report = recorder.report();
-  CHECK(only(since(report, LatencyWay::remote, LatencyStage::meshed)) == 500);
-  CHECK(only(since(report, LatencyWay::remote, LatencyStage::presented)) == 520);
+  CHECK(only(since(report, EditPath::remote, LatencyStage::meshed)) == 500);
+  CHECK(only(since(report, EditPath::remote, LatencyStage::presented)) == 520);
 }
 
 TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one", "[schedule]") {
@@ -115,10 +115,11 @@ TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one
   recorder.meshed(kA, 9, 500);
   recorder.uploaded(kA, 9, 510);
   recorder.presented(520);
-  CHECK(only(since(recorder.report(), LatencyWay::remote, LatencyStage::meshed)) == 300);
+  CHECK(only(since(recorder.report(), EditPath::remote, LatencyStage::meshed)) == 300);
 }
 
-TEST_CASE("an own edit counts from the time it was scheduled for, shown and confirmed apart", "[schedule]") {
+TEST_CASE("an own edit counts from the time it was scheduled for, shown and confirmed apart",
+          "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);  // handed in at 1500: the program was late
   recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1500)}), clock_ahead(), 1500);
@@ -126,17 +127,17 @@ TEST_CASE("an own edit counts from the time it was scheduled for, shown and conf
   recorder.uploaded(kA, 1, 1610);
   recorder.presented(1700);
   recorder.take(news({}, {own(false, {}, 3000)}), clock_ahead(), 3000);
-  ReplicaNews durable;
+  ReplicaChanges durable;
   durable.durable = {1};
   recorder.take(durable, clock_ahead(), 4000);
   const LatencyReport report = recorder.report();
-  CHECK(only(since(report, LatencyWay::own_predicted, LatencyStage::applied)) == 500);
-  CHECK(only(since(report, LatencyWay::own_predicted, LatencyStage::presented)) == 700);
-  CHECK(since(report, LatencyWay::own_predicted, LatencyStage::received).count() == 0);
-  CHECK(only(since(report, LatencyWay::own_confirmed, LatencyStage::applied)) == 2000);
-  CHECK(since(report, LatencyWay::own_confirmed, LatencyStage::meshed).count() == 0);
+  CHECK(only(since(report, EditPath::own_predicted, LatencyStage::applied)) == 500);
+  CHECK(only(since(report, EditPath::own_predicted, LatencyStage::presented)) == 700);
+  CHECK(since(report, EditPath::own_predicted, LatencyStage::received).count() == 0);
+  CHECK(only(since(report, EditPath::own_confirmed, LatencyStage::applied)) == 2000);
+  CHECK(since(report, EditPath::own_confirmed, LatencyStage::meshed).count() == 0);
   CHECK(only(report.durable) == 3000);
-  CHECK(report[LatencyWay::remote].edits == 0);
+  CHECK(report[EditPath::remote].edits == 0);
 }
 
 TEST_CASE("what was never seen is infinite in the stages it did not reach", "[schedule]") {
@@ -145,19 +146,20 @@ TEST_CASE("what was never seen is infinite in the stages it did not reach", "[sc
   recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1100)}), clock_ahead(), 1100);
   recorder.not_submitted();
   const LatencyReport report = recorder.report();
-  const auto& applied = since(report, LatencyWay::own_predicted, LatencyStage::applied);
+  const auto& applied = since(report, EditPath::own_predicted, LatencyStage::applied);
   CHECK(applied.count() == 2);
   CHECK(applied.infinite() == 1);
-  CHECK(since(report, LatencyWay::own_predicted, LatencyStage::presented).infinite() == 2);
-  CHECK(since(report, LatencyWay::own_confirmed, LatencyStage::applied).infinite() == 2);
+  CHECK(since(report, EditPath::own_predicted, LatencyStage::presented).infinite() == 2);
+  CHECK(since(report, EditPath::own_confirmed, LatencyStage::applied).infinite() == 2);
   CHECK(report.durable.infinite() == 1);
-  CHECK(report[LatencyWay::own_predicted].edits == 2);
+  CHECK(report[EditPath::own_predicted].edits == 2);
 }
 
-TEST_CASE("a rejected edit is counted as rejected and as nothing else but its prediction", "[schedule]") {
+TEST_CASE("a rejected edit is counted as rejected and as nothing else but its prediction",
+          "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
-  ReplicaNews all = news({chunk(kA, 1)}, {own(true, {kA}, 1100)});
+  ReplicaChanges all = news({chunk(kA, 1)}, {own(true, {kA}, 1100)});
   all.rejects.push_back({1, RejectReason::busy, ""});
   recorder.take(all, clock_ahead(), 1100);
   recorder.meshed(kA, 1, 1200);
@@ -165,19 +167,19 @@ TEST_CASE("a rejected edit is counted as rejected and as nothing else but its pr
   recorder.presented(1300);
   const LatencyReport report = recorder.report();
   CHECK(report.rejected == 1);
-  CHECK(report[LatencyWay::own_confirmed].edits == 0);
+  CHECK(report[EditPath::own_confirmed].edits == 0);
   CHECK(report.durable.count() == 0);
 }
 
 TEST_CASE("an own edit whose commit was missed is counted as unseen, not as late", "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
-  ReplicaNews all = news({}, {own(true, {}, 1100)});
+  ReplicaChanges all = news({}, {own(true, {}, 1100)});
   all.unseen = {1};
   recorder.take(all, clock_ahead(), 1100);
   const LatencyReport report = recorder.report();
   CHECK(report.unseen == 1);
-  CHECK(report[LatencyWay::own_confirmed].edits == 0);
+  CHECK(report[EditPath::own_confirmed].edits == 0);
   CHECK(report.durable.count() == 0);
 }
 
@@ -189,11 +191,11 @@ TEST_CASE("edits without effect and edits that left the view are told apart", "[
   recorder.take(news({chunk(kA, 1)}, {second}), clock_ahead(), 350);
   recorder.take(news({gone(kA)}, {}), clock_ahead(), 360);
   const LatencyReport report = recorder.report();
-  CHECK(report[LatencyWay::remote].edits == 2);
-  CHECK(report[LatencyWay::remote].without_effect == 1);
-  CHECK(report[LatencyWay::remote].left_view == 1);
-  CHECK(since(report, LatencyWay::remote, LatencyStage::applied).count() == 2);
-  CHECK(since(report, LatencyWay::remote, LatencyStage::presented).count() == 0);
+  CHECK(report[EditPath::remote].edits == 2);
+  CHECK(report[EditPath::remote].without_effect == 1);
+  CHECK(report[EditPath::remote].left_view == 1);
+  CHECK(since(report, EditPath::remote, LatencyStage::applied).count() == 2);
+  CHECK(since(report, EditPath::remote, LatencyStage::presented).count() == 0);
 }
 
 TEST_CASE("a late part of an edit that was finished does not count again", "[schedule]") {
@@ -203,8 +205,8 @@ TEST_CASE("a late part of an edit that was finished does not count again", "[sch
   recorder.take(news({chunk(kB, 2)}, {remote({kB})}), clock_ahead(), 900);
   recorder.meshed(kB, 2, 1000);
   const LatencyReport report = recorder.report();
-  CHECK(report[LatencyWay::remote].edits == 1);
-  CHECK(only(since(report, LatencyWay::remote, LatencyStage::meshed)) == 300);
+  CHECK(report[EditPath::remote].edits == 1);
+  CHECK(only(since(report, EditPath::remote, LatencyStage::meshed)) == 300);
 }
 
 TEST_CASE("without a clock offset only the steps from ordering on are known", "[schedule]") {
@@ -212,7 +214,7 @@ TEST_CASE("without a clock offset only the steps from ordering on are known", "[
   recorder.take(news({chunk(kA, 1)}, {remote({kA})}), ClockOffset{}, 350);
   recorder.meshed(kA, 1, 400);
   const LatencyReport report = recorder.report();
-  CHECK(report[LatencyWay::remote].unknown_submit == 1);
-  CHECK(since(report, LatencyWay::remote, LatencyStage::meshed).count() == 0);
-  CHECK(only(step(report, LatencyWay::remote, LatencyStage::meshed)) == 50);
+  CHECK(report[EditPath::remote].unknown_submit == 1);
+  CHECK(since(report, EditPath::remote, LatencyStage::meshed).count() == 0);
+  CHECK(only(step(report, EditPath::remote, LatencyStage::meshed)) == 50);
 }

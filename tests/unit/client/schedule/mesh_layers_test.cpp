@@ -31,12 +31,13 @@ TEST_CASE_METHOD(PlannerBench, "the first mesh is of the whole chunk, and an edi
   const MeshJob job = only();
   CHECK(job.before == loaded);
   CHECK(job.changed.dirty == layers_of({{5, 6, 7}, {5, 6, 9}}));
-  CHECK(job.changed.beyond == PictureLayers{}.beyond);
+  CHECK(job.changed.beyond == VisibleLayers{}.beyond);
   commit({1, 1, 1}, 2);
   CHECK(only().changed.dirty == layers_of({{1, 1, 1}}));  // no longer what the mesh before holds
 }
 
-TEST_CASE_METHOD(PlannerBench, "at the border the neighbour gets the layers of the edit, wherever it lies",
+TEST_CASE_METHOD(PlannerBench,
+                 "at the border the neighbour gets the layers of the edit, wherever it lies",
                  "[schedule]") {
   load_all();
   drain();
@@ -46,7 +47,7 @@ TEST_CASE_METHOD(PlannerBench, "at the border the neighbour gets the layers of t
   REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
   CHECK(last.before == before);
   CHECK_FALSE(last.changed.dirty.any());
-  PictureLayers expected;
+  VisibleLayers expected;
   expected.beyond[kFromLeft] = layers_of({{15, 6, 7}});
   CHECK(last.changed == expected);
 }
@@ -67,7 +68,8 @@ TEST_CASE_METHOD(PlannerBench, "a prediction taken back dirties what it had chan
   CHECK(last.changed.beyond[kFromLeft] == layers_of({{15, 6, 7}}));
 }
 
-TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk dirties what it changes", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk dirties what it changes",
+                 "[schedule]") {
   load_all();
   drain();
   static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{4, 5, 6}}, {}, 2}));  // never arrives
@@ -80,7 +82,8 @@ TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk dirties what it 
 TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a whole", "[schedule]") {
   load_all();
   drain();
-  const Material material = GENERATE(Material{2}, kEmpty);  // kEmpty: no voxel differs, and nothing is told
+  const Material material =
+      GENERATE(Material{2}, kEmpty);  // kEmpty: no voxel differs, and nothing is told
   static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{4, 5, 6}}, {}, material}));
   ChunkSnapshot turned = world.snapshot(kHere.at);
   const bool was_zyx = turned.chunk.voxels.order == AxisOrder::zyx;
@@ -96,7 +99,8 @@ TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a who
   CHECK(only().before != nullptr);
 }
 
-TEST_CASE_METHOD(PlannerBench, "a chunk whose neighbour came, went or came back is meshed as a whole",
+TEST_CASE_METHOD(PlannerBench,
+                 "a chunk whose neighbour came, went or came back is meshed as a whole",
                  "[schedule]") {
   load_all();
   drain();
@@ -128,17 +132,20 @@ TEST_CASE_METHOD(PlannerBench, "a chunk whose neighbour came, went or came back 
   }
 }
 
-TEST_CASE_METHOD(PlannerBench, "where news were not taken yet the chunk is meshed as a whole", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "where news were not taken yet the chunk is meshed as a whole",
+                 "[schedule]") {
   load_all();
   drain();
   commit({5, 5, 5}, 2);
-  REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{{6, 6, 6}}, {}, 2}), {}).has_value());
+  REQUIRE(
+      replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{{6, 6, 6}}, {}, 2}), {}).has_value());
   CHECK(only().before == nullptr);
   tell();
   CHECK(only().before != nullptr);
 }
 
-TEST_CASE_METHOD(PlannerBench, "when meshes are forgotten all is meshed again, and no job out counts",
+TEST_CASE_METHOD(PlannerBench,
+                 "when meshes are forgotten all is meshed again, and no job out counts",
                  "[schedule]") {
   load_all();
   const auto out = planner.next();

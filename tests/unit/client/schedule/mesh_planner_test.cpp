@@ -36,7 +36,8 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
   load({1, 0, 0});
-  CHECK(drain() == std::vector<ChunkCoord>{{1, 0, 0}});  // nothing new to see: it waits for the others
+  CHECK(drain() ==
+        std::vector<ChunkCoord>{{1, 0, 0}});  // nothing new to see: it waits for the others
   commit({6, 5, 5}, 2);
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] != nullptr);
@@ -49,7 +50,8 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(planner.dirty_count() == 0);
 }
 
-TEST_CASE_METHOD(PlannerBench, "a kept mesh that does not lead to the picture of now makes a whole chunk",
+TEST_CASE_METHOD(PlannerBench,
+                 "a kept mesh that does not lead to the picture of now makes a whole chunk",
                  "[schedule]") {
   load_all();
   drain();
@@ -62,7 +64,8 @@ TEST_CASE_METHOD(PlannerBench, "a kept mesh that does not lead to the picture of
   CHECK(last.before == nullptr);
 }
 
-TEST_CASE_METHOD(PlannerBench, "an edit whose mesh terrain made void still does not wait", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "an edit whose mesh terrain made void still does not wait",
+                 "[schedule]") {
   load({0, 0, 0});
   commit({5, 5, 5}, 2);
   const auto job = planner.next();
@@ -94,7 +97,8 @@ TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come bef
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, -1}, {0, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send",
+                 "[schedule]") {
   load({0, 0, 0});
   load({-1, 0, 0});
   load({0, 0, 1});
@@ -116,7 +120,8 @@ TEST_CASE_METHOD(PlannerBench, "loading a view meshes every chunk once", "[sched
   CHECK(planner.chunks_meshed() == 5);
 }
 
-TEST_CASE_METHOD(PlannerBench, "an edit meshes its chunk again, and the neighbour only at the border",
+TEST_CASE_METHOD(PlannerBench,
+                 "an edit meshes its chunk again, and the neighbour only at the border",
                  "[schedule]") {
   load_all();
   drain();
@@ -126,7 +131,8 @@ TEST_CASE_METHOD(PlannerBench, "an edit meshes its chunk again, and the neighbou
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "changes are joined and the job holds the newest runs", "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "changes are joined and the job holds the newest runs",
+                 "[schedule]") {
   load_all();
   drain();
   commit({5, 5, 5}, 2);
@@ -153,7 +159,8 @@ TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[s
   CHECK(order == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "a chunk has one job at a time, and what changes meanwhile is for the next",
+TEST_CASE_METHOD(PlannerBench,
+                 "a chunk has one job at a time, and what changes meanwhile is for the next",
                  "[schedule]") {
   load_all();
   drain();
@@ -173,7 +180,8 @@ TEST_CASE_METHOD(PlannerBench, "a chunk has one job at a time, and what changes 
   CHECK(planner.dirty_count() == 0);
 }
 
-TEST_CASE_METHOD(PlannerBench, "the result of a chunk that left the view is not drawn, even if it came back",
+TEST_CASE_METHOD(PlannerBench,
+                 "the result of a chunk that left the view is not drawn, even if it came back",
                  "[schedule]") {
   load_all();
   std::map<ChunkCoord, MeshJob> jobs;
@@ -187,9 +195,10 @@ TEST_CASE_METHOD(PlannerBench, "the result of a chunk that left the view is not 
   CHECK_FALSE(finish(jobs[{0, 0, 0}]));
 }
 
-TEST_CASE_METHOD(PlannerBench,
-                 "when the view moves, chunks at its old edge are meshed again with their new neighbours",
-                 "[schedule]") {
+TEST_CASE_METHOD(
+    PlannerBench,
+    "when the view moves, chunks at its old edge are meshed again with their new neighbours",
+    "[schedule]") {
   load_all();
   drain();
   replica.set_view({{1, 0, 0}, 1, 0});

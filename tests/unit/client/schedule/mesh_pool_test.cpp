@@ -16,7 +16,8 @@ constexpr std::int32_t kEdge = 16;
 
 ShownPtr chunk_with(std::initializer_list<LocalPos> stones) {
   auto chunk = std::make_shared<RunChunk>(uniform_chunk(Extent::cube(kEdge), kEmpty));
-  for (const LocalPos at : stones) fill(*chunk, index_of(at, chunk->extent, chunk->order), 1, test::kStone);
+  for (const LocalPos at : stones)
+    fill(*chunk, index_of(at, chunk->extent, chunk->order), 1, test::kStone);
   return chunk;
 }
 
@@ -33,7 +34,8 @@ MeshJob job_of(std::uint64_t number, ShownPtr chunk) {
 struct Bench {
   explicit Bench(unsigned workers)
       : pool(std::make_unique<MeshPool>(
-            test::mesh_visibility(), workers, [this] { return now += 1000; }, [this] { ++woken; })) {}
+            test::mesh_visibility(), workers, [this] { return now += 1000; },
+            [this] { ++woken; })) {}
   MeshResult result_of(std::uint64_t number) {
     while (!results.contains(number)) {
       for (MeshResult& result : pool->take_results()) results[result.number] = std::move(result);
@@ -72,8 +74,9 @@ TEST_CASE("workers mesh every job and say when", "[schedule]") {
   CHECK(bench.woken == (workers == 0 ? 0 : 5));
 }
 
-TEST_CASE("a job with the mesh before it makes the changed layers anew and leaves that mesh as it was",
-          "[schedule]") {
+TEST_CASE(
+    "a job with the mesh before it makes the changed layers anew and leaves that mesh as it was",
+    "[schedule]") {
   Bench bench(GENERATE(0U, 1U));
   const ShownPtr old_chunk = chunk_with({{5, 5, 5}, {0, 9, 9}});
   const ShownPtr old_side = chunk_with({});
@@ -118,7 +121,8 @@ TEST_CASE("a job can be made by who would push it, whatever the workers do", "[s
 
 TEST_CASE("a kept mesh is no larger than its quads, whatever was meshed before it", "[schedule]") {
   Bench bench(0);
-  std::initializer_list<LocalPos> many = {{1, 1, 1}, {3, 1, 1}, {5, 1, 1}, {7, 1, 1}, {9, 1, 1}, {11, 1, 1}};
+  std::initializer_list<LocalPos> many = {{1, 1, 1}, {3, 1, 1}, {5, 1, 1},
+                                          {7, 1, 1}, {9, 1, 1}, {11, 1, 1}};
   REQUIRE(bench.pool->push(job_of(1, chunk_with(many))));
   REQUIRE(bench.pool->push(job_of(2, chunk_with({{1, 1, 1}}))));
   CHECK(bench.result_of(1).mesh->opaque.quads.capacity() == 36);

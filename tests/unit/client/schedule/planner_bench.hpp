@@ -25,13 +25,15 @@ struct PlannerBench {
     tell();
   }
   void load_all() {
-    for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) load(at);
+    for (const ChunkCoord at : {ChunkCoord{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}})
+      load(at);
   }
   void commit(VoxelPos at, Material material) {
-    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, material}), {}).has_value());
+    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, material}), {})
+                .has_value());
     tell();
   }
-  void tell() { planner.take(replica.take_news().chunks); }
+  void tell() { planner.take(replica.drain_changes().chunks); }
   /// Makes all jobs there are, each with a mesh of its own.
   std::vector<ChunkCoord> drain() {
     std::vector<ChunkCoord> out;

@@ -34,8 +34,10 @@ TEST_CASE("a view follows the first step at once and stays where its player stay
   CHECK(follower.turn(2, 10 * kViewEveryUs));  // rest does not count against the next step
 }
 
-TEST_CASE("a player who crosses a chunk every millisecond moves the view ten times a second, and to the end",
-          "[schedule]") {
+TEST_CASE(
+    "a player who crosses a chunk every millisecond moves the view ten times a second, and to the "
+    "end",
+    "[schedule]") {
   Follower follower;
   int moves = 0;
   TimeUs now_us = 0;
@@ -55,8 +57,9 @@ TEST_CASE("a player who crosses a chunk every millisecond moves the view ten tim
   CHECK_FALSE(follower.turn(1'000, now_us + kViewEveryUs));
 }
 
-TEST_CASE("a view follows a turn of more than fifteen degrees, the short way round, and no smaller one",
-          "[schedule]") {
+TEST_CASE(
+    "a view follows a turn of more than fifteen degrees, the short way round, and no smaller one",
+    "[schedule]") {
   Follower follower;
   const auto turned = [&](std::uint16_t yaw, std::int16_t pitch, TimeUs now_us) {
     View next = follower.view;

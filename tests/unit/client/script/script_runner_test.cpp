@@ -28,7 +28,7 @@ struct FakeHost final : ScriptHost {
   std::vector<Submitted> edits;
   mutable std::vector<VoxelBox> copied;
   std::vector<std::string> files;
-  std::vector<Travel> travels;
+  std::vector<HistoryRequest> travels;
   bool is_travelling = false;
   std::string refusal;
 
@@ -76,7 +76,7 @@ struct FakeHost final : ScriptHost {
   bool durable() const override { return is_durable; }
   std::uint64_t sync_mark() const override { return pongs; }
   bool synced(std::uint64_t mark) const override { return pongs >= mark + 2; }
-  void travel(const Travel& travel) override { travels.push_back(travel); }
+  void travel(const HistoryRequest& travel) override { travels.push_back(travel); }
   bool travelling() const override { return is_travelling; }
   std::vector<std::string> commands;
   bool is_commanding = false, is_command_ok = true;
@@ -119,7 +119,8 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from the surface", "[bots]") {
+TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from the surface",
+                 "[bots]") {
   run("set 1 2 3 stone\nset ~ ~-1 ~+2 stone\nset -4 ^+1 5 stone\nset -0.5 1.9 2.5 sand");
   REQUIRE(host.edits.size() == 4);
   CHECK(host.edits[0].edit == EditDescriptor{SetVoxel{{1, 2, 3}}, {}, 5});
@@ -132,8 +133,10 @@ TEST_CASE_METHOD(Fixture, "positions may be absolute, from the player or from th
 TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both included", "[bots]") {
   run("box 5 2 3 1 4 3 stone empty\nsphere 1 2 3 4 air only:sand");
   REQUIRE(host.edits.size() == 2);
-  CHECK(host.edits[0].edit == EditDescriptor{FillBox{{{1, 2, 3}, {6, 5, 4}}}, {MaskKind::only_empty, 0}, 5});
-  CHECK(host.edits[1].edit == EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{FillBox{{{1, 2, 3}, {6, 5, 4}}}, {MaskKind::only_empty, 0}, 5});
+  CHECK(host.edits[1].edit ==
+        EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
 }
 
 TEST_CASE_METHOD(Fixture, "a stroke goes through its places", "[bots]") {
@@ -155,15 +158,17 @@ TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]"
   REQUIRE(host.edits.size() == 2);
   const auto b = *host.copy({{0, 0, 0}, {2, 1, 1}}, false);
   // A mirror along x between a quarter of a turn and back is one along z.
-  CHECK(host.edits[0].edit == EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
-                                             {MaskKind::only_material, 2},
-                                             kEmpty});
+  CHECK(host.edits[0].edit ==
+        EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
+                       {MaskKind::only_material, 2},
+                       kEmpty});
   const auto a = *host.copy({{0, 0, 0}, {1, 1, 1}}, false);  // the newer one of that name
   CHECK(host.edits[1].edit == EditDescriptor{runstone::Paste{{1, 2, 3}, a, {}}, {}, kEmpty});
   CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end the script", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end the script",
+                 "[bots]") {
   run("copy a 1001 0 0 1002 0 0\nset 1 2 3 stone");
   REQUIRE(runner->failures().size() == 1);
   CHECK(runner->failures()[0] == "s.txt:1: cannot copy \"a\": it is far");
@@ -196,9 +201,9 @@ TEST_CASE_METHOD(Fixture, "walking takes its time and ends where it should", "[b
   CHECK(host.at == WorldPos{14, 20, 30});
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "roaming goes to and fro while the script goes on, and a burst stays where it began",
-                 "[bots]") {
+TEST_CASE_METHOD(
+    Fixture, "roaming goes to and fro while the script goes on, and a burst stays where it began",
+    "[bots]") {
   load("roam ~10 ~ ~ 10\nburst 4 1 0 1 stone\nmove 0 0 0\nwait 1");
   runner->step(1'000'000);
   CHECK(host.at == WorldPos{10, 20, 30});
@@ -213,7 +218,8 @@ TEST_CASE_METHOD(Fixture,
   CHECK(host.at == WorldPos{10, 20, 30});
   runner->step(4'000'000);
   REQUIRE(host.edits.size() == 4);
-  for (const auto& edit : host.edits) CHECK(edit.edit == EditDescriptor{SetVoxel{{10, 20, 30}}, {}, 5});
+  for (const auto& edit : host.edits)
+    CHECK(edit.edit == EditDescriptor{SetVoxel{{10, 20, 30}}, {}, 5});
   CHECK(host.at == WorldPos{0, 0, 0});
   runner->step(4'500'000);
   CHECK(host.at == WorldPos{0, 0, 0});
@@ -254,7 +260,8 @@ TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then"
   CHECK(runner->failures().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a state that does not come fails the script and lets it go on", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a state that does not come fails the script and lets it go on",
+                 "[bots]") {
   load("wait loaded 2\nquit");
   host.is_loaded = false;
   runner->step(0);
@@ -273,7 +280,8 @@ TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the script goes on", "[bots]") {
+TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the script goes on",
+                 "[bots]") {
   host.voxels[{1, 2, 3}] = 5;
   run("expect 1 2 3 stone\nexpect 1 2 4 stone\nexpect 2000 2 3 stone\nset 1 1 1 sand");
   REQUIRE(runner->failures().size() == 2);
@@ -285,7 +293,8 @@ TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the scr
 TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]") {
   run("set 1 2 3 unobtainium\nset 1 2 3 stone");
   CHECK(host.edits.empty());
-  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: the world has no material \"unobtainium\""});
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: the world has no material \"unobtainium\""});
   run("set 2000 ^ 3 stone\nset 1 2 3 stone");
   CHECK(host.edits.empty());
   run("box 0 0 0 5000 1 1 stone\nset 1 2 3 stone");
@@ -293,8 +302,10 @@ TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]")
   CHECK(runner->failures().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empty ones too", "[bots]") {
-  run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 sand\nend\nrepeat "
+TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empty ones too",
+                 "[bots]") {
+  run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 "
+      "sand\nend\nrepeat "
       "5\nend");
   CHECK(host.edits.size() == 9);
   CHECK(std::count_if(host.edits.begin(), host.edits.end(),
@@ -340,7 +351,8 @@ TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", 
   for (std::size_t i = 0; i < 5; ++i) CHECK(host.edits[i].edit == first[i].edit);
 }
 
-TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn", "[bots]") {
+TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn",
+                 "[bots]") {
   load("screenshot a.png\nquit");
   host.picture.reset();
   runner->step(0);
@@ -351,11 +363,13 @@ TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where noth
   CHECK(host.files == std::vector<std::string>{"a.png"});
   host.draws = false;
   run("screenshot b.png\ndigests good\ndigests bad");
-  CHECK(runner->failures() == std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
-                                                       "s.txt:3: bad cannot be written"});
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
+                                 "s.txt:3: bad cannot be written"});
 }
 
-TEST_CASE_METHOD(Fixture, "a picture that cannot be written fails the script at its line, and it goes on",
+TEST_CASE_METHOD(Fixture,
+                 "a picture that cannot be written fails the script at its line, and it goes on",
                  "[bots]") {
   load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
   host.picture.reset();
@@ -407,7 +421,7 @@ TEST_CASE("a travel waits until its moment is here, and a refused one ends the s
   ScriptRunner runner(script, host);
   runner.step(1'000'000);
   REQUIRE(host.travels.size() == 1);
-  CHECK(host.travels[0].to == TravelTo::time);
+  CHECK(host.travels[0].to == HistoryTarget::time);
   CHECK(host.travels[0].utc_us == 3'000'000);
   CHECK(host.edits.empty());
   host.is_travelling = false;

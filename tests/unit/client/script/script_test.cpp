@@ -115,20 +115,24 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
   CHECK(message_of("set 1 2 3") == "s.txt:1: expected MATERIAL");
   CHECK(message_of("sphere 1 2 3 513 stone") == "s.txt:1: R: \"513\" is not a number in its range");
   CHECK(message_of("sphere 1 2 3 -1 stone") == "s.txt:1: R: \"-1\" is not a number in its range");
-  CHECK(message_of("stroke 0 stone 1 2 3 4 5 6") == "s.txt:1: R: \"0\" is not a number in its range");
+  CHECK(message_of("stroke 0 stone 1 2 3 4 5 6") ==
+        "s.txt:1: R: \"0\" is not a number in its range");
   CHECK(message_of("stroke 1 stone 1 2 3") == "s.txt:1: a stroke needs two positions or more");
-  CHECK(message_of("stroke 1 stone 1 2 3 solid 4 5 6") == "s.txt:1: a stroke needs two positions or more");
+  CHECK(message_of("stroke 1 stone 1 2 3 solid 4 5 6") ==
+        "s.txt:1: a stroke needs two positions or more");
   CHECK(message_of("stroke 1 stone 1 2 3 4 5") == "s.txt:1: expected Z");
   CHECK(message_of("stroke 1 stone 1 2 3 4 5 6 solid 7") == "s.txt:1: unexpected \"7\"");
   CHECK(message_of("copy") == "s.txt:1: expected NAME");
   CHECK(message_of("copy a 1 2 3 4 5 6 empty") == "s.txt:1: unexpected \"empty\"");
   CHECK(message_of("paste a 1 2 3 mirror w") == "s.txt:1: AXIS: \"w\" is none of x, y, z");
-  CHECK(message_of("paste a 1 2 3 rotate 4") == "s.txt:1: QUARTERS: \"4\" is not a number in its range");
+  CHECK(message_of("paste a 1 2 3 rotate 4") ==
+        "s.txt:1: QUARTERS: \"4\" is not a number in its range");
   CHECK(message_of("paste a 1 2 3 solid rotate 1") == "s.txt:1: unexpected \"rotate\"");
   CHECK(message_of("walk 1 2 3 0") == "s.txt:1: SPEED: \"0\" is not a number in its range");
   CHECK(message_of("box 1 2 3 4 5 6 stone some") ==
         "s.txt:1: MASK: \"some\" is none of empty, solid, only:MATERIAL");
-  CHECK(message_of("wait ready") == "s.txt:1: \"ready\" is none of SECONDS, loaded, durable, synced");
+  CHECK(message_of("wait ready") ==
+        "s.txt:1: \"ready\" is none of SECONDS, loaded, durable, synced");
   CHECK(message_of("wait -1") == "s.txt:1: \"-1\" is none of SECONDS, loaded, durable, synced");
   CHECK(message_of("repeat 2\ndig") == "s.txt:1: repeat without end");
   CHECK(message_of("end") == "s.txt:1: end without repeat");
@@ -142,12 +146,14 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
 TEST_CASE("travel goes to a sequence, so many seconds back, or to the live world", "[bots]") {
   const auto script = parse_script("travel 12\ntravel -90.5\ntravel live\n", "t");
   REQUIRE(script.has_value());
-  const auto step = [&](std::size_t i) { return std::get<script::Travel>(script->commands[i].step); };
-  CHECK(step(0).to == TravelTo::sequence);
+  const auto step = [&](std::size_t i) {
+    return std::get<script::HistoryRequest>(script->commands[i].step);
+  };
+  CHECK(step(0).to == HistoryTarget::sequence);
   CHECK(step(0).seq == 12);
-  CHECK(step(1).to == TravelTo::time);
+  CHECK(step(1).to == HistoryTarget::time);
   CHECK(step(1).seconds_ago == 90.5);
-  CHECK(step(2).to == TravelTo::live);
+  CHECK(step(2).to == HistoryTarget::live);
   for (const char* wrong :
        {"travel", "travel back", "travel -x", "travel 1 2", "travel 99999999999999999999"}) {
     CAPTURE(wrong);

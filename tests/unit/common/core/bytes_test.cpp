@@ -94,7 +94,8 @@ TEST_CASE("only the shortest spelling of a varint is accepted", "[core][bytes]")
 }
 
 TEST_CASE("varints beyond 64 bits are rejected", "[core][bytes]") {
-  CHECK(varint_error({0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02}) == ErrorCode::bad_value);
+  CHECK(varint_error({0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02}) ==
+        ErrorCode::bad_value);
   CHECK(varint_error({0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x81, 0x00}) ==
         ErrorCode::bad_value);
   CHECK(varint_error(Bytes(64, 0xff)) == ErrorCode::bad_value);
@@ -111,7 +112,8 @@ TEST_CASE("every accepted varint is the one the writer makes", "[core][bytes]") 
     const std::uint64_t v = r.varint();
     if (!r.ok()) continue;
     ++accepted;
-    CHECK(varint_bytes(v) == Bytes(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(r.offset())));
+    CHECK(varint_bytes(v) ==
+          Bytes(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(r.offset())));
   }
   CHECK(accepted > 1000);
 }
@@ -121,8 +123,9 @@ TEST_CASE("zigzag orders small magnitudes first and inverts at the limits", "[co
   CHECK(zigzag(-1) == 1);
   CHECK(zigzag(1) == 2);
   CHECK(zigzag(-2) == 3);
-  for (const std::int64_t v : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{0},
-                               std::int64_t{77}, std::numeric_limits<std::int64_t>::max()}) {
+  for (const std::int64_t v :
+       {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{0},
+        std::int64_t{77}, std::numeric_limits<std::int64_t>::max()}) {
     CHECK(unzigzag(zigzag(v)) == v);
     Bytes out;
     ByteWriter(out).svarint(v);
@@ -147,7 +150,8 @@ TEST_CASE("bounded varints accept their bounds and reject what lies behind them"
   CHECK_FALSE(below.ok());
 }
 
-TEST_CASE("after the first failure every read fails and the error keeps its offset", "[core][bytes]") {
+TEST_CASE("after the first failure every read fails and the error keeps its offset",
+          "[core][bytes]") {
   const Bytes in = {1, 2, 3};
   ByteReader r(in);
   CHECK(r.u16() == 0x0201);

@@ -22,7 +22,8 @@ TEST_CASE("floor division is the one quotient with a remainder from 0 up", "[cor
   SplitMix64 rng(3);
   for (int i = 0; i < 10000; ++i) {
     const std::int32_t b = rng.between(1, 200);
-    const std::int32_t a = rng.between(i % 2 == 0 ? -300 : -kWorldLimit, i % 2 == 0 ? 300 : kWorldLimit - 1);
+    const std::int32_t a =
+        rng.between(i % 2 == 0 ? -300 : -kWorldLimit, i % 2 == 0 ? 300 : kWorldLimit - 1);
     const std::int64_t rest = a - std::int64_t{floor_div(a, b)} * b;
     CAPTURE(a, b);
     REQUIRE(rest >= 0);

@@ -7,7 +7,8 @@
 
 using namespace runstone;
 
-TEST_CASE("material factors are residues, and zero for the empty material alone", "[core][digest]") {
+TEST_CASE("material factors are residues, and zero for the empty material alone",
+          "[core][digest]") {
   for (int lane = 0; lane < kDigestLanes; ++lane) {
     CHECK(digest_material(lane, kEmpty) == 0);
     for (unsigned m = 1; m < 65536; m += 7) {
@@ -40,7 +41,8 @@ TEST_CASE("a box's digest is the sum of its voxels' digests", "[core][digest]") 
   Digest sum;
   for (unsigned x = 3; x < 7; ++x) {
     for (unsigned y = 0; y < 5; ++y) {
-      for (unsigned z = 120; z < 128; ++z) sum = sum + digest_of_box(9, {x, y, z}, {x + 1, y + 1, z + 1});
+      for (unsigned z = 120; z < 128; ++z)
+        sum = sum + digest_of_box(9, {x, y, z}, {x + 1, y + 1, z + 1});
     }
   }
   CHECK(digest_of_box(9, {3, 0, 120}, {7, 5, 128}) == sum);
@@ -62,7 +64,8 @@ TEST_CASE("digests tell axes and materials apart", "[core][digest]") {
   CHECK(digest_of_box(1, {0, 0, 0}, {1, 1, 1}) != digest_of_box(2, {0, 0, 0}, {1, 1, 1}));
 }
 
-TEST_CASE("a world digest's terms depend on key and chunk, and empty chunks add nothing", "[core][digest]") {
+TEST_CASE("a world digest's terms depend on key and chunk, and empty chunks add nothing",
+          "[core][digest]") {
   const Digest chunk = digest_of_box(1, {0, 0, 0}, {4, 4, 4});
   const ChunkKey key{0, {1, -2, 3}};
   const Digest term = world_digest_term(key, chunk);

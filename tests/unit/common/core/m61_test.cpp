@@ -13,8 +13,16 @@ __extension__ using Wide = unsigned __int128;
 constexpr Wide kP = (Wide{1} << 61) - 1;
 
 std::vector<std::uint64_t> residues() {
-  std::vector<std::uint64_t> out = {
-      0, 1, 2, 3, 1ULL << 31, 1ULL << 32, 1ULL << 60, m61::kPrime / 2, m61::kPrime - 2, m61::kPrime - 1};
+  std::vector<std::uint64_t> out = {0,
+                                    1,
+                                    2,
+                                    3,
+                                    1ULL << 31,
+                                    1ULL << 32,
+                                    1ULL << 60,
+                                    m61::kPrime / 2,
+                                    m61::kPrime - 2,
+                                    m61::kPrime - 1};
   SplitMix64 rng(61);
   for (int i = 0; i < 150; ++i) out.push_back(rng.next() % m61::kPrime);
   return out;

@@ -50,7 +50,8 @@ TEST_CASE("a result gives its value away by move", "[core][result]") {
   CHECK(*out == 5);
 }
 
-TEST_CASE("members of a result's value are reached by arrow and changed in place", "[core][result]") {
+TEST_CASE("members of a result's value are reached by arrow and changed in place",
+          "[core][result]") {
   Result<std::string> r = std::string("run");
   r->push_back('s');
   CHECK(r->size() == 4);

@@ -6,8 +6,8 @@ namespace runstone::test {
 
 TEST_CASE("text from outside is well-formed UTF-8 without control characters", "[core]") {
   for (const char* good :
-       {"", "a", "\x7e", "\xc2\xa0", "\xc3\xa9", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
-        "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf", "stone \xe2\x82\xac 5"}) {
+       {"", "a", "\x7e", "\xc2\xa0", "\xc3\xa9", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf",
+        "\xee\x80\x80", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf", "stone \xe2\x82\xac 5"}) {
     CAPTURE(good);
     CHECK(is_printable_utf8(good));
   }
@@ -41,7 +41,8 @@ TEST_CASE("text from outside is well-formed UTF-8 without control characters", "
 TEST_CASE("text is cut between characters", "[core]") {
   const std::string_view text = "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // of 1, 2, 3 and 4 bytes
   const std::size_t kept[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
-  for (std::size_t most = 0; most < 12; ++most) CHECK(cut_utf8(text, most) == text.substr(0, kept[most]));
+  for (std::size_t most = 0; most < 12; ++most)
+    CHECK(cut_utf8(text, most) == text.substr(0, kept[most]));
   CHECK(cut_utf8("", 0).empty());
 }
 

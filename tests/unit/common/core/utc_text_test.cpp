@@ -64,8 +64,8 @@ TEST_CASE("what is no moment and no duration is refused", "[core]") {
   CHECK(parse_duration("2h30m") == 9'000'000'000);
   CHECK(parse_duration("1w2d3h4m5s") == 788'645'000'000);
   CHECK(parse_duration("999999w999999d999999h999999m999999s") == 694'860'305'139'000'000);
-  for (const char* text : {"", "h", "1", "1x", "-1h", "1.5h", "1hh", "1000000s", " 1h", "30m2h", "2h2h",
-                           "2h30", "2h 30m", "2h-30m"}) {
+  for (const char* text : {"", "h", "1", "1x", "-1h", "1.5h", "1hh", "1000000s", " 1h", "30m2h",
+                           "2h2h", "2h30", "2h 30m", "2h-30m"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_duration(text).has_value());
   }

@@ -60,8 +60,9 @@ TEST_CASE("a block's nodes come out where they are", "[formats]") {
 }
 
 TEST_CASE("a block that the game wrote comes out as it is known to be", "[formats][golden]") {
-  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/fuzz/corpus/luanti_block_fuzz/game_written",
-                   std::ios::binary);
+  std::ifstream in(
+      std::string(RUNSTONE_SOURCE_DIR) + "/tests/fuzz/corpus/luanti_block_fuzz/game_written",
+      std::ios::binary);
   REQUIRE(in.good());
   const Bytes row{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   const auto block = decode_luanti_block(row);
@@ -83,7 +84,8 @@ TEST_CASE("random blocks come out node by node", "[formats]") {
     const std::uint32_t names = 1 + random.below(round % 5 == 0 ? 4096 : 12);
     const auto first_id = static_cast<std::uint16_t>(random.below(61440));
     for (std::uint32_t i = 0; i < names; ++i) {
-      fields.names.emplace_back(static_cast<std::uint16_t>(first_id + i), "mod:node_" + std::to_string(i));
+      fields.names.emplace_back(static_cast<std::uint16_t>(first_id + i),
+                                "mod:node_" + std::to_string(i));
     }
     std::uint32_t left = 0;
     std::uint16_t id = 0;

@@ -36,7 +36,9 @@ TEST_CASE("ground is opaque, water and glass are seen through, plants are left o
 }
 
 TEST_CASE("stairs and walls look as what they are made of", "[formats]") {
-  const auto colour = [](std::string_view name) { return material_of_luanti_node(name, false).colour; };
+  const auto colour = [](std::string_view name) {
+    return material_of_luanti_node(name, false).colour;
+  };
   CHECK(colour("stairs:stair_cobble") == colour("default:cobble"));
   CHECK(colour("stairs:stair_inner_brick") == colour("default:brick"));
   CHECK(colour("stairs:slab_wood") == colour("default:wood"));

@@ -12,7 +12,8 @@ using namespace runstone;
 namespace {
 
 std::string read_text(const std::string& name) {
-  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/thesis/" + name, std::ios::binary);
+  std::ifstream in(std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/thesis/" + name,
+                   std::ios::binary);
   REQUIRE(in.good());
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -72,8 +73,8 @@ TEST_CASE("a column world is empty outside of its columns", "[generate]") {
   REQUIRE(world.has_value());
   const RunChunk chunk = (*world)->generate({0, -32, 0}, Extent::cube(8));
   const auto at = [&](int x, int y, int z) {
-    return material_at(
-        chunk, {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z)});
+    return material_at(chunk, {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                               static_cast<std::uint8_t>(z)});
   };
   CHECK(at(3, 0, 5) == 1);
   CHECK(at(3, 1, 5) == 1);
@@ -92,7 +93,8 @@ TEST_CASE("a column world does not care for the order of its lines", "[generate]
   const auto a = ColumnsWorld::parse(std::string(kHeader) + "0,0,0:2\n1,0,1:2\n0,1,2:2\n1,1,3:2\n");
   const auto b = ColumnsWorld::parse(std::string(kHeader) + "1,1,3:2\n0,1,2:2\n1,0,1:2\n0,0,0:2");
   REQUIRE((a.has_value() && b.has_value()));
-  CHECK((*a)->generate({-3, -32, -3}, Extent::cube(8)) == (*b)->generate({-3, -32, -3}, Extent::cube(8)));
+  CHECK((*a)->generate({-3, -32, -3}, Extent::cube(8)) ==
+        (*b)->generate({-3, -32, -3}, Extent::cube(8)));
 }
 
 TEST_CASE("a broken column file is refused at its line", "[generate]") {
@@ -109,10 +111,11 @@ TEST_CASE("a broken column file is refused at its line", "[generate]") {
   }
   CHECK(error_of("0,0,1:4097\n").code == ErrorCode::limit_exceeded);
   CHECK(error_of("0,0,1:4096|1:1\n").code == ErrorCode::limit_exceeded);
-  CHECK(error_of("0,0,1:2\n1,0,1:3\n").code == ErrorCode::bad_value);           // heights differ
-  CHECK(error_of("0,0,1:2\n0,0,1:2\n").code == ErrorCode::bad_value);           // twice the same place
-  CHECK(error_of("0,0,1:2\n2,0,1:2\n").code == ErrorCode::bad_value);           // a gap
-  CHECK(error_of("0,0,1:2\n1,0,1:2\n1,1,1:2\n").code == ErrorCode::bad_value);  // a corner is missing
+  CHECK(error_of("0,0,1:2\n1,0,1:3\n").code == ErrorCode::bad_value);  // heights differ
+  CHECK(error_of("0,0,1:2\n0,0,1:2\n").code == ErrorCode::bad_value);  // twice the same place
+  CHECK(error_of("0,0,1:2\n2,0,1:2\n").code == ErrorCode::bad_value);  // a gap
+  CHECK(error_of("0,0,1:2\n1,0,1:2\n1,1,1:2\n").code ==
+        ErrorCode::bad_value);  // a corner is missing
   CHECK(error_of("1,0,1:2\n0,1,1:2\n").code == ErrorCode::bad_value);
   CHECK(error_of("0,0,1:2\n1024,0,1:2\n").code == ErrorCode::limit_exceeded);
 }

@@ -40,12 +40,14 @@ TEST_CASE("a build refuses parameters that it cannot follow", "[generate]") {
 }
 
 TEST_CASE("terrain needs generation rules, but not too many", "[generate]") {
-  const GeneratorPin bare{"terrain", 1, 0, "water = \"\"\nbeach = \"\"\nrock = \"\"\npeak = \"\"\n"};
+  const GeneratorPin bare{"terrain", 1, 0,
+                          "water = \"\"\nbeach = \"\"\nrock = \"\"\npeak = \"\"\n"};
   CHECK(code_of(bare, MaterialTable()) == ErrorCode::not_found);
   MaterialTable table;
   for (int i = 0; i < 64; ++i) {
-    REQUIRE(table.add({"m" + std::to_string(i), {1, 2, 3, 255}, Visibility::opaque, GenerationRule{}})
-                .has_value());
+    REQUIRE(
+        table.add({"m" + std::to_string(i), {1, 2, 3, 255}, Visibility::opaque, GenerationRule{}})
+            .has_value());
   }
   CHECK(make_generator(bare, table).has_value());
   REQUIRE(table.add({"last", {1, 2, 3, 255}, Visibility::opaque, GenerationRule{}}).has_value());
@@ -60,12 +62,14 @@ TEST_CASE("parameters have one canonical text that reads back", "[generate]") {
 
   const FlatParameters flat{12, -3, 7, "sand", "", "a \"b\\c"};
   CHECK(to_toml(flat) ==
-        "height = 12\ny_min = -3\nfilling_depth = 7\nsurface = \"sand\"\nfilling = \"\"\nground = \"a "
+        "height = 12\ny_min = -3\nfilling_depth = 7\nsurface = \"sand\"\nfilling = \"\"\nground = "
+        "\"a "
         "\\\"b\\\\c\"\n");
   CHECK(*parse_flat_parameters(to_toml(flat)) == flat);
   const TerrainParameters terrain{1, -2, "", "clay", -5, "slate", 9, "gold", 10};
   CHECK(to_toml(terrain) ==
-        "sea_level = 1\ny_min = -2\nwater = \"\"\nbeach = \"clay\"\nbeach_height = -5\nrock = \"slate\"\n"
+        "sea_level = 1\ny_min = -2\nwater = \"\"\nbeach = \"clay\"\nbeach_height = -5\nrock = "
+        "\"slate\"\n"
         "rock_level = 9\npeak = \"gold\"\npeak_level = 10\n");
   CHECK(*parse_terrain_parameters(to_toml(terrain)) == terrain);
 }
@@ -74,14 +78,16 @@ TEST_CASE("the empty world is empty", "[generate]") {
   const auto empty = make_generator({"empty", 1, 0, ""}, default_material_table());
   REQUIRE(empty.has_value());
   for (const std::int32_t y : {-64, -32, 0, 32}) {
-    CHECK((*empty)->generate({0, y, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
+    CHECK((*empty)->generate({0, y, 0}, Extent::cube(32)) ==
+          uniform_chunk(Extent::cube(32), kEmpty));
   }
   CHECK((*empty)->y_min() == (*empty)->y_max());
 }
 
 TEST_CASE("a flat world has its layers at their heights", "[generate]") {
   const MaterialTable& table = default_material_table();
-  const auto flat = make_generator({"flat", 1, 0, "height = 5\ny_min = -10\nfilling_depth = 2"}, table);
+  const auto flat =
+      make_generator({"flat", 1, 0, "height = 5\ny_min = -10\nfilling_depth = 2"}, table);
   REQUIRE(flat.has_value());
   const auto at = [&](std::int32_t y) {
     const VoxelPos pos{7, y, -40};
@@ -102,7 +108,8 @@ TEST_CASE("a flat world has its layers at their heights", "[generate]") {
 }
 
 TEST_CASE("a flat world may have no voxels, or air on top", "[generate]") {
-  const auto none = make_generator({"flat", 1, 0, "height = 5\ny_min = 5"}, default_material_table());
+  const auto none =
+      make_generator({"flat", 1, 0, "height = 5\ny_min = 5"}, default_material_table());
   REQUIRE(none.has_value());
   CHECK((*none)->generate({0, 0, 0}, Extent::cube(16)).is_uniform());
   const auto pit = make_generator({"flat", 1, 0, "surface = \"air\""}, default_material_table());

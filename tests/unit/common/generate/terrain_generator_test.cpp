@@ -37,7 +37,9 @@ struct Oracle {
   TerrainParameters p;
 
   Material operator()(VoxelPos at) const {
-    const auto id = [&](const std::string& name) { return name.empty() ? kEmpty : *table.find(name); };
+    const auto id = [&](const std::string& name) {
+      return name.empty() ? kEmpty : *table.find(name);
+    };
     std::int32_t top = p.y_min;  // of the column before its cover
     for (std::int32_t y = p.y_min; y < 200; ++y) {
       if (ruled(table, p.y_min, {at.x, y, at.z}) != kEmpty) top = y + 1;
@@ -94,8 +96,10 @@ TEST_CASE("terrain is what its rules say, voxel by voxel", "[generate]") {
 TEST_CASE("terrain with steep and hollow rules is what they say", "[generate]") {
   // Overhangs: a slab between two surfaces, with air and another material below.
   MaterialTable table;
-  REQUIRE(table.add(
-      {"low", {1, 1, 1, 255}, Visibility::opaque, GenerationRule{{1, 30, -20, 0.05}, std::nullopt}}));
+  REQUIRE(table.add({"low",
+                     {1, 1, 1, 255},
+                     Visibility::opaque,
+                     GenerationRule{{1, 30, -20, 0.05}, std::nullopt}}));
   REQUIRE(table.add({"slab",
                      {2, 2, 2, 255},
                      Visibility::opaque,
@@ -133,7 +137,8 @@ TEST_CASE("chunks out of the terrain's bounds and deep below it are single runs"
   const Generator& terrain = **made;
   CHECK(terrain.generate({0, terrain.y_max(), 0}, Extent::cube(32)) ==
         uniform_chunk(Extent::cube(32), kEmpty));
-  CHECK(terrain.generate({0, -232, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
+  CHECK(terrain.generate({0, -232, 0}, Extent::cube(32)) ==
+        uniform_chunk(Extent::cube(32), kEmpty));
   const RunChunk deep = terrain.generate({0, -128, 0}, Extent::cube(32));
   CHECK(deep == uniform_chunk(Extent::cube(32), *table.find("stone")));
 }

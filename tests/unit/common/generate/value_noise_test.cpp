@@ -52,7 +52,8 @@ TEST_CASE("a column's noise does not depend on the rectangle it is asked in", "[
   }
 }
 
-TEST_CASE("noise is smooth: neighbouring columns differ by little at a low frequency", "[generate]") {
+TEST_CASE("noise is smooth: neighbouring columns differ by little at a low frequency",
+          "[generate]") {
   const ValueNoise noise(3, 0.007);
   std::vector<double> line(128);
   noise.fill(-64, 5, 128, 1, line);
@@ -67,6 +68,7 @@ TEST_CASE("noise is smooth: neighbouring columns differ by little at a low frequ
 TEST_CASE("seeds give different noise", "[generate]") {
   const ValueNoise a(1, 0.01), b(2, 0.01);
   int equal = 0;
-  for (std::int32_t x = 0; x < 100; ++x) equal += static_cast<int>(a.at(x * 50, 7) == b.at(x * 50, 7));
+  for (std::int32_t x = 0; x < 100; ++x)
+    equal += static_cast<int>(a.at(x * 50, 7) == b.at(x * 50, 7));
   CHECK(equal == 0);
 }

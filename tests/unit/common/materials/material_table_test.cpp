@@ -75,7 +75,8 @@ TEST_CASE("an opaque material cannot be see-through", "[materials]") {
 }
 
 TEST_CASE("generation numbers stay in their ranges", "[materials]") {
-  const auto accepted = [](SurfaceRule surface, std::optional<SurfaceRule> reversed = std::nullopt) {
+  const auto accepted = [](SurfaceRule surface,
+                           std::optional<SurfaceRule> reversed = std::nullopt) {
     MaterialInfo info = named("rock");
     info.generation = GenerationRule{surface, reversed};
     return MaterialTable{}.add(info).has_value();
@@ -104,12 +105,13 @@ TEST_CASE("a table holds 65536 materials and no more", "[materials]") {
 TEST_CASE("the built-in table keeps its ids and the thesis' rules", "[materials]") {
   const MaterialTable& table = default_material_table();
   // Worlds store these ids: a row may be added at the end, never moved.
-  const char* names[] = {"air",       "grass",      "sand",        "dirt",        "stone",       "water",
-                         "snow",      "gravel",     "clay",        "glass",       "planks",      "log",
-                         "leaves",    "brick",      "cobble",      "stone_brick", "sandstone",   "slate",
-                         "marble",    "thatch",     "copper",      "gold",        "lamp",        "wool_white",
-                         "wool_grey", "wool_black", "wool_red",    "wool_orange", "wool_yellow", "wool_green",
-                         "wool_cyan", "wool_blue",  "wool_violet", "wool_pink",   "wool_brown"};
+  const char* names[] = {"air",         "grass",     "sand",        "dirt",        "stone",
+                         "water",       "snow",      "gravel",      "clay",        "glass",
+                         "planks",      "log",       "leaves",      "brick",       "cobble",
+                         "stone_brick", "sandstone", "slate",       "marble",      "thatch",
+                         "copper",      "gold",      "lamp",        "wool_white",  "wool_grey",
+                         "wool_black",  "wool_red",  "wool_orange", "wool_yellow", "wool_green",
+                         "wool_cyan",   "wool_blue", "wool_violet", "wool_pink",   "wool_brown"};
   REQUIRE(table.size() == std::size(names));
   for (std::size_t id = 0; id < std::size(names); ++id)
     CHECK(table[static_cast<Material>(id)].name == names[id]);
@@ -117,7 +119,8 @@ TEST_CASE("the built-in table keeps its ids and the thesis' rules", "[materials]
   CHECK(table[2].generation == GenerationRule{{2, 50, 0, 0.007}, SurfaceRule{4, -1500, 300, 0.06}});
   CHECK(table[3].generation == GenerationRule{{3, 50, 20, 0.007}, std::nullopt});
   CHECK(table[4].generation == GenerationRule{{4, 60, 0, 0.01}, std::nullopt});
-  for (std::size_t id = 5; id < table.size(); ++id) CHECK_FALSE(table[static_cast<Material>(id)].generation);
+  for (std::size_t id = 5; id < table.size(); ++id)
+    CHECK_FALSE(table[static_cast<Material>(id)].generation);
   CHECK(table[*table.find("water")].visibility == Visibility::transparent);
   CHECK(table[*table.find("glass")].visibility == Visibility::transparent);
 }

@@ -111,27 +111,30 @@ TEST_CASE("every mistake in a row is found at its key", "[materials]") {
       {"name = \"r\"\ncolour = \"#10203g\"\n", 6, "material[1].colour"},
       {"name = \"r\"\ncolour = \"#+1+2+3\"\n", 6, "material[1].colour"},
       {"name = \"r\"\ncolour = 1\n", 6, "material[1].colour"},
-      {"name = \"r\"\ncolour = \"#102030\"\nvisibility = \"glassy\"\n", 7, "material[1].visibility"},
+      {"name = \"r\"\ncolour = \"#102030\"\nvisibility = \"glassy\"\n", 7,
+       "material[1].visibility"},
       {"name = \"r\"\ncolour = \"#102030\"\ncolor = \"#102030\"\n", 7, "material[1].color"},
       {"name = \"r\"\ncolour = \"#10203040\"\n", 4, "material[1]"},
       {"name = \"air\"\ncolour = \"#102030\"\n", 4, "material[1]"},
       {"name = \"r\"\ncolour = \"#102030\"\ngenerate = 3\n", 7, "material[1].generate"},
-      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\n", 7, "material[1].generate.surface"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\n", 7,
+       "material[1].generate.surface"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = 1\n", 8,
        "material[1].generate.surface"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { depth = 1 }\n", 8,
        "material[1].generate.surface.depth"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 0.5 }\n", 8,
        "material[1].generate.surface.seed"},
-      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 4294967296 }\n", 8,
-       "material[1].generate.surface.seed"},
-      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nreversed = { elevation = "
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { seed = 4294967296 }\n",
+       8, "material[1].generate.surface.seed"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nreversed = { "
+       "elevation = "
        "\"1\" }\n",
        9, "material[1].generate.reversed.elevation"},
       {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = {}\nupper = {}\n", 9,
        "material[1].generate.upper"},
-      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { frequency = nan }\n", 4,
-       "material[1]"},
+      {"name = \"r\"\ncolour = \"#102030\"\n[material.generate]\nsurface = { frequency = nan }\n",
+       4, "material[1]"},
   };
   for (const Case& c : cases) {
     CAPTURE(c.row);
@@ -154,6 +157,7 @@ TEST_CASE("the first material is air", "[materials]") {
   CHECK(parse_material_table(kAir, "m").has_value());
   CHECK(error_of("[[material]]\nname = \"stone\"\ncolour = \"#101010\"\n").key == "material[0]");
   CHECK(error_of("[[material]]\nname = \"air\"\ncolour = \"#101010\"\n").key == "material[0]");
-  CHECK(error_of("[[material]]\nname = \"air\"\nvisibility = \"empty\"\n[material.generate]\nsurface = {}\n")
+  CHECK(error_of("[[material]]\nname = \"air\"\nvisibility = "
+                 "\"empty\"\n[material.generate]\nsurface = {}\n")
             .key == "material[0]");
 }

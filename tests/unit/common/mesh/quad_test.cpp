@@ -26,15 +26,21 @@ TEST_CASE("unpack gives back every field", "[mesh]") {
       for (const std::uint8_t size : std::array<std::uint8_t, 4>{1, 2, 127, 128}) {
         const auto other = static_cast<std::uint8_t>(127 - at);
         const auto other_size = static_cast<std::uint8_t>(129 - size);
-        const QuadFields q = {
-            at, other, at, size, other_size, static_cast<Direction>(d), static_cast<Material>(at * 511)};
+        const QuadFields q = {at,
+                              other,
+                              at,
+                              size,
+                              other_size,
+                              static_cast<Direction>(d),
+                              static_cast<Material>(at * 511)};
         CHECK(unpack(pack(q)) == q);
       }
     }
   }
 }
 
-TEST_CASE("the width of a quad runs along u and the height along v, cyclically after its axis", "[mesh]") {
+TEST_CASE("the width of a quad runs along u and the height along v, cyclically after its axis",
+          "[mesh]") {
   CHECK(u_axis_of(Axis::x) == Axis::y);
   CHECK(v_axis_of(Axis::x) == Axis::z);
   CHECK(u_axis_of(Axis::y) == Axis::z);
@@ -49,8 +55,10 @@ TEST_CASE("corners of a quad stand where its voxels end", "[mesh]") {
   CHECK(top == std::array<Corner, 4>{{{2, 8, 4}, {2, 8, 7}, {7, 8, 7}, {7, 8, 4}}});
   const std::array<Corner, 4> bottom = quad_corners(pack({2, 7, 4, 3, 5, Direction::neg_y, 1}));
   CHECK(bottom == std::array<Corner, 4>{{{2, 7, 4}, {7, 7, 4}, {7, 7, 7}, {2, 7, 7}}});
-  const std::array<Corner, 4> far_side = quad_corners(pack({127, 0, 0, 128, 128, Direction::pos_x, 1}));
-  CHECK(far_side == std::array<Corner, 4>{{{128, 0, 0}, {128, 128, 0}, {128, 128, 128}, {128, 0, 128}}});
+  const std::array<Corner, 4> far_side =
+      quad_corners(pack({127, 0, 0, 128, 128, Direction::pos_x, 1}));
+  CHECK(far_side ==
+        std::array<Corner, 4>{{{128, 0, 0}, {128, 128, 0}, {128, 128, 128}, {128, 0, 128}}});
 }
 
 TEST_CASE("corners wind counter-clockwise seen from outside in every direction", "[mesh]") {
@@ -67,10 +75,12 @@ TEST_CASE("corners wind counter-clockwise seen from outside in every direction",
                            first[2] * second[0] - first[0] * second[2],
                            first[0] * second[1] - first[1] * second[0]};
     Corner expected{};
-    expected[static_cast<std::size_t>(axis_of(direction))] = is_positive(direction) ? 6 : -6;  // 2 x 3 faces
+    expected[static_cast<std::size_t>(axis_of(direction))] =
+        is_positive(direction) ? 6 : -6;  // 2 x 3 faces
     CAPTURE(d);
     CHECK(normal == expected);
-    for (std::size_t i = 0; i < 3; ++i) CHECK(c[0][i] + c[2][i] == c[1][i] + c[3][i]);  // a parallelogram
+    for (std::size_t i = 0; i < 3; ++i)
+      CHECK(c[0][i] + c[2][i] == c[1][i] + c[3][i]);  // a parallelogram
   }
 }
 

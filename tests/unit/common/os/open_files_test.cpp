@@ -34,7 +34,8 @@ class KeptLimits {
 
 }  // namespace
 
-TEST_CASE("the limit of open files rises as far as needed, or as the hard limit lets it", "[process]") {
+TEST_CASE("the limit of open files rises as far as needed, or as the hard limit lets it",
+          "[process]") {
   const KeptLimits limits;
   REQUIRE(limits.hard() >= 128);
   limits.set_soft(64);

@@ -46,7 +46,8 @@ TEST_CASE("an .rlog gives back world, players and edits", "[rlog]") {
 }
 
 TEST_CASE("extreme numbers pass through an .rlog", "[rlog]") {
-  constexpr TimeUs kLow = std::numeric_limits<TimeUs>::min(), kHigh = std::numeric_limits<TimeUs>::max();
+  constexpr TimeUs kLow = std::numeric_limits<TimeUs>::min(),
+                   kHigh = std::numeric_limits<TimeUs>::max();
   RlogWorld world = sample_rlog_world();
   world.head = {3, kSequenceMax - 5};
   world.head_us = kLow;
@@ -95,7 +96,8 @@ TEST_CASE("reading begins at a sequence or a time without unpacking what lies be
   CHECK(read_rlog(file).error.has_value());
   for (const std::size_t index : {16u, 17u, 31u, 32u, 99u}) {
     CAPTURE(index);
-    const std::vector<EditRecord> rest(records.begin() + static_cast<std::ptrdiff_t>(index), records.end());
+    const std::vector<EditRecord> rest(records.begin() + static_cast<std::ptrdiff_t>(index),
+                                       records.end());
     const RlogContents by_seq = read_rlog(file, {records[index].version.seq});
     CHECK((!by_seq.error && by_seq.records == rest));
     const RlogContents by_time = read_rlog(file, {1, records[index].time_us});
@@ -136,15 +138,17 @@ TEST_CASE("no flipped bit of an .rlog passes, and everything before it stands", 
     const RlogContents read = read_rlog(flipped);
     CAPTURE(bit);
     REQUIRE(read.error.has_value());
-    const auto block = static_cast<std::size_t>(std::upper_bound(begins.begin(), begins.end(), bit / 8) -
-                                                begins.begin());  // 1: the first block
+    const auto block =
+        static_cast<std::size_t>(std::upper_bound(begins.begin(), begins.end(), bit / 8) -
+                                 begins.begin());  // 1: the first block
     REQUIRE(read.records.size() == (block < 4 ? 0 : std::min<std::size_t>((block - 3) * 16, 40)));
     REQUIRE(is_start_of(read.records, records));
     REQUIRE(read.error->position == (block == 0 ? 0 : begins[block - 1]));
   }
 }
 
-TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from another file", "[rlog]") {
+TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from another file",
+          "[rlog]") {
   const auto records = records_of(5, 1, 64);
   const Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
   const Bytes other = rlog_of(sample_rlog_world(), {}, records_of(6, 1, 64), {0, 16});
@@ -158,7 +162,8 @@ TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from a
     Bytes out(file.begin(), file.begin() + kRlogFileHeadBytes);
     std::size_t place = 0;
     for (const std::size_t i : order) {
-      const Bytes part = foreign_third && place == 3 ? block(other, others, i) : block(file, begins, i);
+      const Bytes part =
+          foreign_third && place == 3 ? block(other, others, i) : block(file, begins, i);
       out.insert(out.end(), part.begin(), part.end());
       ++place;
     }
@@ -185,8 +190,9 @@ TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from a
   CHECK(foreign.records.size() == 32);
 }
 
-TEST_CASE("a bad record behind right checksums is named, and the edits before it in its block stand",
-          "[rlog]") {
+TEST_CASE(
+    "a bad record behind right checksums is named, and the edits before it in its block stand",
+    "[rlog]") {
   const auto records = records_of(7, 1, 20);
   const Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
   std::size_t partial = 0;
@@ -209,8 +215,8 @@ TEST_CASE("a bad record behind right checksums is named, and the edits before it
 }
 
 TEST_CASE("an .rlog error says which edit and which byte", "[rlog]") {
-  CHECK(RlogError{{ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, 9121, 123456}.message() ==
-        "edit 9121 at byte 123456: checksum of the block is wrong");
+  CHECK(RlogError{{ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, 9121, 123456}
+            .message() == "edit 9121 at byte 123456: checksum of the block is wrong");
   const Bytes newer = [] {
     Bytes file = rlog_of(sample_rlog_world(), {}, {}, {});
     file[8] = 2;
@@ -225,7 +231,8 @@ TEST_CASE("a single-voxel edit of a builders' evening costs at most 16 bytes of 
   std::vector<EditRecord> records;
   for (int i = 0; i < 50'000; ++i) records.push_back(session.next());
   for (const int level : {1, 9}) {
-    const Bytes file = rlog_of(sample_rlog_world(), {}, records, {level, RlogOptions{}.edits_per_block});
+    const Bytes file =
+        rlog_of(sample_rlog_world(), {}, records, {level, RlogOptions{}.edits_per_block});
     const double bytes = static_cast<double>(file.size()) / static_cast<double>(records.size());
     UNSCOPED_INFO("level " << level << ": " << bytes << " bytes an edit");
     CHECK(bytes < 16);

@@ -6,7 +6,8 @@
 
 using namespace runstone;
 
-TEST_CASE("every index names one voxel and every voxel one index, in all orders", "[runs][axis_order]") {
+TEST_CASE("every index names one voxel and every voxel one index, in all orders",
+          "[runs][axis_order]") {
   const Extent extent{8, 11, 9};
   for (const AxisOrder order : kAxisOrders) {
     CAPTURE(static_cast<int>(order));

@@ -73,7 +73,8 @@ TEST_CASE("in another axis order equal voxels are no change and others are a cha
   CHECK(all_layers(extent).layer[2].count() == 10);
 }
 
-TEST_CASE("the layer that touches a neighbour is the first or the last along its axis", "[replica]") {
+TEST_CASE("the layer that touches a neighbour is the first or the last along its axis",
+          "[replica]") {
   DirtyLayers dirty;
   dirty.layer[1].set(0);
   CHECK(border_dirty(dirty, Direction::neg_y, 16));

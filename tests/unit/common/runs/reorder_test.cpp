@@ -12,7 +12,8 @@ namespace {
 RunChunk stacked(AxisOrder order) {
   const Extent extent{8, 16, 8};
   RunBuilder builder(extent, order);
-  for (VoxelIndex i = 0; i < extent.volume(); ++i) builder.append(1, pos_of(i, extent, order).y < 5 ? 1 : 0);
+  for (VoxelIndex i = 0; i < extent.volume(); ++i)
+    builder.append(1, pos_of(i, extent, order).y < 5 ? 1 : 0);
   return builder.finish();
 }
 

@@ -22,7 +22,8 @@ std::vector<Run> runs_of(const RunChunk& chunk) {
   return out;
 }
 
-void check_broken(const RunChunk& chunk, ErrorCode code, const std::string& what, std::uint64_t run) {
+void check_broken(const RunChunk& chunk, ErrorCode code, const std::string& what,
+                  std::uint64_t run) {
   const Result<void> valid = validate(chunk);
   REQUIRE_FALSE(valid.has_value());
   CHECK(valid.error().code == code);

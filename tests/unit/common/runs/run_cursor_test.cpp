@@ -50,12 +50,13 @@ TEST_CASE("find_run and a cursor's seek find the run of every voxel", "[runs][cu
   }
 }
 
-TEST_CASE("seeks of every distance from every kind of start land as a plain search does", "[runs][cursor]") {
+TEST_CASE("seeks of every distance from every kind of start land as a plain search does",
+          "[runs][cursor]") {
   SplitMix64 rng(3);
   for (int round = 0; round < 30; ++round) {
-    const RunChunk chunk =
-        round % 5 == 4 ? test::random_chunk(rng, {40, 41, 42}, AxisOrder::yxz, 5, test::Shape::speckled)
-                       : test::random_chunk(rng, 16, 3);
+    const RunChunk chunk = round % 5 == 4 ? test::random_chunk(rng, {40, 41, 42}, AxisOrder::yxz, 5,
+                                                               test::Shape::speckled)
+                                          : test::random_chunk(rng, 16, 3);
     chunk.runs.visit([&](auto runs) {
       RunCursor cursor(runs);
       for (std::uint32_t voxel = 0; voxel < chunk.volume();) {

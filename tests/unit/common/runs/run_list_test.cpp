@@ -64,7 +64,8 @@ TEST_CASE("splices equal those of a plain vector", "[runs][run_list]") {
       RunList list = list_of(volume, model);
       const std::size_t first = rng.below(static_cast<std::uint32_t>(model.size()) + 1);
       const std::size_t most = model.size() - first;
-      const std::size_t count = rng.below(static_cast<std::uint32_t>(std::min<std::size_t>(most, 6)) + 1);
+      const std::size_t count =
+          rng.below(static_cast<std::uint32_t>(std::min<std::size_t>(most, 6)) + 1);
       std::vector<Run> with(rng.below(model.size() > 40 ? 3 : 6));
       for (Run& run : with) run = {rng.below(volume + 1), static_cast<Material>(rng.below(65536))};
       list.splice(first, count, with);

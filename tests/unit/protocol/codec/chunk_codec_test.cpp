@@ -33,9 +33,11 @@ TEST_CASE("chunk bytes with a bad head are refused", "[protocol]") {
   REQUIRE_FALSE(error_of("01 01 00 00 08080800 01000000 00020000"));
   CHECK(error_of("01 02 00 00 08080800 01000000 00020000") == ErrorCode::bad_version);
   CHECK(error_of("01 00 00 00 08080800 01000000 00020000") == ErrorCode::bad_version);
-  CHECK(error_of("01 01 06 00 08080800 01000000 00020000") == ErrorCode::bad_value);      // order
-  CHECK(error_of("01 01 08 00 08080800 01000000 00020000") == ErrorCode::bad_value);      // raw has no zstd
-  CHECK(error_of("01 01 00 01 08080800 01000000 00020000") == ErrorCode::not_canonical);  // reserved
+  CHECK(error_of("01 01 06 00 08080800 01000000 00020000") == ErrorCode::bad_value);  // order
+  CHECK(error_of("01 01 08 00 08080800 01000000 00020000") ==
+        ErrorCode::bad_value);  // raw has no zstd
+  CHECK(error_of("01 01 00 01 08080800 01000000 00020000") ==
+        ErrorCode::not_canonical);  // reserved
   CHECK(error_of("01 01 00 00 08080801 01000000 00020000") == ErrorCode::not_canonical);
   CHECK(error_of("01 01 00 00 07080800 01000000 c0010000") == ErrorCode::bad_value);  // side 7
   CHECK(error_of("01 01 00 00 08810800 01000000 00000000") == ErrorCode::bad_value);  // side 129
@@ -47,11 +49,14 @@ TEST_CASE("raw runs that are not canonical are refused", "[protocol]") {
   CHECK(error_of(head + "ffffffff 00020000") == ErrorCode::truncated);  // count lies
   CHECK(error_of(head + "02000000 00020000") == ErrorCode::truncated);
   CHECK(error_of(head + "01000000 00020000 00") == ErrorCode::trailing_bytes);
-  CHECK(error_of(head + "01000000 ff010000") == ErrorCode::broken_invariant);           // short of the volume
+  CHECK(error_of(head + "01000000 ff010000") ==
+        ErrorCode::broken_invariant);  // short of the volume
   CHECK(error_of(head + "01000000 01020000") == ErrorCode::broken_invariant);           // behind it
   CHECK(error_of(head + "02000000 00000000 00020100") == ErrorCode::broken_invariant);  // empty run
-  CHECK(error_of(head + "02000000 00020000 00010100") == ErrorCode::broken_invariant);  // descending
-  CHECK(error_of(head + "02000000 00010100 00020100") == ErrorCode::broken_invariant);  // equal neighbours
+  CHECK(error_of(head + "02000000 00020000 00010100") ==
+        ErrorCode::broken_invariant);  // descending
+  CHECK(error_of(head + "02000000 00010100 00020100") ==
+        ErrorCode::broken_invariant);  // equal neighbours
   CHECK_FALSE(error_of(head + "02000000 00010100 00020000"));
 }
 
@@ -82,39 +87,51 @@ TEST_CASE("packed bytes that lie are refused", "[protocol]") {
       {"unknown flag", [](auto& s) { s.order = 2 + 16; }, ErrorCode::bad_value},
       {"side", [](auto& s) { s.sides = {8, 8, 129}; }, ErrorCode::bad_value},
       {"no runs", [](auto& s) { s.runs = 0; }, ErrorCode::bad_value},
-      {"no runs, no palette", [](auto& s) { s.runs = 0, s.palette = {}; }, ErrorCode::broken_invariant},
+      {"no runs, no palette", [](auto& s) { s.runs = 0, s.palette = {}; },
+       ErrorCode::broken_invariant},
       {"more runs than voxels", [](auto& s) { s.runs = 513; }, ErrorCode::bad_value},
       {"runs beyond 64 bits of sense", [](auto& s) { s.runs = ~0ULL; }, ErrorCode::bad_value},
-      {"palette larger than the runs", [](auto& s) { s.palette = {0, 0, 0, 0}; }, ErrorCode::bad_value},
+      {"palette larger than the runs", [](auto& s) { s.palette = {0, 0, 0, 0}; },
+       ErrorCode::bad_value},
       {"palette size without palette",
        [](auto& s) { s.sides = {128, 128, 128}, s.runs = 70'000, s.palette_size = 65'536; },
        ErrorCode::truncated},
-      {"palette above every limit", [](auto& s) { s.palette_size = 1ULL << 60; }, ErrorCode::bad_value},
+      {"palette above every limit", [](auto& s) { s.palette_size = 1ULL << 60; },
+       ErrorCode::bad_value},
       {"id beyond 16 bits", [](auto& s) { s.palette = {0, 0, 65'534}; }, ErrorCode::bad_value},
-      {"id step beyond 16 bits", [](auto& s) { s.palette = {0, 0, 1ULL << 40}; }, ErrorCode::bad_value},
-      {"unused palette entry", [](auto& s) { s.body = {1, 0, 1, 231, 3}; }, ErrorCode::not_canonical},
-      {"index behind the palette", [](auto& s) { s.body = {1, 0, 3, 231, 3}; }, ErrorCode::broken_invariant},
+      {"id step beyond 16 bits", [](auto& s) { s.palette = {0, 0, 1ULL << 40}; },
+       ErrorCode::bad_value},
+      {"unused palette entry", [](auto& s) { s.body = {1, 0, 1, 231, 3}; },
+       ErrorCode::not_canonical},
+      {"index behind the palette", [](auto& s) { s.body = {1, 0, 3, 231, 3}; },
+       ErrorCode::broken_invariant},
       {"equal neighbours", [](auto& s) { s.runs = 4, s.body = {1, 0, 0, 2, 2, 3, 6}; },
        ErrorCode::broken_invariant},
       {"nothing left for the last run", [](auto& s) { s.body = {1, 0, 2, 192, 3}; },
        ErrorCode::broken_invariant},
       {"length behind the volume", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xff, 0x03}; },
        ErrorCode::broken_invariant},
-      {"line behind the volume", [](auto& s) { s.body = {1, 0, 2, 192, 255}; }, ErrorCode::broken_invariant},
-      {"end of a line as a length", [](auto& s) { s.body = {1, 0, 2, 5, 3}; }, ErrorCode::broken_invariant},
+      {"line behind the volume", [](auto& s) { s.body = {1, 0, 2, 192, 255}; },
+       ErrorCode::broken_invariant},
+      {"end of a line as a length", [](auto& s) { s.body = {1, 0, 2, 5, 3}; },
+       ErrorCode::broken_invariant},
       {"end of a line as a long length", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc5, 0x01}; },
        ErrorCode::broken_invariant},
       {"long length that fits a token", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xbf, 0x01}; },
        ErrorCode::broken_invariant},
-      {"long length of three bytes that fits two", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6, 0x81, 0}; },
-       ErrorCode::broken_invariant},
+      {"long length of three bytes that fits two",
+       [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6, 0x81, 0}; }, ErrorCode::broken_invariant},
       {"long length of 22 bits",
        [](auto& s) { s.sides = {32, 32, 32}, s.body = {1, 0, 2, 0, 3, 0x80, 0x80, 0x80, 1}; },
        ErrorCode::broken_invariant},
-      {"long length is missing", [](auto& s) { s.body = {1, 0, 2, 0, 3}; }, ErrorCode::broken_invariant},
-      {"long length is cut", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6}; }, ErrorCode::broken_invariant},
-      {"a token too many", [](auto& s) { s.body = {1, 0, 2, 231, 3, 7}; }, ErrorCode::trailing_bytes},
-      {"body too small for its runs", [](auto& s) { s.body = {1, 0, 2, 231}; }, ErrorCode::bad_value},
+      {"long length is missing", [](auto& s) { s.body = {1, 0, 2, 0, 3}; },
+       ErrorCode::broken_invariant},
+      {"long length is cut", [](auto& s) { s.body = {1, 0, 2, 0, 3, 0xc6}; },
+       ErrorCode::broken_invariant},
+      {"a token too many", [](auto& s) { s.body = {1, 0, 2, 231, 3, 7}; },
+       ErrorCode::trailing_bytes},
+      {"body too small for its runs", [](auto& s) { s.body = {1, 0, 2, 231}; },
+       ErrorCode::bad_value},
       {"no body", [](auto& s) { s.body = {}; }, ErrorCode::bad_value},
       {"body too large for its runs", [](auto& s) { s.body.resize(5 + 3 * (512 / 192) + 1); },
        ErrorCode::bad_value},
@@ -147,7 +164,8 @@ TEST_CASE("zstd that does not hold exactly the body is refused", "[protocol]") {
   CHECK(error_with(zstd_frame(s.body, false)) == ErrorCode::bad_value);  // tells no size
   CHECK(error_with(zstd_frame(Bytes(4, 1))) == ErrorCode::bad_value);    // another size
   CHECK(error_with(zstd_frame(Bytes(12, 1))) == ErrorCode::bad_value);
-  CHECK(error_with(concat(from_hex("28b52ffd"), good)) == ErrorCode::bad_value);  // the magic number
+  CHECK(error_with(concat(from_hex("28b52ffd"), good)) ==
+        ErrorCode::bad_value);  // the magic number
   CHECK(error_with(concat(good, {0})) == ErrorCode::trailing_bytes);
   CHECK(error_with(concat(concat(good, from_hex("28b52ffd")), good)) == ErrorCode::trailing_bytes);
   const Bytes skippable = from_hex("502a4d18 00000000");
@@ -161,7 +179,9 @@ TEST_CASE("zstd that does not hold exactly the body is refused", "[protocol]") {
 
 TEST_CASE("zstd is used exactly where it makes the body smaller", "[protocol]") {
   SplitMix64 rng{4};
-  const auto flag = [](const RunChunk& chunk) { return encode_chunk(chunk, ChunkEncoding::packed)[2] & 8; };
+  const auto flag = [](const RunChunk& chunk) {
+    return encode_chunk(chunk, ChunkEncoding::packed)[2] & 8;
+  };
   CHECK(flag(uniform_chunk(Extent::cube(32), 5)) == 0);
   RunBuilder stripes({8, 8, 8}, AxisOrder::xyz);
   for (int i = 0; i < 512; ++i) stripes.append(1, static_cast<Material>(i % 2));
@@ -220,7 +240,8 @@ TEST_CASE("palettes of more than 256 materials take two bytes an index", "[proto
 
 TEST_CASE("a chunk of another extent than expected is refused in every encoding", "[protocol]") {
   const RunChunk chunk = uniform_chunk(Extent::cube(32), 3);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+  for (const ChunkEncoding encoding :
+       {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     const Bytes bytes = encode_chunk(chunk, encoding);
     CHECK(decode_chunk(bytes, Extent::cube(32)).has_value());
     CHECK_FALSE(decode_chunk(bytes, Extent::cube(16)).has_value());
@@ -232,7 +253,8 @@ TEST_CASE("the largest chunk goes all ways and fits its limit", "[protocol]") {
   SplitMix64 rng{9};
   const RunChunk chunk = random_chunk(rng, Extent::cube(128), AxisOrder::xyz, 65'536, Shape::noise);
   REQUIRE(chunk.runs.size() > 2'000'000);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+  for (const ChunkEncoding encoding :
+       {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     const Bytes bytes = encode_chunk(chunk, encoding);
     CHECK(bytes.size() <= kChunkBytesMax);
     const auto decoded = decode_chunk(bytes);

@@ -29,9 +29,9 @@ TEST_CASE("the counter of allocations counts", "[protocol]") {
 }
 
 TEST_CASE("a count that the bytes cannot back allocates nothing to speak of", "[protocol]") {
-  static_cast<void>(
-      encode_chunk(uniform_chunk(Extent::cube(16), 1), ChunkEncoding::packed));  // scratch of the thread
-  Bytes raw{1, 1, 0, 0, 128, 128, 128, 0, 0xff, 0xff, 0x1f, 0};                  // 2,097,151 runs, none there
+  static_cast<void>(encode_chunk(uniform_chunk(Extent::cube(16), 1),
+                                 ChunkEncoding::packed));        // scratch of the thread
+  Bytes raw{1, 1, 0, 0, 128, 128, 128, 0, 0xff, 0xff, 0x1f, 0};  // 2,097,151 runs, none there
   CHECK(cost_of_refusing(raw).bytes < 10'000);
   PackedSpelling packed;
   packed.sides = {128, 128, 128};
@@ -45,7 +45,8 @@ TEST_CASE("a count that the bytes cannot back allocates nothing to speak of", "[
   CHECK(cost_of_refusing(packed.bytes()).bytes < 10'000);
 }
 
-TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack to", "[protocol]") {
+TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack to",
+          "[protocol]") {
   PackedSpelling bomb;
   bomb.order = 8;
   bomb.runs = 512;
@@ -65,15 +66,16 @@ TEST_CASE("a zstd bomb costs what its run count allows, whatever it would unpack
   REQUIRE(bomb.bytes().size() < 1'000);
   CHECK(cost_of_refusing(bomb.bytes()).bytes < 11ULL * 128 * 128 * 128);
   // And is not even begun where the world's chunks are smaller.
-  const Allocations small =
-      allocations_of([&] { REQUIRE_FALSE(decode_chunk(bomb.bytes(), Extent::cube(32)).has_value()); });
+  const Allocations small = allocations_of(
+      [&] { REQUIRE_FALSE(decode_chunk(bomb.bytes(), Extent::cube(32)).has_value()); });
   CHECK(small.bytes < 10'000);
 }
 
 TEST_CASE("in a steady state the codec allocates the chunk and nothing else", "[protocol]") {
   SplitMix64 rng{3};
   const RunChunk chunk = random_chunk(rng, Extent::cube(32), AxisOrder::xyz, 40, Shape::boxes);
-  for (const ChunkEncoding encoding : {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+  for (const ChunkEncoding encoding :
+       {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
     Bytes out;
     encode_chunk(chunk, encoding, out);
     static_cast<void>(decode_chunk(out));
@@ -83,8 +85,10 @@ TEST_CASE("in a steady state the codec allocates the chunk and nothing else", "[
       encode_chunk(chunk, encoding, out);
     });
     CHECK(encoding_cost.count == 0);
-    const Allocations decoding_cost = allocations_of([&] { REQUIRE(decode_chunk(bytes).has_value()); });
-    CHECK(decoding_cost.count <= (encoding == ChunkEncoding::raw ? 1 : 2));  // the runs; the palette
+    const Allocations decoding_cost =
+        allocations_of([&] { REQUIRE(decode_chunk(bytes).has_value()); });
+    CHECK(decoding_cost.count <=
+          (encoding == ChunkEncoding::raw ? 1 : 2));  // the runs; the palette
   }
 }
 

@@ -16,7 +16,8 @@ namespace {
 /// Chunk bytes of 8x8x8 in order xyz with palette 0, 1 and this body.
 Bytes with_body(const Bytes& body, const char* palette = "02 00 00") {
   Bytes out = from_hex("03 01 00 08 08 08");
-  for (const Bytes& part : {from_hex(palette), body}) out.insert(out.end(), part.begin(), part.end());
+  for (const Bytes& part : {from_hex(palette), body})
+    out.insert(out.end(), part.begin(), part.end());
   return out;
 }
 
@@ -102,10 +103,13 @@ TEST_CASE("coded runs that are spelt right are read", "[protocol]") {
 TEST_CASE("coded bytes that lie are refused", "[protocol]") {
   CHECK(error_of(with_body({})) == ErrorCode::truncated);
   CHECK(error_of(with_body({0xff, 0xff, 0xff, 0xff})) != ErrorCode::unknown_kind);
-  CHECK(error_of(with_body({0}, "01 05")) == ErrorCode::trailing_bytes);  // one material needs no body
-  CHECK(error_of(with_body({}, "00")) == ErrorCode::broken_invariant);    // no material
-  CHECK(error_of(with_body({}, "03 00 00")) == ErrorCode::truncated);     // palette of three, two are there
-  CHECK(error_of(with_body({}, "81 04 00 00")) == ErrorCode::bad_value);  // more materials than voxels
+  CHECK(error_of(with_body({0}, "01 05")) ==
+        ErrorCode::trailing_bytes);  // one material needs no body
+  CHECK(error_of(with_body({}, "00")) == ErrorCode::broken_invariant);  // no material
+  CHECK(error_of(with_body({}, "03 00 00")) ==
+        ErrorCode::truncated);  // palette of three, two are there
+  CHECK(error_of(with_body({}, "81 04 00 00")) ==
+        ErrorCode::bad_value);  // more materials than voxels
   CHECK(error_of(from_hex("03 02 00 08 08 08 01 00")) == ErrorCode::bad_version);
   CHECK(error_of(from_hex("03 01 08 08 08 08 01 00")) == ErrorCode::bad_value);  // packed's flag
   CHECK(error_of(from_hex("03 01 00 07 08 08 01 00")) == ErrorCode::bad_value);
@@ -115,10 +119,14 @@ TEST_CASE("coded bytes that lie are refused", "[protocol]") {
   CHECK(error_of(Spelling().index(false).fresh(true).fresh(true).fresh(true).fresh(true).bytes()) ==
         ErrorCode::not_canonical);
   // A change to the same material.
-  CHECK(
-      error_of(
-          Spelling().index(false).fresh(true).fresh(false).fresh(false).fresh(false).index(false).bytes()) ==
-      ErrorCode::not_canonical);
+  CHECK(error_of(Spelling()
+                     .index(false)
+                     .fresh(true)
+                     .fresh(false)
+                     .fresh(false)
+                     .fresh(false)
+                     .index(false)
+                     .bytes()) == ErrorCode::not_canonical);
   // A third index of two bits, where there are three.
   AdaptiveBit high, low;
   Bytes body;

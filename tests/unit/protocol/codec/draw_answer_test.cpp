@@ -16,7 +16,8 @@ std::optional<DrawAnswer> back(const DrawAnswer& answer) {
 
 TEST_CASE("draw answers are these lines, and are read back", "[protocol]") {
   CHECK(to_line(DrawReady{1, "EGL surfaceless"}) == "ready 1 EGL surfaceless\n");
-  CHECK(to_line(PictureDrawn{12, 3, 4567, "a b.png"}) == "drawn quads=12 chunks=3 us=4567 a b.png\n");
+  CHECK(to_line(PictureDrawn{12, 3, 4567, "a b.png"}) ==
+        "drawn quads=12 chunks=3 us=4567 a b.png\n");
   CHECK(to_line(PictureUnwritten{"a b.png"}) == "unwritten a b.png\n");
   CHECK(to_line(DrawFailed{"no memory"}) == "error no memory\n");
   for (const DrawAnswer& answer :
@@ -26,7 +27,8 @@ TEST_CASE("draw answers are these lines, and are read back", "[protocol]") {
   }
 }
 
-TEST_CASE("what would break the line of an answer becomes blanks, and long text is cut", "[protocol]") {
+TEST_CASE("what would break the line of an answer becomes blanks, and long text is cut",
+          "[protocol]") {
   CHECK(back(DrawFailed{"two\nlines\x80"}) == DrawAnswer{DrawFailed{"two lines "}});
   const std::string line = to_line(DrawFailed{std::string(20'000, 'x')});
   CHECK(line.size() == kDrawAnswerBytesMax);
@@ -35,10 +37,10 @@ TEST_CASE("what would break the line of an answer becomes blanks, and long text 
 
 TEST_CASE("other lines are no answers", "[protocol]") {
   for (const char* line :
-       {"", "ready", "ready 1", "ready x EGL", "ready -1 EGL", "ready 4294967296 EGL", "drawn", "error",
-        "Error x", "drawn quads=1 chunks=2 us=3", "drawn quads=1 chunks=2 us=3 ",
-        "drawn quads=1 chunks=2 us= f", "drawn quads=+1 chunks=2 us=3 f", "drawn chunks=2 quads=1 us=3 f",
-        "error a\tb", "error \xff"}) {
+       {"", "ready", "ready 1", "ready x EGL", "ready -1 EGL", "ready 4294967296 EGL", "drawn",
+        "error", "Error x", "drawn quads=1 chunks=2 us=3", "drawn quads=1 chunks=2 us=3 ",
+        "drawn quads=1 chunks=2 us= f", "drawn quads=+1 chunks=2 us=3 f",
+        "drawn chunks=2 quads=1 us=3 f", "error a\tb", "error \xff"}) {
     CAPTURE(line);
     CHECK_FALSE(parse_draw_answer(line).has_value());
   }

@@ -175,7 +175,8 @@ TEST_CASE("a flipped byte never gives an order outside its limits", "[protocol]"
         CHECK(validate(chunk->voxels).has_value());
         CHECK(chunk->voxels.extent == Extent::cube(kEdge));
       }
-      if (const auto* picture = std::get_if<DrawPicture>(&order)) CHECK(validate(*picture).has_value());
+      if (const auto* picture = std::get_if<DrawPicture>(&order))
+        CHECK(validate(*picture).has_value());
     }
   }
 }
@@ -188,8 +189,10 @@ TEST_CASE("frames that announce what may not be are refused where they begin", "
   CHECK(error_after_world(world()).code == ErrorCode::broken_invariant);
   CHECK(error_after_world(from_hex("01000000 05 00")).code == ErrorCode::trailing_bytes);
   // Keys: level of detail, and a chunk beyond the world's end at edge 16.
-  CHECK(error_after_world(from_hex("0d00000003 01 00000000 00000000 00000000")).code == ErrorCode::bad_value);
-  CHECK(error_after_world(from_hex("0d00000003 00 00000002 00000000 00000000")).code == ErrorCode::bad_value);
+  CHECK(error_after_world(from_hex("0d00000003 01 00000000 00000000 00000000")).code ==
+        ErrorCode::bad_value);
+  CHECK(error_after_world(from_hex("0d00000003 00 00000002 00000000 00000000")).code ==
+        ErrorCode::bad_value);
   CHECK(error_after_world(from_hex("0e00000003 00 00000000 00000000 00000000 00")).code ==
         ErrorCode::trailing_bytes);
   Bytes end;
@@ -227,15 +230,18 @@ TEST_CASE("a picture outside its limits is refused by name", "[protocol]") {
   CHECK(with([&](DrawPicture& p) { p.camera.y = nan; }).find("eye") != std::string::npos);
   CHECK(with([](DrawPicture& p) { p.camera.x = 3e9; }).find("eye") != std::string::npos);
   CHECK(with([&](DrawPicture& p) { p.camera.yaw = nan; }).find("yaw") != std::string::npos);
-  CHECK(with([](DrawPicture& p) { p.camera.fov_y = 3.2; }).find("field of view") != std::string::npos);
+  CHECK(with([](DrawPicture& p) { p.camera.fov_y = 3.2; }).find("field of view") !=
+        std::string::npos);
   CHECK(with([](DrawPicture& p) { p.camera.near = 0; }).find("near and far") != std::string::npos);
-  CHECK(with([](DrawPicture& p) { p.camera.far = p.camera.near; }).find("near and far") != std::string::npos);
+  CHECK(with([](DrawPicture& p) { p.camera.far = p.camera.near; }).find("near and far") !=
+        std::string::npos);
   CHECK(with([](DrawPicture& p) { p.camera.far = 2e6; }).find("near and far") != std::string::npos);
   CHECK(with([](DrawPicture& p) { p.size.width = 15; }).find("pixels") != std::string::npos);
   CHECK(with([](DrawPicture& p) { p.size.height = 8193; }).find("pixels") != std::string::npos);
   CHECK(with([](DrawPicture& p) { p.file.clear(); }).find("file name") != std::string::npos);
   CHECK(with([](DrawPicture& p) { p.file = "a\nb"; }).find("file name") != std::string::npos);
-  CHECK(with([](DrawPicture& p) { p.file.assign(4097, 'a'); }).find("file name") != std::string::npos);
+  CHECK(with([](DrawPicture& p) { p.file.assign(4097, 'a'); }).find("file name") !=
+        std::string::npos);
 }
 
 TEST_CASE("an error of the taker ends the reading", "[protocol]") {

@@ -28,7 +28,8 @@ Bytes frames_of(FrameClass frame_class, std::size_t size) {
 
 }  // namespace
 
-TEST_CASE("a frame with a bad header is refused, and the error names where it began", "[protocol]") {
+TEST_CASE("a frame with a bad header is refused, and the error names where it began",
+          "[protocol]") {
   const std::string good = "01000000 00 00 0000 00000000 aa";
   REQUIRE_FALSE(error_of(good));
   const struct {

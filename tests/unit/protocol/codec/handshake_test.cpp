@@ -19,7 +19,7 @@ struct Exchange {
   KeyPair server = keys_of(1), client = keys_of(2);
   Hello hello;
   Welcome welcome;
-  Proof proof;
+  ClientAuth proof;
 
   Exchange() {
     SplitMix64 rng{5};
@@ -36,7 +36,9 @@ struct Exchange {
   bool server_proven() const {
     return verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature);
   }
-  bool client_proven() const { return verify(hello.key, client_transcript(hello, welcome), proof.signature); }
+  bool client_proven() const {
+    return verify(hello.key, client_transcript(hello, welcome), proof.signature);
+  }
 };
 
 }  // namespace
@@ -46,9 +48,11 @@ TEST_CASE("keys and signatures are those of RFC 8032", "[protocol]") {
   const Bytes bytes = from_hex("9d61b19deffd5a60ba844af492ec2cc44449c5697b326919703bac031cae7f60");
   std::copy(bytes.begin(), bytes.end(), seed.begin());
   const KeyPair keys = key_pair_of(seed);
-  CHECK(to_hex(keys.public_key) == "d75a980182b10ab7d54bfed3c964073a0ee172f3daa62325af021a68f707511a");
+  CHECK(to_hex(keys.public_key) ==
+        "d75a980182b10ab7d54bfed3c964073a0ee172f3daa62325af021a68f707511a");
   CHECK(to_hex(sign(keys, {})) ==
-        "e5564300c360ac729086e2cc806e828a84877f1eb8e5d974d873e065224901555fb8821590a33bacc61e39701cf9b46b"
+        "e5564300c360ac729086e2cc806e828a84877f1eb8e5d974d873e065224901555fb8821590a33bacc61e39701c"
+        "f9b46b"
         "d25bf5f0595bbe24655141438e7a100b");
   CHECK(verify(keys.public_key, {}, sign(keys, {})));
 }
@@ -59,7 +63,8 @@ TEST_CASE("both sides prove who they are", "[protocol]") {
   CHECK(exchange.client_proven());
 }
 
-TEST_CASE("whatever hello or welcome says differently on the way breaks both signatures", "[protocol]") {
+TEST_CASE("whatever hello or welcome says differently on the way breaks both signatures",
+          "[protocol]") {
   const std::vector<std::function<void(Exchange&)>> changes = {
       [](Exchange& e) { e.hello.protocol ^= 1; },
       [](Exchange& e) { e.hello.instance ^= 1; },
@@ -80,7 +85,8 @@ TEST_CASE("whatever hello or welcome says differently on the way breaks both sig
       [](Exchange& e) { e.welcome.spawn.y += 1; },
       [](Exchange& e) { e.welcome.spawn.z += 1; },
       [](Exchange& e) {
-        REQUIRE(e.welcome.materials.add({"bait", {1, 2, 3, 255}, Visibility::opaque, std::nullopt}));
+        REQUIRE(
+            e.welcome.materials.add({"bait", {1, 2, 3, 255}, Visibility::opaque, std::nullopt}));
       },
       [](Exchange& e) { e.welcome.challenge[0] ^= 1; },
       [](Exchange& e) {

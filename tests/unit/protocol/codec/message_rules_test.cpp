@@ -25,7 +25,9 @@ Bytes message_of(FlatBufferBuilder& b, Offset<Table> body, const char* identifie
   return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
 }
 
-Vector filled(FlatBufferBuilder& b, std::size_t size) { return b.CreateVector(Bytes(size, std::uint8_t{7})); }
+Vector filled(FlatBufferBuilder& b, std::size_t size) {
+  return b.CreateVector(Bytes(size, std::uint8_t{7}));
+}
 
 /// What one side makes of a body built by `build`; the class is the body's own.
 template <class Build>
@@ -75,14 +77,16 @@ struct WelcomeFields {
   Offset<wire::Welcome> operator()(FlatBufferBuilder& b) const {
     std::vector<Offset<wire::MaterialRow>> table;
     for (const Row& row : rows) {
-      table.push_back(wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility));
+      table.push_back(
+          wire::CreateMaterialRow(b, b.CreateString(row.name), row.rgba, row.visibility));
     }
     const auto materials = b.CreateVector(table);
     const auto w = filled(b, world_id), k = filled(b, server_key), c = filled(b, challenge),
                s = filled(b, signature);
     const wire::Position at(spawn.x, spawn.y, spawn.z);
     return wire::CreateWelcome(b, kProtocolVersion, w, epoch, durable, head, edge, y_min, y_max,
-                               has_spawn ? &at : nullptr, materials, k, c, s, encoding, 1000, view_radius);
+                               has_spawn ? &at : nullptr, materials, k, c, s, encoding, 1000,
+                               view_radius);
   }
 };
 
@@ -125,7 +129,8 @@ struct ChunkFields {
 
 /// `fields` as they are pass; with `bend` they do not.
 template <class Fields>
-void refuses(Sender sender, FrameClass frame_class, const std::vector<std::function<void(Fields&)>>& bends) {
+void refuses(Sender sender, FrameClass frame_class,
+             const std::vector<std::function<void(Fields&)>>& bends) {
   REQUIRE(received(sender, frame_class, Fields{}).has_value());
   for (std::size_t i = 0; i < bends.size(); ++i) {
     CAPTURE(i);
@@ -142,12 +147,13 @@ constexpr std::int32_t kReach = kWorldLimit / kMessageEdge;
 }  // namespace
 
 TEST_CASE("hello is refused with a field of the wrong size or range", "[protocol]") {
-  refuses<HelloFields>(Sender::client, FrameClass::control,
-                       {[](auto& h) { h.key = 31; }, [](auto& h) { h.key = 33; },
-                        [](auto& h) { h.nonce = 0; }, [](auto& h) { h.name = ""; },
-                        [](auto& h) { h.name = std::string(33, 'a'); }, [](auto& h) { h.name = "a\nb"; },
-                        [](auto& h) { h.name = "\xc3"; }, [](auto& h) { h.name = "\x1b[2J"; },
-                        [](auto& h) { h.encodings = 0; }, [](auto& h) { h.encodings = 8; }});
+  refuses<HelloFields>(
+      Sender::client, FrameClass::control,
+      {[](auto& h) { h.key = 31; }, [](auto& h) { h.key = 33; }, [](auto& h) { h.nonce = 0; },
+       [](auto& h) { h.name = ""; }, [](auto& h) { h.name = std::string(33, 'a'); },
+       [](auto& h) { h.name = "a\nb"; }, [](auto& h) { h.name = "\xc3"; },
+       [](auto& h) { h.name = "\x1b[2J"; }, [](auto& h) { h.encodings = 0; },
+       [](auto& h) { h.encodings = 8; }});
   HelloFields future;
   future.encodings = 1 + 128;  // an encoding that does not exist yet
   future.features = ~0ULL;     // nor do these
@@ -221,7 +227,7 @@ TEST_CASE("a table of all 65,536 materials fits welcome", "[protocol]") {
 }
 
 TEST_CASE("the longest roster and the longest list of poses fit their class", "[protocol]") {
-  Roster roster;
+  PlayerList roster;
   PlayerPoses poses;
   for (unsigned i = 0; i < kPlayersMax; ++i) {
     roster.players.push_back({i, std::string(kPlayerNameBytesMax, 'n')});
@@ -235,9 +241,9 @@ TEST_CASE("the longest roster and the longest list of poses fit their class", "[
 }
 
 TEST_CASE("signatures, views, keys and poses keep their bounds", "[protocol]") {
-  CHECK(passes_from_client([](auto& b) { return wire::CreateProof(b, filled(b, 64)); }));
-  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateProof(b, filled(b, 65)); }));
-  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateProof(b); }));
+  CHECK(passes_from_client([](auto& b) { return wire::CreateClientAuth(b, filled(b, 64)); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateClientAuth(b, filled(b, 65)); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateClientAuth(b); }));
 
   const auto view = [](std::int32_t x, std::uint8_t h, std::uint8_t v) {
     return passes_from_client([=](auto& b) { return wire::CreateView(b, x, 0, 0, h, v); });
@@ -286,12 +292,15 @@ TEST_CASE("a snapshot is refused with bad keys, versions, digests, bytes or size
       Sender::server, FrameClass::chunks,
       {[](auto& c) { c.has_key = false; }, [](auto& c) { c.has_version = false; },
        [](auto& c) { c.has_digest = false; }, [](auto& c) { c.key = wire::Key(0, kReach, 0, 0); },
-       [](auto& c) { c.key = wire::Key(1, 0, 0, 0); }, [](auto& c) { c.version = wire::Version(0, 1); },
+       [](auto& c) { c.key = wire::Key(1, 0, 0, 0); },
+       [](auto& c) { c.version = wire::Version(0, 1); },
        [](auto& c) { c.version = wire::Version(1, 0); },
        [](auto& c) { c.digest = wire::Digest((1ULL << 61) - 1, 0); },
        [](auto& c) { c.digest = wire::Digest(0, ~0ULL); }, [](auto& c) { c.data.clear(); },
        [](auto& c) { c.data.pop_back(); }, [](auto& c) { c.data.push_back(0); },
-       [](auto& c) { c.data = encode_chunk(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::raw); }});
+       [](auto& c) {
+         c.data = encode_chunk(uniform_chunk(Extent::cube(32), 1), ChunkEncoding::raw);
+       }});
   ChunkFields base;
   base.version = wire::Version(0, 0);
   CHECK(passes_from_server(base, FrameClass::chunks));
@@ -301,10 +310,10 @@ TEST_CASE("a snapshot is refused with bad keys, versions, digests, bytes or size
 }
 
 TEST_CASE("received counts from one on, and only clients say it", "[protocol]") {
-  CHECK(passes_from_client([](auto& b) { return wire::CreateReceived(b, 1); }));
-  CHECK(passes_from_client([](auto& b) { return wire::CreateReceived(b, ~0ULL); }));
-  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateReceived(b, 0); }));
-  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateReceived(b, 1); }));
+  CHECK(passes_from_client([](auto& b) { return wire::CreateReceiveAck(b, 1); }));
+  CHECK(passes_from_client([](auto& b) { return wire::CreateReceiveAck(b, ~0ULL); }));
+  CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateReceiveAck(b, 0); }));
+  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateReceiveAck(b, 1); }));
 }
 
 TEST_CASE("uniform chunks ascend, lie inside the world and are not too many", "[protocol]") {
@@ -335,8 +344,10 @@ TEST_CASE("uniform chunks ascend, lie inside the world and are not too many", "[
   CHECK(std::get<UniformChunks>(*whole).chunks.back() == UniformChunk{{0, {0, 4'090, 0}}, 1, {}});
   CHECK_FALSE(read({}).has_value());
   CHECK_FALSE(read(entry(0, 0, 0, 4'096)).has_value());
-  CHECK_FALSE(read(joined(entry(0, 0, 0, 4'095), entry(1, 0, 0, 0))).has_value());  // too many in all
-  CHECK_FALSE(read(joined(entry(0, 0, 0, 3), entry(0, 0, 3, 0))).has_value());      // the same chunk twice
+  CHECK_FALSE(
+      read(joined(entry(0, 0, 0, 4'095), entry(1, 0, 0, 0))).has_value());  // too many in all
+  CHECK_FALSE(
+      read(joined(entry(0, 0, 0, 3), entry(0, 0, 3, 0))).has_value());  // the same chunk twice
   CHECK(read(joined(entry(0, 0, 0, 3), entry(0, 0, 4, 0))).has_value());
   CHECK_FALSE(read(joined(entry(0, 0, 0, 0), entry(0, -1, 0, 0))).has_value());  // goes back
   CHECK(read(joined(entry(0, 0, 0, 0), entry(1, -1, 0, 0))).has_value());
@@ -345,7 +356,8 @@ TEST_CASE("uniform chunks ascend, lie inside the world and are not too many", "[
   CHECK_FALSE(read(entry(0, -kReach - 1, 0, 0)).has_value());
   CHECK_FALSE(read(entry(0, 0, kReach - 4, 4)).has_value());  // reaches out of the world at its top
   CHECK_FALSE(
-      read(joined(entry(1, 0, 0, 0), entry(std::numeric_limits<std::int64_t>::max(), 0, 0, 0))).has_value());
+      read(joined(entry(1, 0, 0, 0), entry(std::numeric_limits<std::int64_t>::max(), 0, 0, 0)))
+          .has_value());
   CHECK_FALSE(read(entry(0, 0, 0, 0, 65'536)).has_value());
   CHECK_FALSE(read(joined(entry(0, 0, 0, 0, 1, 3), {0})).has_value());  // half a version
   CHECK(read(joined(entry(0, 0, 0, 0, 1, 3), {9})).has_value());
@@ -373,8 +385,8 @@ TEST_CASE("unavailable chunks are named, and their reason may be one of the futu
   CHECK_FALSE(read({wire::Key(0, 1, 2, 3)}, 0).has_value());
   CHECK_FALSE(read({wire::Key(0, kReach, 0, 0)}, 1).has_value());
   CHECK_FALSE(read({wire::Key(1, 0, 0, 0)}, 1).has_value());
-  CHECK_FALSE(
-      passes_from_server([](auto& b) { return wire::CreateChunkUnavailable(b, 0, 1); }, FrameClass::chunks));
+  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateChunkUnavailable(b, 0, 1); },
+                                 FrameClass::chunks));
   const std::vector<wire::Key> here(1);
   const auto build = [&](auto& b) {
     return wire::CreateChunkUnavailable(b, b.CreateVectorOfStructs(here), 1);
@@ -383,11 +395,15 @@ TEST_CASE("unavailable chunks are named, and their reason may be one of the futu
   CHECK_FALSE(passes_from_client(build, FrameClass::chunks));
 }
 
-TEST_CASE("lists of what is held are refused unless they are canonical and inside the world", "[protocol]") {
+TEST_CASE("lists of what is held are refused unless they are canonical and inside the world",
+          "[protocol]") {
   const auto held = [](const Bytes& bytes, std::uint16_t edge = kMessageEdge) {
     return received(
                Sender::client, FrameClass::control,
-               [&](FlatBufferBuilder& b) { return wire::CreateHeld(b, b.CreateVector(bytes)); }, edge)
+               [&](FlatBufferBuilder& b) {
+                 return wire::CreateCachedChunks(b, b.CreateVector(bytes));
+               },
+               edge)
         .has_value();
   };
   const auto bytes_of = [](std::vector<std::int64_t> key, std::vector<std::uint64_t> version,
@@ -424,12 +440,15 @@ TEST_CASE("lists of what is held are refused unless they are canonical and insid
   CHECK(held(many));
   CHECK_FALSE(held(joined(many, bytes_of({0, 0, 1}, {0}, 7))));
   CHECK_FALSE(received(Sender::server, FrameClass::control, [&](FlatBufferBuilder& b) {
-                return wire::CreateHeld(b, b.CreateVector(first));
+                return wire::CreateCachedChunks(b, b.CreateVector(first));
               }).has_value());
 
   const auto same = [](const Bytes& bytes) {
     return passes_from_server(
-        [&](FlatBufferBuilder& b) { return wire::CreateSame(b, b.CreateVector(bytes)); }, FrameClass::chunks);
+        [&](FlatBufferBuilder& b) {
+          return wire::CreateChunksNotModified(b, b.CreateVector(bytes));
+        },
+        FrameClass::chunks);
   };
   CHECK(same({2, 0, 0, 10}));                     // (1, 0, 0) at 5
   CHECK(same({2, 0, 0, 10, 0, 0, 2, 9}));         // (1, 0, 1) at 0
@@ -459,7 +478,8 @@ struct ChunkEditsFields {
   }
 };
 
-TEST_CASE("missing edits are refused where they do not lead from one version to the other", "[protocol]") {
+TEST_CASE("missing edits are refused where they do not lead from one version to the other",
+          "[protocol]") {
   refuses<ChunkEditsFields>(
       Sender::server, FrameClass::chunks,
       {[](auto& f) { f.has_key = false; }, [](auto& f) { f.has_to = false; },
@@ -486,11 +506,12 @@ TEST_CASE("commands and their output are bounded lines of text", "[protocol]") {
   CHECK_FALSE(request(""));
   CHECK_FALSE(request("undo\n"));
   CHECK_FALSE(passes_from_client([](auto& b) { return wire::CreateCommandRequest(b, 7); }));
-  CHECK_FALSE(
-      passes_from_server([](auto& b) { return wire::CreateCommandRequest(b, 7, b.CreateString("undo")); }));
+  CHECK_FALSE(passes_from_server(
+      [](auto& b) { return wire::CreateCommandRequest(b, 7, b.CreateString("undo")); }));
   const auto output = [](std::size_t count, const std::string& line) {
     return passes_from_server([&](auto& b) {
-      const std::vector<flatbuffers::Offset<flatbuffers::String>> lines(count, b.CreateString(line));
+      const std::vector<flatbuffers::Offset<flatbuffers::String>> lines(count,
+                                                                        b.CreateString(line));
       return wire::CreateCommandOutput(b, 7, b.CreateVector(lines), true, true);
     });
   };
@@ -499,10 +520,11 @@ TEST_CASE("commands and their output are bounded lines of text", "[protocol]") {
   CHECK_FALSE(output(kCommandLinesMax + 1, "a"));
   CHECK_FALSE(output(1, std::string(kCommandLineBytesMax + 1, 'a')));
   CHECK_FALSE(output(1, "a\nb"));
-  CHECK(passes_from_server([](auto& b) { return wire::CreateCommandOutput(b, 7); }));  // no lines are none
+  CHECK(passes_from_server(
+      [](auto& b) { return wire::CreateCommandOutput(b, 7); }));  // no lines are none
   // What a sender was given is made fit to be read.
-  const auto sent =
-      encode_message(CommandOutput{7, {"a\tb\xff", std::string(2 * kCommandLineBytesMax, 'a')}, true, true});
+  const auto sent = encode_message(
+      CommandOutput{7, {"a\tb\xff", std::string(2 * kCommandLineBytesMax, 'a')}, true, true});
   const auto read = decode_message(Sender::server, FrameClass::control, *sent.bytes, 16);
   REQUIRE(read.has_value());
   CHECK(std::get<CommandOutput>(*read).lines ==
@@ -512,7 +534,8 @@ TEST_CASE("commands and their output are bounded lines of text", "[protocol]") {
 TEST_CASE("an edit request needs a sequence and one whole descriptor", "[protocol]") {
   const auto request = [](std::uint64_t seq, const Bytes& edit) {
     return passes_from_client(
-        [&](auto& b) { return wire::CreateEditRequest(b, seq, 0, b.CreateVector(edit)); }, FrameClass::edits);
+        [&](auto& b) { return wire::CreateEditRequest(b, seq, 0, b.CreateVector(edit)); },
+        FrameClass::edits);
   };
   const Bytes edit = encode(kEdit);
   CHECK(request(1, edit));
@@ -577,7 +600,8 @@ TEST_CASE("times that could overflow a reader's arithmetic are refused", "[proto
 TEST_CASE("answers and texts keep their bounds", "[protocol]") {
   const auto reject = [](std::uint64_t seq, std::uint8_t reason, const std::string& text) {
     return passes_from_server(
-        [&](auto& b) { return wire::CreateReject(b, seq, reason, b.CreateString(text)); }, FrameClass::edits);
+        [&](auto& b) { return wire::CreateReject(b, seq, reason, b.CreateString(text)); },
+        FrameClass::edits);
   };
   CHECK(reject(1, 1, std::string(256, 'x')));
   CHECK_FALSE(reject(0, 1, ""));
@@ -587,19 +611,23 @@ TEST_CASE("answers and texts keep their bounds", "[protocol]") {
   CHECK_FALSE(reject(1, 1, "\xed\xa0\x80"));
 
   const auto goodbye = [](std::uint16_t reason, const std::string& text) {
-    return passes_from_client([&](auto& b) { return wire::CreateGoodbye(b, reason, b.CreateString(text)); });
+    return passes_from_client(
+        [&](auto& b) { return wire::CreateGoodbye(b, reason, b.CreateString(text)); });
   };
   CHECK(goodbye(kGoodbyeReasonMax, ""));
   CHECK_FALSE(goodbye(0, ""));
   CHECK_FALSE(goodbye(kGoodbyeReasonMax + 1, ""));
   CHECK_FALSE(goodbye(1, "\t"));
-  CHECK(passes_from_client([](auto& b) { return wire::CreateGoodbye(b, 1); }));  // no text is no harm
+  CHECK(
+      passes_from_client([](auto& b) { return wire::CreateGoodbye(b, 1); }));  // no text is no harm
 
-  CHECK_FALSE(passes_from_server([](auto& b) { return wire::CreateDurable(b, 0, 5); }, FrameClass::edits));
+  CHECK_FALSE(
+      passes_from_server([](auto& b) { return wire::CreateDurable(b, 0, 5); }, FrameClass::edits));
   const auto roster = [](const std::string& name) {
     return passes_from_server([&](auto& b) {
-      const std::vector<Offset<wire::PlayerName>> names{wire::CreatePlayerName(b, 1, b.CreateString(name))};
-      return wire::CreateRoster(b, b.CreateVector(names));
+      const std::vector<Offset<wire::PlayerName>> names{
+          wire::CreatePlayerName(b, 1, b.CreateString(name))};
+      return wire::CreatePlayerList(b, b.CreateVector(names));
     });
   };
   CHECK(roster("bo"));
@@ -610,25 +638,25 @@ TEST_CASE("answers and texts keep their bounds", "[protocol]") {
       const wire::Key key(0, 0, 0, 0);
       const wire::Version version(1, 1);
       const wire::Digest digest(1, 1);
-      const std::vector<Offset<wire::AuditEntry>> entries(count,
-                                                          wire::CreateAuditEntry(b, &key, &version, &digest));
-      return wire::CreateAudit(b, b.CreateVector(entries));
+      const std::vector<Offset<wire::DigestCheckEntry>> entries(
+          count, wire::CreateDigestCheckEntry(b, &key, &version, &digest));
+      return wire::CreateDigestCheck(b, b.CreateVector(entries));
     });
   };
   CHECK(audit(0));
   CHECK(audit(kAuditEntriesMax));
   CHECK_FALSE(audit(kAuditEntriesMax + 1));
   CHECK_FALSE(passes_from_server([](auto& b) {
-    const std::vector<Offset<wire::AuditEntry>> empty{wire::CreateAuditEntry(b)};
-    return wire::CreateAudit(b, b.CreateVector(empty));
+    const std::vector<Offset<wire::DigestCheckEntry>> empty{wire::CreateDigestCheckEntry(b)};
+    return wire::CreateDigestCheck(b, b.CreateVector(empty));
   }));
 }
 
 TEST_CASE("texts that are too long are cut when written, between characters", "[protocol]") {
   std::string text(kTextBytesMax - 1, 'x');
   text += "\xe2\x82\xac and more";
-  for (const Message& message :
-       {Message(Goodbye{GoodbyeReason::internal, text}), Message(Reject{1, RejectReason::busy, text})}) {
+  for (const Message& message : {Message(Goodbye{GoodbyeReason::internal, text}),
+                                 Message(Reject{1, RejectReason::busy, text})}) {
     const auto decoded = decode(message, encode_message(message));
     REQUIRE(decoded.has_value());
     const auto* goodbye = std::get_if<Goodbye>(&*decoded);
@@ -695,7 +723,8 @@ TEST_CASE("reasons have the names and numbers of the protocol page", "[protocol]
   std::set<std::string> rows;  // "| `name` | number |"
   for (std::string line; std::getline(file, line);) {
     const auto number_ends = line.find(" |", line.find(" | ") + 3);
-    if (line.starts_with("| `") && number_ends != std::string::npos) rows.insert(line.substr(0, number_ends));
+    if (line.starts_with("| `") && number_ends != std::string::npos)
+      rows.insert(line.substr(0, number_ends));
   }
   const auto row = [](const char* name, unsigned number) {
     return "| `" + std::string(name) + "` | " + std::to_string(number);

@@ -38,7 +38,8 @@ TEST_CASE("commands without words are read", "[admin][command]") {
 
 TEST_CASE("a filter says whose, when, where and why", "[admin][command]") {
   const auto preview = parsed<RollbackPreviewCommand>(
-      "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 -3 -4 70 "
+      "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 "
+      "-3 -4 70 "
       "8 "
       "cause player");
   CHECK_FALSE(preview.picture);
@@ -58,7 +59,8 @@ TEST_CASE("a filter says whose, when, where and why", "[admin][command]") {
 }
 
 TEST_CASE("rollbacks are named by one id", "[admin][command]") {
-  CHECK(parsed<RollbackCommand>("rollback apply p1") == RollbackCommand{RollbackCommand::Verb::apply, "p1"});
+  CHECK(parsed<RollbackCommand>("rollback apply p1") ==
+        RollbackCommand{RollbackCommand::Verb::apply, "p1"});
   CHECK(parsed<RollbackCommand>("rollback cancel p1") ==
         RollbackCommand{RollbackCommand::Verb::cancel, "p1"});
   CHECK(parsed<RollbackCommand>("rollback undo 9120") ==
@@ -69,23 +71,29 @@ TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
   CHECK(mistake("") == "no command: `help` names them");
   CHECK(mistake("rolback") == "\"rolback\" is no command: `help` names them");
   CHECK(mistake("rollback") == "rollback: preview, apply, cancel, undo or list is missing");
-  CHECK(mistake("rollback revert p1") == "rollback \"revert\": preview, apply, cancel, undo or list");
-  CHECK(mistake("rollback apply") == "rollback apply: one id comes after it (rollback list names them)");
+  CHECK(mistake("rollback revert p1") ==
+        "rollback \"revert\": preview, apply, cancel, undo or list");
+  CHECK(mistake("rollback apply") ==
+        "rollback apply: one id comes after it (rollback list names them)");
   CHECK(mistake("rollback list now") == "rollback list \"now\": nothing comes after list");
-  CHECK(mistake("rollback preview") ==
-        "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
+  CHECK(
+      mistake("rollback preview") ==
+      "rollback preview: say whose edits, when, where or why: author, since, until, box or cause");
   CHECK(mistake("rollback preview by ana") ==
         "rollback preview \"by\": author, since, until, box, cause or picture");
   CHECK(mistake("log since yesterday") ==
-        "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, 1w) or when (2026-11-21T23:57:42Z, in "
+        "log since \"yesterday\": how long ago (90s, 15m, 2h30m, 2d, 1w) or when "
+        "(2026-11-21T23:57:42Z, in "
         "UTC)");
   CHECK(mistake("log author #x") == "log author \"#x\": a number after #, or a name");
   CHECK(mistake("log author") == "log author: a name, or # and a number, is missing");
-  CHECK(mistake("log box 1 2 3 4 5") ==
-        "log box: six numbers: x y z of one corner and of the opposite one, both inside is missing");
+  CHECK(
+      mistake("log box 1 2 3 4 5") ==
+      "log box: six numbers: x y z of one corner and of the opposite one, both inside is missing");
   CHECK(mistake("log box 1 2 3 4 5 6000000000") ==
         "log box \"6000000000\": a whole number from -536870912 to 536870911");
-  CHECK(mistake("log cause rage") == "log cause \"rage\": player, console, rollback, undo, redo or import");
+  CHECK(mistake("log cause rage") ==
+        "log cause \"rage\": player, console, rollback, undo, redo or import");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");
@@ -93,8 +101,10 @@ TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
 }
 
-TEST_CASE("everybody may undo, redo and ask for help; the rest is for operators", "[admin][command]") {
-  for (const char* line : {"help", "undo", "redo"}) CHECK(is_for_everybody(*parse_command(line, kNow)));
+TEST_CASE("everybody may undo, redo and ask for help; the rest is for operators",
+          "[admin][command]") {
+  for (const char* line : {"help", "undo", "redo"})
+    CHECK(is_for_everybody(*parse_command(line, kNow)));
   for (const char* line : {"status", "players", "stop", "log", "rollback list", "rollback apply p1",
                            "rollback preview since 1h"}) {
     CHECK_FALSE(is_for_everybody(*parse_command(line, kNow)));

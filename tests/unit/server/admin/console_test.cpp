@@ -39,12 +39,13 @@ class Pipe {
 /// A console and what it said.
 struct ConsoleBench {
   explicit ConsoleBench(int descriptor) {
-    const auto handler = [this](const std::string& line, const DeskReply& reply) {
+    const auto handler = [this](const std::string& line, const CommandReply& reply) {
       lines.push_back(line);
       reply({"did " + line, true, true});
     };
     const auto opened = Console::open(
-        loop, handler, [this](const std::string& why) { failures.push_back(why); }, descriptor, out);
+        loop, handler, [this](const std::string& why) { failures.push_back(why); }, descriptor,
+        out);
     REQUIRE(opened.has_value());
     console = *opened;
   }
@@ -63,7 +64,8 @@ const std::string kTooLong =
 
 }  // namespace
 
-TEST_CASE("the console takes lines in whatever pieces they come, and answers", "[server][console]") {
+TEST_CASE("the console takes lines in whatever pieces they come, and answers",
+          "[server][console]") {
   Pipe pipe;
   ConsoleBench bench(pipe.out());
   pipe.write("status\n   \n\npla");
@@ -76,7 +78,8 @@ TEST_CASE("the console takes lines in whatever pieces they come, and answers", "
   pipe.hang_up();
   bench.turn();
   CHECK(bench.lines.size() == 3);  // it might have been p12
-  CHECK(bench.out.str() == "did status\ndid players\ndid log\nthe last line has no end, and is left out\n");
+  CHECK(bench.out.str() ==
+        "did status\ndid players\ndid log\nthe last line has no end, and is left out\n");
   CHECK(bench.failures.empty());
 }
 
@@ -96,8 +99,8 @@ TEST_CASE("a line that is too long is left out, and those behind it are not", "[
   CHECK(bench.lines == std::vector<std::string>{longest, "status", "players"});
   const std::string said = bench.out.str();
   CHECK(said.find(kTooLong) != said.rfind(kTooLong));
-  CHECK(said.size() ==
-        2 * kTooLong.size() + std::string("did \ndid status\ndid players\n").size() + longest.size());
+  CHECK(said.size() == 2 * kTooLong.size() + std::string("did \ndid status\ndid players\n").size() +
+                           longest.size());
   CHECK(bench.failures.empty());
 }
 
@@ -106,7 +109,8 @@ TEST_CASE("a console that cannot be read says why", "[server][console]") {
   ConsoleBench bench(pipe.in());  // the wrong end
   bench.turn();
   CHECK(bench.failures ==
-        std::vector<std::string>{"console: standard input cannot be read any more: Bad file descriptor"});
+        std::vector<std::string>{
+            "console: standard input cannot be read any more: Bad file descriptor"});
   bench.turn();
   CHECK(bench.failures.size() == 1);
 }

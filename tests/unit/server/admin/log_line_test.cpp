@@ -18,5 +18,6 @@ TEST_CASE("a line of the log says when, who, why, what, where and of which mater
       SetVoxel{{7, 8, 9}}, {}, static_cast<Material>(materials.size())};  // a material nobody knows
   record.cause = Cause::undo;
   record.subject = 9100;
-  CHECK(log_line(record, "#5", materials) == "9120 2026-11-21T23:57:42Z #5 undo of 9100 voxel 7 8 9");
+  CHECK(log_line(record, "#5", materials) ==
+        "9120 2026-11-21T23:57:42Z #5 undo of 9100 voxel 7 8 9");
 }

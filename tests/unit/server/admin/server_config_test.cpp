@@ -33,7 +33,8 @@ TEST_CASE("names in file, environment and flags follow one rule", "[admin]") {
 
 TEST_CASE("a file sets what it names and nothing else", "[admin]") {
   ServerConfig config;
-  REQUIRE(read_config_toml(config, "sessions_max = 3\nlisten = \"[::1]:0\"\n", "server.toml").has_value());
+  REQUIRE(read_config_toml(config, "sessions_max = 3\nlisten = \"[::1]:0\"\n", "server.toml")
+              .has_value());
   ServerConfig expected;
   expected.sessions_max = 3;
   expected.listen = "[::1]:0";
@@ -64,7 +65,8 @@ TEST_CASE("errors in a file name file, line and key, and change nothing", "[admi
 }
 
 TEST_CASE("the environment sets fields and its errors name the variable", "[admin]") {
-  std::map<std::string, std::string> environment{{"RUNSTONE_IO_THREADS", "8"}, {"RUNSTONE_OTHER", "x"}};
+  std::map<std::string, std::string> environment{{"RUNSTONE_IO_THREADS", "8"},
+                                                 {"RUNSTONE_OTHER", "x"}};
   const auto look_up = [&](const std::string& name) -> std::optional<std::string> {
     const auto found = environment.find(name);
     if (found == environment.end()) return std::nullopt;
@@ -92,7 +94,8 @@ TEST_CASE("operators are keys, and a word that is none is named", "[admin]") {
   for (const std::string& wrong : {std::string("ana"), key + "0", std::string(62, 'a') + "zz"}) {
     const auto set = set_config(config, "operators", wrong);
     REQUIRE_FALSE(set.has_value());
-    CHECK(set.error().find("\"" + wrong + "\" is no public key: 64 hexadecimal digits") != std::string::npos);
+    CHECK(set.error().find("\"" + wrong + "\" is no public key: 64 hexadecimal digits") !=
+          std::string::npos);
   }
 }
 

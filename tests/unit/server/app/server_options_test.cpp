@@ -15,7 +15,8 @@ ParsedServerOptions parse(std::vector<const char*> arguments) {
 }  // namespace
 
 TEST_CASE("of two equal flags the last one counts", "[server_options]") {
-  const auto parsed = parse({"--world", "/world", "--listen", "0.0.0.0:4747", "--listen", "127.0.0.1:5000"});
+  const auto parsed =
+      parse({"--world", "/world", "--listen", "0.0.0.0:4747", "--listen", "127.0.0.1:5000"});
   REQUIRE(parsed.options);
   CHECK(parsed.options->settings.at("listen") == "127.0.0.1:5000");
   CHECK(parsed.options->settings.at("world") == "/world");
@@ -27,7 +28,8 @@ TEST_CASE("of two equal flags the last one counts", "[server_options]") {
 }
 
 TEST_CASE("what follows control is the command, whatever it looks like", "[server_options]") {
-  const auto parsed = parse({"control", "--world", "valley", "log", "box", "-1", "2", "3", "-4", "5", "6"});
+  const auto parsed =
+      parse({"control", "--world", "valley", "log", "box", "-1", "2", "3", "-4", "5", "6"});
   REQUIRE(parsed.options);
   REQUIRE(parsed.options->control);
   CHECK(parsed.options->control->world == "valley");

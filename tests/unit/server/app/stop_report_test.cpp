@@ -29,7 +29,8 @@ struct StoppedWorld {
     REQUIRE(store->save_snapshots(chunks, 3).has_value());
   }
   StopReport with(const ChunkKey& key, const Chunk& live, bool is_clean = true) const {
-    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{key, std::make_shared<const Chunk>(live)}};
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
+        {key, std::make_shared<const Chunk>(live)}};
     return sum_up(*store, chunks, is_clean);
   }
 };
@@ -44,10 +45,11 @@ TEST_CASE("a clean stop lists chunks from memory and the others from their snaps
   CHECK(report.live_chunks == 1);
   CHECK(report.digests.seq == 3);
   CHECK(report.digests.world_id == sample_meta().world_id);
-  CHECK(report.digests.chunks == std::vector<AuditEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
-                                                         {kThere, {1, 3}, digest_of(world.there->voxels)}});
-  CHECK(report.world_digest ==
-        world_digest_term(kHere, world.here->digest) + world_digest_term(kThere, world.there->digest));
+  CHECK(report.digests.chunks ==
+        std::vector<DigestCheckEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
+                                      {kThere, {1, 3}, digest_of(world.there->voxels)}});
+  CHECK(report.world_digest == world_digest_term(kHere, world.here->digest) +
+                                   world_digest_term(kThere, world.there->digest));
 }
 
 TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and named", "[server]") {
@@ -57,7 +59,8 @@ TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and na
   std::string error;
   SECTION("other voxels behind an unchanged digest") {
     const Material there = material_at(live.voxels, {5, 5, 5});
-    fill(live.voxels, index_of({5, 5, 5}, live.voxels.extent, live.voxels.order), 1, there == 1 ? 2 : 1);
+    fill(live.voxels, index_of({5, 5, 5}, live.voxels.extent, live.voxels.order), 1,
+         there == 1 ? 2 : 1);
     error = "has digest=" + to_hex(world.here->digest) +
             ", the server had digest=" + to_hex(digest_of(live.voxels));
   }
@@ -70,16 +73,17 @@ TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and na
     error = "is missing, but the chunk was edited";
   }
   const StopReport report = world.with(key, live);
-  CHECK(report.error ==
-        world.store->file() + ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
-  const AuditEntry entry{key, live.version, digest_of(live.voxels)};
+  CHECK(report.error == world.store->file() +
+                            ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
+  const DigestCheckEntry entry{key, live.version, digest_of(live.voxels)};
   CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
   // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to complain of.
   CHECK(world.with(key, live, false).error.empty());
 }
 
 TEST_CASE(
-    "a stop that was not clean lists what is stored, and neither line nor file passes for a digest of its "
+    "a stop that was not clean lists what is stored, and neither line nor file passes for a digest "
+    "of its "
     "seq",
     "[server]") {
   const StoppedWorld world;
@@ -87,8 +91,9 @@ TEST_CASE(
   live.version = {1, 9};  // never on disk
   const StopReport report = world.with(kHere, live, false);
   CHECK_FALSE(report.is_clean);
-  CHECK(report.digests.chunks == std::vector<AuditEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
-                                                         {kThere, {1, 3}, digest_of(world.there->voxels)}});
+  CHECK(report.digests.chunks ==
+        std::vector<DigestCheckEntry>{{kHere, {1, 2}, digest_of(world.here->voxels)},
+                                      {kThere, {1, 3}, digest_of(world.there->voxels)}});
   CHECK(stop_line(report) == "stopped unclean seq=3 snapshots=2 live=1");
   const auto read = parse_digests_json(to_json(report.digests), "d.json");
   REQUIRE_FALSE(read.has_value());
@@ -103,7 +108,8 @@ TEST_CASE(
 TEST_CASE("a snapshot that cannot be read is named, and the sum goes on", "[server]") {
   const StoppedWorld world;
   REQUIRE(
-      raw_sql(world.folder / "world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1").empty());
+      raw_sql(world.folder / "world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1")
+          .empty());
   const StopReport report = world.with(kHere, *world.here);
   CHECK(report.error.find("world.sqlite: snapshot chunk=1,0,0: ") != std::string::npos);
   CHECK(report.digests.chunks.size() == 1);

@@ -29,7 +29,8 @@ Vec seen_at(const DrawCamera& c, PictureSize size, const Vec& point) {
   const Vec up = cross(right, forward);
   const Vec to{point[0] - c.x, point[1] - c.y, point[2] - c.z};
   const double depth = dot(to, forward), slope = std::tan(c.fov_y / 2);
-  return {dot(to, right) / (depth * slope * size.width / size.height), dot(to, up) / (depth * slope), depth};
+  return {dot(to, right) / (depth * slope * size.width / size.height),
+          dot(to, up) / (depth * slope), depth};
 }
 
 std::vector<Vec> corners(const VoxelBox& box) {
@@ -44,12 +45,15 @@ std::vector<Vec> corners(const VoxelBox& box) {
 
 }  // namespace
 
-TEST_CASE("an oblique camera sees the whole box, and no more than the margin around it", "[server]") {
-  const VoxelBox box = GENERATE(VoxelBox{{0, 0, 0}, {32, 32, 32}}, VoxelBox{{-500, -20, 300}, {400, 60, 340}},
-                                VoxelBox{{-3, -4000, -3}, {20, 100, 20}},
-                                VoxelBox{{(1 << 29) - 100, 0, -(1 << 29)}, {1 << 29, 50, 40 - (1 << 29)}});
+TEST_CASE("an oblique camera sees the whole box, and no more than the margin around it",
+          "[server]") {
+  const VoxelBox box =
+      GENERATE(VoxelBox{{0, 0, 0}, {32, 32, 32}}, VoxelBox{{-500, -20, 300}, {400, 60, 340}},
+               VoxelBox{{-3, -4000, -3}, {20, 100, 20}},
+               VoxelBox{{(1 << 29) - 100, 0, -(1 << 29)}, {1 << 29, 50, 40 - (1 << 29)}});
   const PictureSize size = GENERATE(PictureSize{1280, 720}, PictureSize{100, 300});
-  const ViewDirection direction = GENERATE(ViewDirection{}, ViewDirection{-2.5, -0.2}, ViewDirection{4, 0.9});
+  const ViewDirection direction =
+      GENERATE(ViewDirection{}, ViewDirection{-2.5, -0.2}, ViewDirection{4, 0.9});
   const DrawCamera camera = oblique_camera(box, size, direction);
   CAPTURE(box.min.x, box.max.x, size.width, direction.yaw, camera.x, camera.y, camera.z);
   CHECK(validate(DrawPicture{camera, size, "a.png"}).has_value());

@@ -78,7 +78,8 @@ std::vector<std::pair<ChunkKey, Chunk>> chunks_at(Logged& logged, Sequence seq) 
 }
 
 /// Where the rule of KeyframePolicy has keyframes, told by its words.
-std::vector<Sequence> due_places(const std::vector<EditRecord>& records, const KeyframePolicy& policy) {
+std::vector<Sequence> due_places(const std::vector<EditRecord>& records,
+                                 const KeyframePolicy& policy) {
   std::vector<Sequence> places;
   std::uint64_t edits = 0;
   std::set<ChunkCoord> touched;
@@ -131,7 +132,8 @@ TEST_CASE("keyframes stand where they are due", "[history][keyframe]") {
   }
 }
 
-TEST_CASE("a log that grows gets the keyframes of one that was there at once", "[history][keyframe]") {
+TEST_CASE("a log that grows gets the keyframes of one that was there at once",
+          "[history][keyframe]") {
   Logged logged(2, 1);
   SplitMix64 rng(3);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
@@ -184,7 +186,8 @@ TEST_CASE("a keyframe that was broken off does no harm and is made again", "[his
           if (chunks_left-- > 0) part.push_back(chunk);
         }
         if (auto saved = logged.store->save_keyframe(part, std::nullopt); !saved) return saved;
-        return StoreResult<void>(Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}});
+        return StoreResult<void>(
+            Unexpected<StoreError>{{StoreError::Kind::full, "w", "", "disk full"}});
       });
   REQUIRE_FALSE(broken.has_value());
   CHECK(broken.error().message() == "w: disk full");
@@ -207,7 +210,8 @@ TEST_CASE("making keyframes can be called off between chunks", "[history][keyfra
   Logged logged(7);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
   int steps = 0;
-  const auto cancelled = maker.make_due(logged.save(), [&](Sequence, Sequence) { return ++steps < 40; });
+  const auto cancelled =
+      maker.make_due(logged.save(), [&](Sequence, Sequence) { return ++steps < 40; });
   REQUIRE_FALSE(cancelled.has_value());
   CHECK(cancelled.error().kind == StoreError::Kind::cancelled);
   CHECK(steps == 40);
@@ -221,14 +225,15 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
   KeyframeMaker::Chunks chunks;
   std::optional<Keyframe> keyframe;
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
-  REQUIRE(maker
-              .make_at(seq,
-                       [&](const KeyframeMaker::Chunks& slice, const std::optional<Keyframe>& made) {
-                         chunks.insert(chunks.end(), slice.begin(), slice.end());
-                         keyframe = made;
-                         return StoreResult<void>();
-                       })
-              .has_value());
+  REQUIRE(
+      maker
+          .make_at(seq,
+                   [&](const KeyframeMaker::Chunks& slice, const std::optional<Keyframe>& made) {
+                     chunks.insert(chunks.end(), slice.begin(), slice.end());
+                     keyframe = made;
+                     return StoreResult<void>();
+                   })
+          .has_value());
   REQUIRE(keyframe);
   const auto refused = [&](const KeyframeMaker::Chunks& rows, Keyframe with) {
     const auto saved = logged.store->save_keyframe(rows, with);
@@ -260,7 +265,8 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
   SplitMix64 rng(9);
   const auto& [key, chunk] = chunks.front();
   const auto differs = logged.store->save_keyframe(
-      std::vector<std::pair<ChunkKey, ChunkPtr>>{{key, sample_chunk(rng, chunk->version)}}, std::nullopt);
+      std::vector<std::pair<ChunkKey, ChunkPtr>>{{key, sample_chunk(rng, chunk->version)}},
+      std::nullopt);
   REQUIRE_FALSE(differs.has_value());
   CHECK(differs.error().kind == StoreError::Kind::corrupt);
 }
@@ -277,13 +283,14 @@ TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
     std::string sql, where;
   };
   const std::string chunk = " WHERE rowid = 5";
-  std::vector<Damage> damages = {{"DELETE FROM keyframe_chunk" + chunk, place},
-                                 {"UPDATE keyframe_chunk SET x = x + 100" + chunk, ""},
-                                 {"UPDATE keyframe_chunk SET lod = 1" + chunk, ""},
-                                 {"UPDATE keyframe_chunk SET seq = seq + 1" + chunk, ""},
-                                 {"UPDATE keyframe_chunk SET data = substr(data, 2)" + chunk, ""},
-                                 {"UPDATE keyframe SET seq = seq + 1 WHERE seq = " + std::to_string(first),
-                                  "keyframe seq=" + std::to_string(first + 1)}};
+  std::vector<Damage> damages = {
+      {"DELETE FROM keyframe_chunk" + chunk, place},
+      {"UPDATE keyframe_chunk SET x = x + 100" + chunk, ""},
+      {"UPDATE keyframe_chunk SET lod = 1" + chunk, ""},
+      {"UPDATE keyframe_chunk SET seq = seq + 1" + chunk, ""},
+      {"UPDATE keyframe_chunk SET data = substr(data, 2)" + chunk, ""},
+      {"UPDATE keyframe SET seq = seq + 1 WHERE seq = " + std::to_string(first),
+       "keyframe seq=" + std::to_string(first + 1)}};
   for (const char* column : {"epoch", "digest0", "digest1", "checksum"}) {
     damages.push_back(
         {std::string("UPDATE keyframe_chunk SET ") + column + " = " + column + " + 1" + chunk, ""});
@@ -299,9 +306,9 @@ TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
   for (const Damage& damage : damages) {
     CAPTURE(damage.sql);
     const TempFolder copy;
-    std::filesystem::copy(
-        logged.folder.path(), copy.path(),
-        std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy(logged.folder.path(), copy.path(),
+                          std::filesystem::copy_options::recursive |
+                              std::filesystem::copy_options::overwrite_existing);
     REQUIRE(raw_sql(copy / "world.sqlite", damage.sql + "; SELECT changes()") == "1");
     auto store = *open_world(copy.path(), StoreAccess::read_only);
     const auto checked = store->check();
@@ -326,7 +333,8 @@ TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
   }
 }
 
-TEST_CASE("a world of format 2 has no keyframes until it is opened for writing", "[history][keyframe]") {
+TEST_CASE("a world of format 2 has no keyframes until it is opened for writing",
+          "[history][keyframe]") {
   Logged logged(11);
   const auto at_end = chunks_at(logged, kEdits);
   logged.store.reset();

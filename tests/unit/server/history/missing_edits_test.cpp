@@ -52,10 +52,12 @@ struct Log {
 
 }  // namespace
 
-TEST_CASE("the edits between two versions of a chunk are all that touch it, in order", "[history]") {
+TEST_CASE("the edits between two versions of a chunk are all that touch it, in order",
+          "[history]") {
   Log log;
   std::size_t looked = 0;
-  for (const ChunkKey key : {ChunkKey{0, {0, 0, 0}}, ChunkKey{0, {-1, 0, 1}}, ChunkKey{0, {1, 1, -1}}}) {
+  for (const ChunkKey key :
+       {ChunkKey{0, {0, 0, 0}}, ChunkKey{0, {-1, 0, 1}}, ChunkKey{0, {1, 1, -1}}}) {
     const auto all = log.of(key);
     REQUIRE(all.size() >= 4);
     const Version newest = all.back().version;
@@ -84,13 +86,15 @@ TEST_CASE("a version that is not in the log, or too far behind, gets no edits", 
   const auto all = log.of(key);
   const Version newest = all.back().version, held = all[all.size() / 2].version;
   REQUIRE(log.missing(key, newest, held).has_value());
-  CHECK_FALSE(log.missing(key, newest, {held.epoch + 5, held.seq}).has_value());  // of another epoch
+  CHECK_FALSE(
+      log.missing(key, newest, {held.epoch + 5, held.seq}).has_value());  // of another epoch
   for (const EditRecord& record : log.records) {  // an edit of the log, but not of this chunk
     const bool is_here = touches(record.edit, box_of(key.at, kSampleEdge));
     if (is_here || record.version.seq >= newest.seq) continue;
     CHECK_FALSE(log.missing(key, newest, record.version).has_value());
   }
-  CHECK_FALSE(log.missing(key, newest, held, 4).has_value());  // a snapshot of four bytes is shorter
+  CHECK_FALSE(
+      log.missing(key, newest, held, 4).has_value());  // a snapshot of four bytes is shorter
   // The log ends below what the chunk says: better a snapshot than too little.
   CHECK_FALSE(log.missing(key, {newest.epoch, kEdits + 1}, held).has_value());
 }

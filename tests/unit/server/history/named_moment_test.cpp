@@ -83,7 +83,8 @@ TEST_CASE("a moment means the last edit that is not later", "[history][moment]")
   auto records = sample_records(rng, 1, 1, 40);
   const TimeUs start = 1'700'000'000 * kSecond;
   for (EditRecord& record : records) {
-    record.time_us = start + static_cast<TimeUs>(record.version.seq / 2) * kSecond;  // two edits a second
+    record.time_us =
+        start + static_cast<TimeUs>(record.version.seq / 2) * kSecond;  // two edits a second
   }
   REQUIRE(store->append({}, records).has_value());
   const auto meant = [&](const NamedMoment& moment) {

@@ -44,7 +44,8 @@ struct History {
     store = *create_world(folder.path(), meta);
     generator = *make_generator(meta.generator, meta.materials);
     imported = sample_chunk(rng, {});
-    REQUIRE(store->save_base(std::vector<std::pair<ChunkKey, ChunkPtr>>{{kImported, imported}}).has_value());
+    REQUIRE(store->save_base(std::vector<std::pair<ChunkKey, ChunkPtr>>{{kImported, imported}})
+                .has_value());
     records = sample_records(rng, 1, 1, kEdits);
     for (EditRecord& record : records) {
       record.edit = random_edit_near(rng, {}, Extent::cube(kSampleEdge));
@@ -64,7 +65,8 @@ struct History {
 
   DenseChunk base_of(const ChunkKey& key) const {
     if (key == kImported) return DenseChunk::of(imported->voxels);
-    return DenseChunk::of(generator->generate(origin_of(key.at, kSampleEdge), Extent::cube(kSampleEdge)));
+    return DenseChunk::of(
+        generator->generate(origin_of(key.at, kSampleEdge), Extent::cube(kSampleEdge)));
   }
 };
 
@@ -110,8 +112,9 @@ void compare(const History& history, WorldAt& world, Sequence seq) {
   std::vector<ChunkKey> edited = world.edited();
   REQUIRE(std::is_sorted(edited.begin(), edited.end()));
   const auto all = watched();
-  std::erase_if(edited,
-                [&](const ChunkKey& key) { return std::find(all.begin(), all.end(), key) == all.end(); });
+  std::erase_if(edited, [&](const ChunkKey& key) {
+    return std::find(all.begin(), all.end(), key) == all.end();
+  });
   REQUIRE(edited == touched);
 }
 
@@ -176,7 +179,8 @@ TEST_CASE("a compacted log tells the moments from its head on", "[history]") {
     compare(history, world, seq);
   }
   CHECK(refusal(WorldAt::open(*history.store, *history.generator, kHead - 1)) ==
-        "begins at seq=51: the world at seq=49 was compacted away; the earliest left is that at seq=50");
+        "begins at seq=51: the world at seq=49 was compacted away; the earliest left is that at "
+        "seq=50");
 }
 
 TEST_CASE("a compaction beyond the moment is noticed, not mixed in", "[history]") {
@@ -219,7 +223,8 @@ TEST_CASE("reading the edits can be called off", "[history]") {
 TEST_CASE("a damaged edit is named, not left out", "[history][damage]") {
   History history(7);
   WorldAt world = history.at(5);
-  raw_sql(history.folder / "world.sqlite", "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 9");
+  raw_sql(history.folder / "world.sqlite",
+          "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 9");
   const auto advanced = world.advance(12);
   REQUIRE_FALSE(advanced.has_value());
   CHECK(advanced.error().where == "edit_log seq=9");

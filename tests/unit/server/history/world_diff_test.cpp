@@ -21,8 +21,8 @@ struct Counted {
 };
 
 /// Every chunk an edit may touch, every edit, every voxel: who changed it last, and does it differ?
-Counted count_densely(const std::vector<EditRecord>& records, const Generator& generator, Sequence from,
-                      Sequence to) {
+Counted count_densely(const std::vector<EditRecord>& records, const Generator& generator,
+                      Sequence from, Sequence to) {
   Counted counted;
   std::set<ChunkKey> keys;
   for (Sequence i = from; i < to; ++i) {
@@ -106,6 +106,7 @@ TEST_CASE("a difference of two moments is that of their voxels, each with its la
   }
   CHECK(diff_world(*store, *generator, 3, 2).error().what == "seq=3 is behind seq=2");
   CHECK(diff_world(*store, *generator, 3, 61).error().what == "ends at seq=60");
-  CHECK(diff_world(*store, *generator, 0, 60, [](Sequence, Sequence) { return false; }).error().kind ==
-        StoreError::Kind::cancelled);
+  CHECK(diff_world(*store, *generator, 0, 60, [](Sequence, Sequence) { return false; })
+            .error()
+            .kind == StoreError::Kind::cancelled);
 }

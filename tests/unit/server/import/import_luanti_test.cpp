@@ -25,7 +25,8 @@ const std::string kWorld = std::string(RUNSTONE_SOURCE_DIR) + "/tests/data/luant
 void each_block(const std::string& folder,
                 const std::function<void(ChunkCoord, const std::vector<std::string>&)>& f) {
   sqlite3* db = nullptr;
-  REQUIRE(sqlite3_open_v2((folder + "/map.sqlite").c_str(), &db, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK);
+  REQUIRE(sqlite3_open_v2((folder + "/map.sqlite").c_str(), &db, SQLITE_OPEN_READONLY, nullptr) ==
+          SQLITE_OK);
   sqlite3_stmt* rows = nullptr;
   REQUIRE(sqlite3_prepare_v2(db, "SELECT pos, data FROM blocks", -1, &rows, nullptr) == SQLITE_OK);
   while (sqlite3_step(rows) == SQLITE_ROW) {
@@ -59,24 +60,25 @@ Imported import(const std::string& folder, std::int32_t edge, bool keep_all = fa
   out.edge = edge;
   int tables = 0;
   std::uint64_t last_done = 0, last_total = 0;
-  const LuantiImportSink sink{[&](const MaterialTable& table) {
-                                ++tables;
-                                CHECK(out.chunks.empty());
-                                CHECK(table.size() > 1);
-                              },
-                              [&](const ChunkKey& key, RunChunk&& chunk) {
-                                REQUIRE(validate(chunk).has_value());
-                                REQUIRE(chunk.extent == Extent::cube(static_cast<unsigned>(edge)));
-                                CHECK_FALSE((chunk.is_uniform() && chunk.runs.material(0) == kEmpty));
-                                REQUIRE(out.chunks.emplace(key, std::move(chunk)).second);
-                                return true;
-                              },
-                              [&](std::uint64_t done, std::uint64_t total) {
-                                CHECK(done >= last_done);
-                                CHECK(done <= total);
-                                last_done = done;
-                                last_total = total;
-                              }};
+  const LuantiImportSink sink{
+      [&](const MaterialTable& table) {
+        ++tables;
+        CHECK(out.chunks.empty());
+        CHECK(table.size() > 1);
+      },
+      [&](const ChunkKey& key, RunChunk&& chunk) {
+        REQUIRE(validate(chunk).has_value());
+        REQUIRE(chunk.extent == Extent::cube(static_cast<unsigned>(edge)));
+        CHECK_FALSE((chunk.is_uniform() && chunk.runs.material(0) == kEmpty));
+        REQUIRE(out.chunks.emplace(key, std::move(chunk)).second);
+        return true;
+      },
+      [&](std::uint64_t done, std::uint64_t total) {
+        CHECK(done >= last_done);
+        CHECK(done <= total);
+        last_done = done;
+        last_total = total;
+      }};
   auto report = import_luanti(folder, {edge, keep_all}, sink);
   REQUIRE(report.has_value());
   CHECK(tables == 1);
@@ -98,8 +100,8 @@ std::uint64_t wrong_voxels(const Imported& world, const std::string& folder, boo
     if (known != ids.end()) return known->second;
     // By its kind, what is thin has no voxel; said here in this test's own words.
     bool there = name != "air" && name != "ignore";
-    for (const char* thin :
-         {"default:grass_", "default:dry_grass_", "default:marram_grass_", "flowers:", "farming:"}) {
+    for (const char* thin : {"default:grass_", "default:dry_grass_", "default:marram_grass_",
+                             "flowers:", "farming:"}) {
       if (name.starts_with(thin)) there = there && keep_all;
     }
     const Material id = there ? table.find(name).value_or(0xffff) : kEmpty;
@@ -178,10 +180,14 @@ TEST_CASE("damaged blocks are listed and left empty, and the rest is whole", "[s
   const TempFolder folder;
   copy_world(folder);
   const ChunkCoord cut{0, 0, 0}, old{-4, -2, -4}, noise{3, 1, 2};
-  const auto where = [](ChunkCoord at) { return " WHERE pos = " + std::to_string(luanti_block_pos(at)); };
-  raw_sql(folder / "map.sqlite", "UPDATE blocks SET data = substr(data, 1, length(data) - 1)" + where(cut));
+  const auto where = [](ChunkCoord at) {
+    return " WHERE pos = " + std::to_string(luanti_block_pos(at));
+  };
+  raw_sql(folder / "map.sqlite",
+          "UPDATE blocks SET data = substr(data, 1, length(data) - 1)" + where(cut));
   raw_sql(folder / "map.sqlite", "UPDATE blocks SET data = x'1c' || substr(data, 2)" + where(old));
-  raw_sql(folder / "map.sqlite", "UPDATE blocks SET data = x'1d00112233445566778899'" + where(noise));
+  raw_sql(folder / "map.sqlite",
+          "UPDATE blocks SET data = x'1d00112233445566778899'" + where(noise));
   raw_sql(folder / "map.sqlite", "INSERT INTO blocks VALUES ((1 << 40) + 1, x'1d')");
 
   const Imported world = import(folder.path(), 32);
@@ -201,17 +207,17 @@ TEST_CASE("damaged blocks are listed and left empty, and the rest is whole", "[s
 TEST_CASE("a map with columns x, y and z imports like one with pos", "[server][import]") {
   const TempFolder folder;
   copy_world(folder);
-  REQUIRE(
-      raw_sql(
-          folder / "map.sqlite",
-          "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, data BLOB NOT NULL, "
-          "PRIMARY KEY(x, z, y))") == "");
+  REQUIRE(raw_sql(folder / "map.sqlite",
+                  "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, data "
+                  "BLOB NOT NULL, "
+                  "PRIMARY KEY(x, z, y))") == "");
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open((folder / "map.sqlite").c_str(), &db) == SQLITE_OK);
   sqlite3_exec(db, "BEGIN", nullptr, nullptr, nullptr);
   for (std::int32_t i = 0; i < 8 * 6 * 8; ++i) {
     const ChunkCoord at{i % 8 - 4, i / 8 % 6 - 2, i / 48 - 4};
-    const std::string row = std::to_string(at.x) + "," + std::to_string(at.y) + "," + std::to_string(at.z);
+    const std::string row =
+        std::to_string(at.x) + "," + std::to_string(at.y) + "," + std::to_string(at.z);
     const std::string sql = "INSERT INTO blocks SELECT " + row +
                             ", data FROM old WHERE pos = " + std::to_string(luanti_block_pos(at));
     REQUIRE(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);

@@ -80,8 +80,9 @@ TEST_CASE("wanted chunks come nearest first, with ties by key", "[interest]") {
   }));
 }
 
-TEST_CASE("what surrounds the viewer comes first, then what lies in the cone of sight, then the rest",
-          "[interest]") {
+TEST_CASE(
+    "what surrounds the viewer comes first, then what lies in the cone of sight, then the rest",
+    "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
   View view{{0, 0, 0}, 6, 2};
@@ -112,11 +113,13 @@ TEST_CASE("what surrounds the viewer comes first, then what lies in the cone of 
   }));
 }
 
-TEST_CASE("who only turns changes the order of what is wanted, and nothing is sent again", "[interest]") {
+TEST_CASE("who only turns changes the order of what is wanted, and nothing is sent again",
+          "[interest]") {
   SessionInterest interest(kLimit);
   View view{{0, 0, 0}, 12, 4};
   interest.set_view(view);
-  for (int i = 0; i < 500; ++i) interest.set_state(*interest.nearest_wanted(), ChunkInterest::subscribed);
+  for (int i = 0; i < 500; ++i)
+    interest.set_state(*interest.nearest_wanted(), ChunkInterest::subscribed);
   const std::size_t wanted = cells_by_trying(view, kLimit).size() - 500;
   view.yaw = 16'384;  // along +x
   view.cone = 4'096;
@@ -134,12 +137,14 @@ TEST_CASE("a step costs what it changes and what still waits, not the view", "[i
   SessionInterest interest(kLimit);
   constexpr std::uint8_t kRadius = 16;
   interest.set_view({{0, 0, 0}, kRadius, kRadius});
-  while (const auto key = interest.nearest_wanted()) interest.set_state(*key, ChunkInterest::subscribed);
+  while (const auto key = interest.nearest_wanted())
+    interest.set_state(*key, ChunkInterest::subscribed);
   const std::size_t all = interest.chunks().size();
   const auto moved = interest.set_view({{1, 0, 0}, kRadius, kRadius});
   CHECK(moved.steps == moved.entered + moved.left.size());
   CHECK(moved.steps < all / 10);
-  while (const auto key = interest.nearest_wanted()) interest.set_state(*key, ChunkInterest::subscribed);
+  while (const auto key = interest.nearest_wanted())
+    interest.set_state(*key, ChunkInterest::subscribed);
   CHECK(interest.set_view({{1, 0, 0}, kRadius, kRadius}).steps == 0);
 }
 
@@ -147,7 +152,8 @@ TEST_CASE("a moved view wants only the new shell and releases what it left", "[i
   Interest interest(kLimit);
   interest.open(1);
   interest.set_view(1, {{0, 0, 0}, 8, 2});
-  while (const auto key = interest.nearest_wanted(1)) interest.set_state(1, *key, ChunkInterest::subscribed);
+  while (const auto key = interest.nearest_wanted(1))
+    interest.set_state(1, *key, ChunkInterest::subscribed);
   const std::size_t all = interest.find(1)->chunks().size();
   CHECK(interest.take_released().empty());
 
@@ -175,12 +181,13 @@ TEST_CASE("subscribers of a chunk are those who got it, until they leave", "[int
   const ChunkKey key = key_of(0, 1, 0);
   interest.set_state(7, key, ChunkInterest::subscribed);
   interest.set_state(3, key, ChunkInterest::waiting);
-  CHECK(std::vector<SessionId>(interest.subscribers(key).begin(), interest.subscribers(key).end()) ==
-        std::vector<SessionId>{7});
+  CHECK(std::vector<SessionId>(interest.subscribers(key).begin(),
+                               interest.subscribers(key).end()) == std::vector<SessionId>{7});
   CHECK(interest.waiting(key) == std::vector<SessionId>{3});
   interest.set_state(3, key, ChunkInterest::subscribed);
-  CHECK(std::vector<SessionId>(interest.subscribers(key).begin(), interest.subscribers(key).end()) ==
-        std::vector<SessionId>{3, 7});  // ascending, not as they came
+  CHECK(
+      std::vector<SessionId>(interest.subscribers(key).begin(), interest.subscribers(key).end()) ==
+      std::vector<SessionId>{3, 7});  // ascending, not as they came
   CHECK(interest.waiting(key).empty());
   CHECK_FALSE(interest.set_state(5, key_of(9, 9, 9), ChunkInterest::subscribed));
 
@@ -248,7 +255,9 @@ TEST_CASE("random views and states keep users and states in step", "[interest][p
             const auto state = interest.find(s)->state(key);
             REQUIRE(state.has_value() == (view && view->contains(key.at)));
             if (state != ChunkInterest::wanted) continue;
-            const auto rank = [&](const ChunkKey& k) { return std::pair(distance2(*view, k.at), k); };
+            const auto rank = [&](const ChunkKey& k) {
+              return std::pair(distance2(*view, k.at), k);
+            };
             if (!expected || rank(key) < rank(*expected)) expected = key;
           }
         }

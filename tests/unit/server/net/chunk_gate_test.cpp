@@ -22,14 +22,16 @@ std::uint64_t send_for(ChunkGate& gate, TimeUs from_us, TimeUs span_us) {
   return bytes;
 }
 
-TEST_CASE("without budgets and without words of the client, TCP alone holds terrain back", "[net]") {
+TEST_CASE("without budgets and without words of the client, TCP alone holds terrain back",
+          "[net]") {
   ByteBudget none(0);
   ChunkGate gate(0, none);
   CHECK(gate.open(0) == kFragmentBytesMax);
   CHECK(send_for(gate, 0, 1'000) > 1'000'000'000);
 }
 
-TEST_CASE("terrain takes what room there is in the socket, and costs no turn where there is none", "[net]") {
+TEST_CASE("terrain takes what room there is in the socket, and costs no turn where there is none",
+          "[net]") {
   ByteBudget none(0);
   ChunkGate gate(1'000'000, none);
   for (TimeUs now_us = 0; now_us < 10'000'000; now_us += 1'000) {
@@ -53,7 +55,8 @@ TEST_CASE("a session sends no more terrain than its budget, and nearly all of it
   CHECK(gate.open(next_us) > 0);
 }
 
-TEST_CASE("edits do not wait for a budget, but their bytes count, and terrain still goes", "[net]") {
+TEST_CASE("edits do not wait for a budget, but their bytes count, and terrain still goes",
+          "[net]") {
   ByteBudget none(0);
   ChunkGate gate(1'000'000, none);
   std::uint64_t chunks = 0;
@@ -70,8 +73,9 @@ TEST_CASE("edits do not wait for a budget, but their bytes count, and terrain st
   CHECK(chunks >= 4'500'000 + 30 * kFrame);
 }
 
-TEST_CASE("the server's budget is shared fairly by those who have terrain, and idle ones leave no gap",
-          "[net]") {
+TEST_CASE(
+    "the server's budget is shared fairly by those who have terrain, and idle ones leave no gap",
+    "[net]") {
   ByteBudget all(3'000'000);
   std::deque<ChunkGate> gates;
   for (int i = 0; i < 10; ++i) gates.emplace_back(0, all);
@@ -94,7 +98,8 @@ TEST_CASE("the server's budget is shared fairly by those who have terrain, and i
   CHECK(bytes[1] >= 14'000'000);
 }
 
-TEST_CASE("a session whose link is slow gets its share of the server's budget all the same", "[net]") {
+TEST_CASE("a session whose link is slow gets its share of the server's budget all the same",
+          "[net]") {
   ByteBudget all(1'000'000);
   ChunkGate fast(0, all), slow(0, all);
   slow.pace();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/net/read_report.hpp"
+#include "client/net/receive_ack_scheduler.hpp"
 #include "common/core/hash.hpp"
 
 namespace runstone {
@@ -18,8 +18,9 @@ struct Profile {
   TimeUs round_trip_us, jitter_us;
   std::uint64_t bytes_per_second;
 };
-constexpr Profile kProfiles[] = {
-    {"lan", 400, 0, 125'000'000}, {"broadband", 40'000, 0, 6'250'000}, {"mobile", 120'000, 20'000, 625'000}};
+constexpr Profile kProfiles[] = {{"lan", 400, 0, 125'000'000},
+                                 {"broadband", 40'000, 0, 6'250'000},
+                                 {"mobile", 120'000, 20'000, 625'000}};
 
 /// One direction: a transmitter before an endless queue, then a delay that never reorders.
 struct Way {
@@ -53,14 +54,16 @@ struct Run {
     std::uint64_t order;
     enum class Kind { arrives, told, report, edit, wake, tcp_ack } kind;
     std::uint64_t value;
-    bool operator>(const Event& o) const { return at_us != o.at_us ? at_us > o.at_us : order > o.order; }
+    bool operator>(const Event& o) const {
+      return at_us != o.at_us ? at_us > o.at_us : order > o.order;
+    }
   };
 
   const Profile& profile;
   SplitMix64 random;
   Way down{profile, random}, up{profile, random};
   ChunkPace pace;
-  ReadReport report;
+  ReceiveAckScheduler report;
   bool is_telling = true, has_terrain = true;
   TimeUs now_us = 0;
   std::uint64_t order = 0, read = 0;
@@ -90,7 +93,8 @@ struct Run {
     in_flight_max = std::max(in_flight_max, pace.in_flight());
   }
   void let_tcp_send() {
-    while (!tcp_waiting.empty() && (tcp_window == 0 || tcp_in_flight + tcp_waiting.front() <= tcp_window)) {
+    while (!tcp_waiting.empty() &&
+           (tcp_window == 0 || tcp_in_flight + tcp_waiting.front() <= tcp_window)) {
       const std::size_t packet = tcp_waiting.front();
       tcp_waiting.pop_front();
       tcp_in_flight += packet;
@@ -159,7 +163,8 @@ struct Run {
     }
     now_us = until_us;
     Outcome out;
-    const double could = static_cast<double>(profile.bytes_per_second) * static_cast<double>(until_us) / 1e6;
+    const double could =
+        static_cast<double>(profile.bytes_per_second) * static_cast<double>(until_us) / 1e6;
     out.used = static_cast<double>(read) * 1'500 / 1'448 / could;
     std::sort(edits_us.begin(), edits_us.end());
     out.p50_us = edits_us[edits_us.size() / 2];
@@ -175,8 +180,10 @@ TEST_CASE("an edit waits little behind terrain, and terrain still uses the link"
     for (unsigned seed = 1; seed <= seeds; ++seed) {
       Run run(profile, seed);
       const Outcome out = run.run(30'000'000);
-      const auto fragment_us = static_cast<TimeUs>(kFragmentBytesMax * 1'000'000 / profile.bytes_per_second);
-      const TimeUs allowed_us = profile.round_trip_us + 2 * profile.jitter_us + 2 * fragment_us + 10'000;
+      const auto fragment_us =
+          static_cast<TimeUs>(kFragmentBytesMax * 1'000'000 / profile.bytes_per_second);
+      const TimeUs allowed_us =
+          profile.round_trip_us + 2 * profile.jitter_us + 2 * fragment_us + 10'000;
       CAPTURE(profile.name, seed, out.used, out.p50_us, out.p99_us, allowed_us);
       CHECK(out.used >= 0.85);
       CHECK(out.p99_us <= allowed_us);
@@ -203,7 +210,8 @@ TEST_CASE("a link that becomes slower or faster is followed", "[net][pace]") {
   run.run(10'000'000);
   run.edits_us.clear();
   const Outcome slower = run.run(15'000'000);
-  const auto fragment_us = static_cast<TimeUs>(kFragmentBytesMax * 1'000'000 / profile.bytes_per_second);
+  const auto fragment_us =
+      static_cast<TimeUs>(kFragmentBytesMax * 1'000'000 / profile.bytes_per_second);
   CHECK(slower.p99_us <= profile.round_trip_us + 2 * fragment_us + 10'000);
   profile.bytes_per_second = 6'250'000;
   run.run(25'000'000);
@@ -236,7 +244,8 @@ TEST_CASE("a client that stops telling is held at what was under way", "[net][pa
   CHECK(run.pace.in_flight() - held <= 11 * (kFragmentBytesMax + kFrameHeaderBytes));
 }
 
-TEST_CASE("words about bytes that were never sent, or fewer than before, are errors", "[net][pace]") {
+TEST_CASE("words about bytes that were never sent, or fewer than before, are errors",
+          "[net][pace]") {
   ChunkPace pace;
   CHECK_FALSE(pace.acked(1, 0).has_value());
   pace.sent(1'000, 10);
@@ -261,7 +270,8 @@ TEST_CASE("a client that claims all at once makes no number overflow", "[net][pa
   CHECK(pace.in_flight() == 0);
 }
 
-TEST_CASE("what was sent while there was little to send does not make the link look slow", "[net][pace]") {
+TEST_CASE("what was sent while there was little to send does not make the link look slow",
+          "[net][pace]") {
   const Profile profile{"pauses", 40'000, 0, 6'250'000};
   Run run(profile, 6);
   run.run(5'000'000);

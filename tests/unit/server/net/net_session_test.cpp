@@ -86,8 +86,8 @@ struct Bench {
     auto fed = std::make_unique<FedStream>(io, std::move(received));
     fed->room_now = room;
     stream = fed.get();
-    session = std::make_shared<NetSession>(SessionId{1}, io, std::move(fed), limits, std::uint16_t{32},
-                                           budget, world, counters);
+    session = std::make_shared<NetSession>(SessionId{1}, io, std::move(fed), limits,
+                                           std::uint16_t{32}, budget, world, counters);
     session->start();
     io.poll();
   }
@@ -155,14 +155,16 @@ TEST_CASE("a session waits with few messages for the world: of large ones fewer 
   CHECK(bench.world.most <= in_bound + in_read);
 }
 
-TEST_CASE("where the socket has no room edits go, and terrain waits and asks ever more seldom", "[net]") {
+TEST_CASE("where the socket has no room edits go, and terrain waits and asks ever more seldom",
+          "[net]") {
   Bench bench({}, {0, 1'000});
   bench.fill_chunk(5'000);
   bench.edit(100);
   CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
   // The last pauses alone are 4, 8, 16 and 32 ms: a slow machine makes them longer, and none makes them shorter.
   const auto began = std::chrono::steady_clock::now();
-  for (const std::size_t asked = bench.stream->asked; bench.stream->asked < asked + 5;) bench.io.run_one();
+  for (const std::size_t asked = bench.stream->asked; bench.stream->asked < asked + 5;)
+    bench.io.run_one();
   CHECK(std::chrono::steady_clock::now() - began >= std::chrono::milliseconds(50));
   CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
   bench.stream->room_now = {2'000, 0};

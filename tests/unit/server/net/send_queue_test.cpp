@@ -62,7 +62,8 @@ TEST_CASE("each class holds so many messages, however small they are", "[net]") 
   few.control_count = 3;
   few.edit_count = 5;
   SendQueue queue(few);
-  for (const auto& [c, count] : {std::pair{FrameClass::control, 3}, std::pair{FrameClass::edits, 5}}) {
+  for (const auto& [c, count] :
+       {std::pair{FrameClass::control, 3}, std::pair{FrameClass::edits, 5}}) {
     for (int i = 0; i < count; ++i) CHECK(queue.push(message(c, 8)));
     CHECK_FALSE(queue.push(message(c, 8)));
   }
@@ -149,7 +150,8 @@ TEST_CASE("terrain and control are not starved by edits without end", "[net]") {
   CHECK(chunks + control <= all / 2);  // and edits still come first
 }
 
-TEST_CASE("snapshots outside of the view are not sent any more, but for one that has begun", "[net]") {
+TEST_CASE("snapshots outside of the view are not sent any more, but for one that has begun",
+          "[net]") {
   SendQueue queue(limits());
   const auto key = [](std::int32_t x) { return ChunkKey{0, {x, 0, 0}}; };
   const auto begun = queue.reserve_chunk(key(50));

@@ -44,7 +44,8 @@ struct Connection {
 
 }  // namespace
 
-TEST_CASE("there is room in a connection's first window, and none when more waits than fits", "[net]") {
+TEST_CASE("there is room in a connection's first window, and none when more waits than fits",
+          "[net]") {
   Connection connection;
   const int socket = connection.server.native_handle();
   const std::size_t first = tcp_room(socket).bytes;
@@ -57,4 +58,6 @@ TEST_CASE("there is room in a connection's first window, and none when more wait
   CHECK(tcp_room(socket).round_trip_us > 0);
 }
 
-TEST_CASE("what is no TCP socket has room for everything", "[net]") { CHECK(tcp_room(-1).bytes == SIZE_MAX); }
+TEST_CASE("what is no TCP socket has room for everything", "[net]") {
+  CHECK(tcp_room(-1).bytes == SIZE_MAX);
+}

@@ -78,7 +78,8 @@ TEST_CASE("a camera path that is wrong says in which line and how", "[server]") 
         "path.txt:3: the moment is not after that of the station before");
   CHECK(refused("10 0 0 0 0 0\n0.5% 0 0 0 0 0").find("path.txt:2: the moment is not after") == 0);
   std::string many;
-  for (std::size_t i = 0; i <= CameraPath::kStationsMax; ++i) many += std::to_string(i) + " 0 0 0 0 0\n";
+  for (std::size_t i = 0; i <= CameraPath::kStationsMax; ++i)
+    many += std::to_string(i) + " 0 0 0 0 0\n";
   CHECK(refused(many) == "path.txt:10001: more than 10000 stations");
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 DigestList sample_list() {
   DigestList list;
-  for (std::size_t i = 0; i < list.world_id.size(); ++i) list.world_id[i] = static_cast<std::uint8_t>(17 * i);
+  for (std::size_t i = 0; i < list.world_id.size(); ++i)
+    list.world_id[i] = static_cast<std::uint8_t>(17 * i);
   list.seq = 9120;
   list.chunks = {{{0, {1, 0, -3}}, {2, 9120}, {{0x1234, 0x1ffffffffffffffe}}},
                  {{0, {-2, 5, 7}}, {1, 3}, {{1, 2}}}};
@@ -70,7 +71,8 @@ TEST_CASE("the extremes of every field survive a round trip", "[store][digest-li
   CHECK(parse_digests_json(to_json(DigestList{}), "").has_value());
 }
 
-TEST_CASE("every truncation of a digest list and every extra byte is refused", "[store][digest-list]") {
+TEST_CASE("every truncation of a digest list and every extra byte is refused",
+          "[store][digest-list]") {
   const std::string json = kGolden;
   for (std::size_t length = 0; length + 1 < json.size(); ++length) {
     CAPTURE(length);
@@ -94,19 +96,22 @@ TEST_CASE("a wrong field of a digest list is named", "[store][digest-list]") {
   CHECK(key_of_error(with("\"x\":-2", "\"x\":-2147483649")) == "chunks[0]");
   CHECK(key_of_error(with("\"epoch\":1", "\"epoch\":4294967296")) == "chunks[0]");
   CHECK(key_of_error(with("\"epoch\":1", "\"epoch\":null")) == "chunks[0]");
-  CHECK(key_of_error(with("1ffffffffffffffe", "1fffffffffffffff")) == "chunks[1]");  // not below the prime
+  CHECK(key_of_error(with("1ffffffffffffffe", "1fffffffffffffff")) ==
+        "chunks[1]");  // not below the prime
   CHECK(key_of_error(with("1ffffffffffffffe", "1FFFFFFFFFFFFFFE")) == "chunks[1]");
   CHECK(key_of_error(with("0002\"", "002\"")) == "chunks[0]");
 }
 
-TEST_CASE("a digest list file is replaced whole and other keys in it are ignored", "[store][digest-list]") {
+TEST_CASE("a digest list file is replaced whole and other keys in it are ignored",
+          "[store][digest-list]") {
   const TempFolder folder;
   const std::string file = folder / "list.json";
   REQUIRE(write_digests_json(file, DigestList{}).has_value());
   REQUIRE(write_digests_json(file, sample_list()).has_value());
   CHECK(same(*read_digests_json(file), sample_list()));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
-  REQUIRE(write_text_file(file, with("{\"world_id\"", "{\"more\":[1,{}],\"world_id\"")).has_value());
+  REQUIRE(
+      write_text_file(file, with("{\"world_id\"", "{\"more\":[1,{}],\"world_id\"")).has_value());
   CHECK(same(*read_digests_json(file), sample_list()));
   CHECK(read_digests_json(folder / "missing.json").error().message() ==
         folder / "missing.json: cannot be read");

@@ -23,7 +23,8 @@ TEST_CASE("a log is played into a server at a speed", "[server][replay]") {
   CHECK(plain.options->speed == "1");
   for (const char* speed : {"0", "max", "2.5", "1000000"}) {
     CAPTURE(speed);
-    const auto parsed = parse({"--into", "localhost:4747", "--speed", speed, "--at", "7", "--bot", "./bot"});
+    const auto parsed =
+        parse({"--into", "localhost:4747", "--speed", speed, "--at", "7", "--bot", "./bot"});
     REQUIRE(parsed.options.has_value());
     CHECK(parsed.options->speed == speed);
     CHECK(parsed.options->bot == "./bot");

@@ -30,7 +30,9 @@ struct Grown {
     store = *create_world(folder.path(), meta);
     generator = *make_generator(meta.generator, meta.materials);
     if (imports) {
-      REQUIRE(store->save_base(std::vector<std::pair<ChunkKey, ChunkPtr>>{{kImported, sample_chunk(rng, {})}})
+      REQUIRE(store
+                  ->save_base(std::vector<std::pair<ChunkKey, ChunkPtr>>{
+                      {kImported, sample_chunk(rng, {})}})
                   .has_value());
     }
     records = sample_records(rng, 1, 1, kEdits);
@@ -102,11 +104,12 @@ TEST_CASE("the stage holds all edits and the ground around them", "[server]") {
   VoxelBox edits;
   for (const EditRecord& record : grown.records) {
     const VoxelBox box = bounding_box(record.edit);
-    edits = edits.empty() ? box
-                          : VoxelBox{{std::min(edits.min.x, box.min.x), std::min(edits.min.y, box.min.y),
-                                      std::min(edits.min.z, box.min.z)},
-                                     {std::max(edits.max.x, box.max.x), std::max(edits.max.y, box.max.y),
-                                      std::max(edits.max.z, box.max.z)}};
+    edits = edits.empty()
+                ? box
+                : VoxelBox{{std::min(edits.min.x, box.min.x), std::min(edits.min.y, box.min.y),
+                            std::min(edits.min.z, box.min.z)},
+                           {std::max(edits.max.x, box.max.x), std::max(edits.max.y, box.max.y),
+                            std::max(edits.max.z, box.max.z)}};
   }
   CHECK(narrow.edited() == edits);
   CHECK(intersect(narrow.stage(), edits) == edits);

@@ -65,7 +65,8 @@ struct JobBench {
 
 }  // namespace
 
-TEST_CASE("a job whose slice has more edits than the log has room for writes it in parts", "[rollback]") {
+TEST_CASE("a job whose slice has more edits than the log has room for writes it in parts",
+          "[rollback]") {
   const auto room = static_cast<std::size_t>(GENERATE(1, 2, 3, 5, 9));
   CAPTURE(room);
   JobBench b;
@@ -98,7 +99,8 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   }
 }
 
-TEST_CASE("the rest of a chunk is planned again if somebody built there between two parts", "[rollback]") {
+TEST_CASE("the rest of a chunk is planned again if somebody built there between two parts",
+          "[rollback]") {
   JobBench b;
   b.bench.ports.log_records_max = 2;
   b.plan_all(3);
@@ -172,7 +174,8 @@ TEST_CASE("an edit dearer than the bucket is paid with a full one", "[rollback]"
   CHECK(b.job.state() == RestoreJob::State::done);
 }
 
-TEST_CASE("a client that takes a job's client sequences ends the job, not the server", "[rollback]") {
+TEST_CASE("a client that takes a job's client sequences ends the job, not the server",
+          "[rollback]") {
   JobBench b(1);
   b.bench.ports.log_records_max = 2;
   b.plan_all(2);

@@ -33,8 +33,9 @@ std::vector<EditRecord> some_records(SplitMix64& rng, std::size_t count) {
 }
 
 bool answers(const SelectionFilter& filter, const EditRecord& record) {
-  const bool by_author = filter.authors.empty() ||
-                         std::count(filter.authors.begin(), filter.authors.end(), record.op.author) != 0;
+  const bool by_author =
+      filter.authors.empty() ||
+      std::count(filter.authors.begin(), filter.authors.end(), record.op.author) != 0;
   return by_author && record.time_us >= filter.from_us && record.time_us <= filter.until_us &&
          (!filter.cause || *filter.cause == record.cause);
 }
@@ -51,8 +52,8 @@ SelectionFilter random_filter(SplitMix64& rng, const std::vector<EditRecord>& re
   if (rng.below(3) == 0) filter.cause = Cause::player;
   if (rng.below(2) == 0) {
     const VoxelPos min{rng.between(-8, 24), rng.between(-8, 24), rng.between(-8, 24)};
-    filter.box =
-        VoxelBox{min, {min.x + rng.between(1, 30), min.y + rng.between(1, 30), min.z + rng.between(1, 30)}};
+    filter.box = VoxelBox{
+        min, {min.x + rng.between(1, 30), min.y + rng.between(1, 30), min.z + rng.between(1, 30)}};
   }
   return filter;
 }
@@ -65,7 +66,8 @@ struct World {
     REQUIRE(store->raise_epoch().has_value());
     records = some_records(rng, 20 + rng.below(60));
     std::vector<PlayerRow> players;
-    for (AuthorId author = 1; author <= kAuthors; ++author) players.push_back(sample_player(author));
+    for (AuthorId author = 1; author <= kAuthors; ++author)
+      players.push_back(sample_player(author));
     REQUIRE(store->append(players, records).has_value());
     pin.name = "empty";
     generator = *make_generator(pin, meta.materials);
@@ -83,7 +85,8 @@ struct World {
       if (rng.below(2) == 0) continue;
       auto chunk = chunk_past(*store, *generator, key, at, scratch);
       REQUIRE(chunk.has_value());
-      if (chunk->version.seq != 0) chunks.emplace_back(key, std::make_shared<const Chunk>(*std::move(chunk)));
+      if (chunk->version.seq != 0)
+        chunks.emplace_back(key, std::make_shared<const Chunk>(*std::move(chunk)));
     }
     REQUIRE(store->save_snapshots(chunks, std::nullopt).has_value());
     // And others as keyframes keep them, several of one chunk.
@@ -140,7 +143,8 @@ std::pair<DenseChunk, DenseChunk> by_history(const World& world, const ChunkKey&
   return {now, restored};
 }
 
-DenseChunk pasted(const RunChunk& onto, VoxelPos origin, const std::vector<EditDescriptor>& pastes) {
+DenseChunk pasted(const RunChunk& onto, VoxelPos origin,
+                  const std::vector<EditDescriptor>& pastes) {
   DenseChunk out = DenseChunk::of(onto);
   oracle_apply(out, origin, pastes);
   return out;

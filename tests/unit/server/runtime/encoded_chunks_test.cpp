@@ -79,7 +79,8 @@ TEST_CASE("threads that want a chunk at once wait for the one that encodes it", 
   std::vector<std::thread> threads;
   for (auto& mine : got) {
     threads.emplace_back([&] {
-      for (const ChunkPtr& chunk : some) mine.push_back(chunks.snapshot(kKey, chunk, ChunkEncoding::coded));
+      for (const ChunkPtr& chunk : some)
+        mine.push_back(chunks.snapshot(kKey, chunk, ChunkEncoding::coded));
     });
   }
   for (std::thread& thread : threads) thread.join();

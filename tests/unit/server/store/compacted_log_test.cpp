@@ -54,14 +54,18 @@ TEST_CASE("a log that was compacted to its end does not begin at 1 again", "[sto
   CHECK(*store->last_sequence() == 7);
   CHECK(*store->checkpoint() == 7);
   std::size_t read = 0;
-  REQUIRE(store->read_log(1, kSequenceMax, [&](const EditRecord&) { return ++read > 0; }).has_value());
+  REQUIRE(
+      store->read_log(1, kSequenceMax, [&](const EditRecord&) { return ++read > 0; }).has_value());
   CHECK(read == 0);
   REQUIRE(*store->raise_epoch() == 2);
-  CHECK(store->append({}, sample_records(rng, 2, 1, 1)).error().kind == StoreError::Kind::bad_request);
+  CHECK(store->append({}, sample_records(rng, 2, 1, 1)).error().kind ==
+        StoreError::Kind::bad_request);
   const auto more = sample_records(rng, 2, 8, 3);
   REQUIRE(store->append({}, more).has_value());
   CHECK(*store->log_range() == LogRange{8, end_of(more.back())});
-  REQUIRE(store->read_log(1, kSequenceMax, [&](const EditRecord& record) { return record == more[read++]; })
+  REQUIRE(store
+              ->read_log(1, kSequenceMax,
+                         [&](const EditRecord& record) { return record == more[read++]; })
               .has_value());
   CHECK(read == 3);
   const std::vector<std::pair<ChunkKey, ChunkPtr>> late = {{{0, {8, 8, 8}}, sample_chunk(rng, {})}};
@@ -143,6 +147,7 @@ TEST_CASE("base chunks that hold edits of the log, and a head beyond the checkpo
     return checked ? "" : checked.error().where + " " + checked.error().what;
   };
   CHECK(verdict({1, 7}, {{1, 7}, 5}).empty());
-  CHECK(verdict({1, 8}, {{1, 7}, 5}) == "base chunk=1,0,-3 holds edits that are in the log as well");
+  CHECK(verdict({1, 8}, {{1, 7}, 5}) ==
+        "base chunk=1,0,-3 holds edits that are in the log as well");
   CHECK(verdict({1, 7}, {{1, 9}, 5}) == "edit_log begins at seq=10, behind the checkpoint seq=7");
 }

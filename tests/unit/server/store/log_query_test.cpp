@@ -31,7 +31,7 @@ std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
   return records;
 }
 
-/// Commits of 1 to 40 records, three openings.
+/// Commits of 1 to 40 records, three connect_count.
 void make_world(const std::string& folder, std::vector<EditRecord>& records, SplitMix64& rng) {
   REQUIRE(create_world(folder, sample_meta()).has_value());
   std::size_t done = 0;
@@ -67,9 +67,10 @@ LogQuery random_query(SplitMix64& rng, const std::vector<EditRecord>& records) {
   if (rng.below(3) == 0) query.until_us = any().time_us + rng.between(-1, 1);
   if (rng.below(2) == 0) {
     const VoxelPos at = bounding_box(any().edit).min;
-    const VoxelPos min{at.x + rng.between(-9, 9), at.y + rng.between(-9, 9), at.z + rng.between(-9, 9)};
-    query.box =
-        VoxelBox{min, {min.x + rng.between(1, 30), min.y + rng.between(1, 30), min.z + rng.between(1, 30)}};
+    const VoxelPos min{at.x + rng.between(-9, 9), at.y + rng.between(-9, 9),
+                       at.z + rng.between(-9, 9)};
+    query.box = VoxelBox{
+        min, {min.x + rng.between(1, 30), min.y + rng.between(1, 30), min.z + rng.between(1, 30)}};
   }
   if (rng.below(4) == 0) query.cause = static_cast<Cause>(rng.below(kCauseMax + 1));
   if (rng.below(4) == 0) query.first = any().version.seq;
@@ -88,7 +89,8 @@ std::vector<EditRecord> ask(Store& store, const LogQuery& query) {
 }
 
 /// Returns how many questions had an answer.
-std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitMix64& rng, int questions) {
+std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitMix64& rng,
+                    int questions) {
   std::size_t answered = 0;
   for (int i = 0; i < questions; ++i) {
     const LogQuery query = random_query(rng, records);
@@ -106,10 +108,10 @@ std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitM
 /// Takes from a closed world what formats 2 and 3 added.
 void back_to_format_1(const std::string& file) {
   REQUIRE(
-      raw_sql(
-          file,
-          "DROP INDEX edit_log_author; DROP INDEX edit_log_cause; DROP TABLE log_box; DROP TABLE keyframe; "
-          "DROP TABLE keyframe_chunk; PRAGMA user_version=1; PRAGMA wal_checkpoint(TRUNCATE)")
+      raw_sql(file,
+              "DROP INDEX edit_log_author; DROP INDEX edit_log_cause; DROP TABLE log_box; DROP "
+              "TABLE keyframe; "
+              "DROP TABLE keyframe_chunk; PRAGMA user_version=1; PRAGMA wal_checkpoint(TRUNCATE)")
           .find("ERROR") == std::string::npos);
 }
 
@@ -168,8 +170,10 @@ TEST_CASE("a segment that misses an edit is damage that the check names", "[stor
   const std::string file = folder / "world.sqlite";
   const std::string change = GENERATE(
       std::string("DELETE FROM log_box WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
-      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
-      std::string("UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
+      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) FROM "
+                  "log_box)"),
+      std::string(
+          "UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
   REQUIRE(raw_sql(file, change).find("ERROR") == std::string::npos);
   const auto checked = (*open_world(folder.path(), StoreAccess::read_only))->check();
   REQUIRE_FALSE(checked.has_value());
@@ -186,14 +190,16 @@ TEST_CASE("a commit that was refused leaves the segments as they were", "[store]
   const PlayerRow one = sample_player(1);
   PlayerRow other = sample_player(2);
   other.key = one.key;  // refused by the table, after nothing or everything else went in
-  CHECK_FALSE(store->append(std::vector<PlayerRow>{one, other}, std::span(records).subspan(20)).has_value());
+  CHECK_FALSE(store->append(std::vector<PlayerRow>{one, other}, std::span(records).subspan(20))
+                  .has_value());
   CHECK(store->check().has_value());
   REQUIRE(store->append({}, std::span(records).subspan(20)).has_value());
   CHECK(store->check().has_value());
   CHECK(compare(*store, records, rng, 50) > 10);
 }
 
-TEST_CASE("a builders' edit costs at most 120 bytes of database, five edits a commit", "[store][query]") {
+TEST_CASE("a builders' edit costs at most 120 bytes of database, five edits a commit",
+          "[store][query]") {
   const TempFolder folder;
   auto store = *create_world(folder.path(), sample_meta());
   REQUIRE(store->raise_epoch().has_value());

@@ -23,10 +23,12 @@ class FakeStore final : public Store {
     std::optional<Keyframe> keyframe = {};
   };
 
-  StoreResult<void> append(std::span<const PlayerRow> players, std::span<const EditRecord> records) override {
+  StoreResult<void> append(std::span<const PlayerRow> players,
+                           std::span<const EditRecord> records) override {
     return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
   }
-  StoreResult<void> append_history(std::span<const PlayerRow>, std::span<const EditRecord>) override {
+  StoreResult<void> append_history(std::span<const PlayerRow>,
+                                   std::span<const EditRecord>) override {
     return {};
   }
   StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
@@ -68,12 +70,22 @@ class FakeStore final : public Store {
   }
   StoreResult<void> compact(Sequence) override { return {}; }
   StoreResult<void> shrink() override { return {}; }
-  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override { return {}; }
-  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override { return std::optional<Chunk>(); }
-  StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override { return std::optional<Chunk>(); }
+  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override {
+    return {};
+  }
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override {
+    return std::optional<Chunk>();
+  }
+  StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override {
+    return std::optional<Chunk>();
+  }
   StoreResult<Sequence> sequence_at(TimeUs) override { return last(); }
-  StoreResult<std::vector<StoredChunk>> base_chunks() override { return std::vector<StoredChunk>(); }
-  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override { return std::vector<StoredChunk>(); }
+  StoreResult<std::vector<StoredChunk>> base_chunks() override {
+    return std::vector<StoredChunk>();
+  }
+  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override {
+    return std::vector<StoredChunk>();
+  }
   StoreResult<std::vector<Keyframe>> keyframes() override { return std::vector<Keyframe>(); }
   StoreResult<StoredMoment> stored_moment(Sequence) override { return StoredMoment(); }
   StoreResult<std::optional<Chunk>> load_kept(const ChunkKey&, Sequence) override {
@@ -82,10 +94,12 @@ class FakeStore final : public Store {
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk&) override {
     return std::optional<Chunk>();
   }
-  StoreResult<void> read_log(Sequence, Sequence, const std::function<bool(const EditRecord&)>&) override {
+  StoreResult<void> read_log(Sequence, Sequence,
+                             const std::function<bool(const EditRecord&)>&) override {
     return {};
   }
-  StoreResult<void> query_log(const LogQuery&, const std::function<bool(const EditRecord&)>&) override {
+  StoreResult<void> query_log(const LogQuery&,
+                              const std::function<bool(const EditRecord&)>&) override {
     return {};
   }
   StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {
@@ -239,13 +253,15 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
   CHECK(writer.counters().snapshots == 10);
 }
 
-TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing", "[store][log-writer]") {
+TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing",
+          "[store][log-writer]") {
   FakeStore store;
   LogWriter::Limits limits;
   limits.jobs_max = 2;
   std::vector<std::size_t> saved;
-  LogWriter writer(store, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
-                   limits);
+  LogWriter writer(
+      store, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
+      limits);
   REQUIRE(writer.save_snapshots(chunks(1), {}));
   store.entered.acquire();
   CHECK(writer.save_snapshots({}, 5));  // a job of no chunks moves the checkpoint alone
@@ -285,7 +301,8 @@ TEST_CASE("after a failure nothing more is written or acknowledged", "[store][lo
   CHECK(failures == std::vector<std::string>{"w: disk full"});
 }
 
-TEST_CASE("a keyframe comes with the last slice of its chunks, behind records", "[store][log-writer]") {
+TEST_CASE("a keyframe comes with the last slice of its chunks, behind records",
+          "[store][log-writer]") {
   FakeStore store;
   SplitMix64 rng(7);
   LogWriter::Limits limits;
@@ -293,8 +310,8 @@ TEST_CASE("a keyframe comes with the last slice of its chunks, behind records", 
   LogWriter writer(store, {}, limits);
   std::vector<bool> done;
   const Keyframe keyframe{{{1, 2}, 3}, 10, {}};
-  REQUIRE(writer.save_keyframe(chunks(6), keyframe,
-                               [&](StoreResult<void> result) { done.push_back(result.has_value()); }));
+  REQUIRE(writer.save_keyframe(
+      chunks(6), keyframe, [&](StoreResult<void> result) { done.push_back(result.has_value()); }));
   store.entered.acquire();
   writer.append({}, sample_records(rng, 1, 1, 2));
   CHECK(done.empty());
@@ -311,7 +328,8 @@ TEST_CASE("a keyframe comes with the last slice of its chunks, behind records", 
   CHECK(writer.counters().snapshots == 0);
 }
 
-TEST_CASE("a keyframe that cannot be written ends its job and nothing else", "[store][log-writer]") {
+TEST_CASE("a keyframe that cannot be written ends its job and nothing else",
+          "[store][log-writer]") {
   FakeStore store;
   store.refuse_keyframes = true;
   store.open_gate();
@@ -321,8 +339,9 @@ TEST_CASE("a keyframe that cannot be written ends its job and nothing else", "[s
   bool failed = false;
   std::vector<std::string> done;
   LogWriter writer(store, {{}, {}, [&](StoreError) { failed = true; }}, limits);
-  REQUIRE(writer.save_keyframe(chunks(3), Keyframe{},
-                               [&](StoreResult<void> result) { done.push_back(result.error().message()); }));
+  REQUIRE(writer.save_keyframe(chunks(3), Keyframe{}, [&](StoreResult<void> result) {
+    done.push_back(result.error().message());
+  }));
   writer.append({}, sample_records(rng, 1, 1, 2));
   REQUIRE(writer.save_snapshots(chunks(1), {}));
   writer.stop();
@@ -367,7 +386,8 @@ TEST_CASE("batches from another thread arrive on disk in order", "[store][log-wr
     limits.queued_records_max = 64;
     limits.commit_records_max = 32;
     LogWriter writer(
-        *store, {[&](Sequence seq) { backwards += seq <= durable.exchange(seq) ? 1 : 0; }, {}, {}}, limits);
+        *store, {[&](Sequence seq) { backwards += seq <= durable.exchange(seq) ? 1 : 0; }, {}, {}},
+        limits);
     for (std::size_t at = 0; at < records.size();) {
       const std::size_t count = std::min<std::size_t>(1 + rng.below(9), records.size() - at);
       while (!writer.has_room(count)) {

@@ -25,8 +25,8 @@ void make_world(const std::string& folder) {
   REQUIRE((*store)->raise_epoch().has_value());
   const std::vector<PlayerRow> players = {sample_player(1), sample_player(2)};
   REQUIRE((*store)->append(players, sample_records(rng, 1, 1, 20)).has_value());
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {{kSnapshotKey, sample_chunk(rng, {1, 12})},
-                                                                {{0, {5, 5, 5}}, sample_chunk(rng, {1, 13})}};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots = {
+      {kSnapshotKey, sample_chunk(rng, {1, 12})}, {{0, {5, 5, 5}}, sample_chunk(rng, {1, 13})}};
   REQUIRE((*store)->save_snapshots(snapshots, 12).has_value());
 }
 
@@ -35,7 +35,8 @@ std::string audit(const std::string& folder) {
   auto store = open_world(folder, StoreAccess::read_only);
   const auto verdict = store ? (*store)->check() : Unexpected<StoreError>{store.error()};
   if (verdict) return "fine";
-  if (verdict.error().kind != StoreError::Kind::corrupt) return "not corrupt: " + verdict.error().message();
+  if (verdict.error().kind != StoreError::Kind::corrupt)
+    return "not corrupt: " + verdict.error().message();
   if (verdict.error().what.empty()) return "no cause";
   return verdict.error().where;
 }
@@ -62,8 +63,8 @@ TEST_CASE("an undamaged world passes its audit", "[store][damage]") {
 TEST_CASE("a changed column of the edit log is named", "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
-  for (const char* column : {"epoch", "author", "instance", "client_seq", "time_us", "min_x", "min_y",
-                             "min_z", "max_x", "max_y", "max_z", "checksum"}) {
+  for (const char* column : {"epoch", "author", "instance", "client_seq", "time_us", "min_x",
+                             "min_y", "min_z", "max_x", "max_y", "max_z", "checksum"}) {
     CAPTURE(column);
     const std::string set =
         std::string("UPDATE edit_log SET ") + column + " = " + column + " + 1 WHERE seq = 7";
@@ -71,19 +72,21 @@ TEST_CASE("a changed column of the edit log is named", "[store][damage]") {
   }
   for (const char* subject : {"1 - subject", "7", "-1", "99"}) {  // 7 would answer itself
     CAPTURE(subject);
-    CHECK(damage(folder, std::string("UPDATE edit_log SET subject = ") + subject + " WHERE seq = 7") ==
-          "edit_log seq=7");
+    CHECK(damage(folder, std::string("UPDATE edit_log SET subject = ") + subject +
+                             " WHERE seq = 7") == "edit_log seq=7");
   }
-  CHECK(damage(folder, "UPDATE edit_log SET client_seq = -client_seq WHERE seq = 7") == "edit_log seq=7");
+  CHECK(damage(folder, "UPDATE edit_log SET client_seq = -client_seq WHERE seq = 7") ==
+        "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET cause = cause | 64 WHERE seq = 7") == "edit_log seq=7");
-  CHECK(damage(folder, "UPDATE edit_log SET cause = (cause + 1) % 6 WHERE seq = 7") == "edit_log seq=7");
-  CHECK(damage(folder, "UPDATE edit_log SET descriptor = CAST(descriptor || x'00' AS BLOB) WHERE seq = 7") ==
+  CHECK(damage(folder, "UPDATE edit_log SET cause = (cause + 1) % 6 WHERE seq = 7") ==
         "edit_log seq=7");
   CHECK(
-      damage(
-          folder,
-          "UPDATE edit_log SET descriptor = (SELECT descriptor FROM edit_log WHERE seq = 8) WHERE seq = 7") ==
+      damage(folder,
+             "UPDATE edit_log SET descriptor = CAST(descriptor || x'00' AS BLOB) WHERE seq = 7") ==
       "edit_log seq=7");
+  CHECK(damage(folder,
+               "UPDATE edit_log SET descriptor = (SELECT descriptor FROM edit_log WHERE seq = 8) "
+               "WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET log = 1 WHERE seq = 7") == "edit_log");
   CHECK(damage(folder, "UPDATE edit_log SET log = -1 WHERE seq = 20") == "edit_log");
 }
@@ -102,7 +105,8 @@ TEST_CASE("a log that ends before its snapshots or its checkpoint is noticed", "
   const TempFolder folder;
   make_world(folder.path());
   REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM edit_log WHERE seq > 12").empty());
-  CHECK(audit(folder.path()) == "snapshot chunk=5,5,5");  // ... unless something refers to what is gone
+  CHECK(audit(folder.path()) ==
+        "snapshot chunk=5,5,5");  // ... unless something refers to what is gone
   REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM edit_log WHERE seq > 11").empty());
   CHECK(audit(folder.path()) == "edit_log");
   const auto store = open_world(folder.path(), StoreAccess::read_only);
@@ -132,12 +136,13 @@ TEST_CASE("a changed column of a snapshot or base chunk is named", "[store][dama
                                " WHEN x'ff' THEN x'00' ELSE x'ff' END) || substr(data, " + at +
                                " + 1) AS BLOB)" + table.where) == table.place);
     }
-    CHECK(damage(folder, update + "data = CAST(substr(data, 1, length(data) - 1) AS BLOB)" + table.where) ==
-          table.place);
+    CHECK(damage(folder, update + "data = CAST(substr(data, 1, length(data) - 1) AS BLOB)" +
+                             table.where) == table.place);
     // A row under another key is a row that vanished.
     for (const char* column : {"lod", "x", "y", "z"}) {
       CAPTURE(table.name, column);
-      CHECK(damage(folder, update + column + " = " + column + " + 256" + table.where) == table.name);
+      CHECK(damage(folder, update + column + " = " + column + " + 256" + table.where) ==
+            table.name);
     }
     CHECK(damage(folder, "DELETE FROM " + table.name + table.where) == table.name);
   }
@@ -150,12 +155,14 @@ TEST_CASE("a changed column of a snapshot or base chunk is named", "[store][dama
 TEST_CASE("loading one damaged chunk fails and its neighbours still load", "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
-  REQUIRE(raw_sql(folder / "world.sqlite", "UPDATE snapshot SET data = x'0102' WHERE x = 1").empty());
+  REQUIRE(
+      raw_sql(folder / "world.sqlite", "UPDATE snapshot SET data = x'0102' WHERE x = 1").empty());
   const auto store = open_world(folder.path(), StoreAccess::read_only);
   const auto damaged = (*store)->load_snapshot(kSnapshotKey);
   REQUIRE_FALSE(damaged.has_value());
   CHECK(damaged.error().kind == StoreError::Kind::corrupt);
-  CHECK(damaged.error().message() == folder / "world.sqlite: snapshot chunk=1,0,-3: checksum is wrong");
+  CHECK(damaged.error().message() ==
+        folder / "world.sqlite: snapshot chunk=1,0,-3: checksum is wrong");
   CHECK((*store)->load_snapshot({0, {5, 5, 5}})->has_value());
   CHECK((*store)->load_base(kBaseKey)->has_value());
 }
@@ -163,12 +170,16 @@ TEST_CASE("loading one damaged chunk fails and its neighbours still load", "[sto
 TEST_CASE("a changed column of a player is named", "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
-  CHECK(damage(folder, "UPDATE player SET name = name || '!' WHERE author = 2") == "player author=2");
+  CHECK(damage(folder, "UPDATE player SET name = name || '!' WHERE author = 2") ==
+        "player author=2");
   CHECK(damage(folder, "UPDATE player SET author = 3 WHERE author = 2") == "player author=3");
-  CHECK(damage(folder, "UPDATE player SET key = zeroblob(32) WHERE author = 2") == "player author=2");
+  CHECK(damage(folder, "UPDATE player SET key = zeroblob(32) WHERE author = 2") ==
+        "player author=2");
   CHECK(damage(folder, "UPDATE player SET checksum = 0 WHERE author = 2") == "player author=2");
-  const std::string last = " WHERE author = 2 AND instance = (SELECT max(instance) FROM player_instance)";
-  const std::string name = "player_instance author=2 instance=" + std::to_string(0xf000000000000001ULL);
+  const std::string last =
+      " WHERE author = 2 AND instance = (SELECT max(instance) FROM player_instance)";
+  const std::string name =
+      "player_instance author=2 instance=" + std::to_string(0xf000000000000001ULL);
   CHECK(damage(folder, "UPDATE player_instance SET decided = decided + 1" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET decided = 0" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET decided = -decided" + last) == name);
@@ -203,13 +214,16 @@ TEST_CASE("a changed, missing or retyped row of meta is named and the world does
     const std::string place = std::string("meta key=") + key;
     CHECK(damage(folder, "UPDATE meta SET checksum = checksum + 1" + where) == place);
     CHECK(damage(folder,
-                 "UPDATE meta SET value = CASE typeof(value) WHEN 'integer' THEN value + 16 WHEN 'text' THEN "
+                 "UPDATE meta SET value = CASE typeof(value) WHEN 'integer' THEN value + 16 WHEN "
+                 "'text' THEN "
                  "value || ' ' ELSE CAST(value || x'00' AS BLOB) END" +
                      where) == place);
-    CHECK(damage(folder,
-                 "UPDATE meta SET value = CASE typeof(value) WHEN 'text' THEN CAST(value AS BLOB) ELSE "
-                 "CAST(value AS TEXT) END" +
-                     where) == place);
+    CHECK(
+        damage(
+            folder,
+            "UPDATE meta SET value = CASE typeof(value) WHEN 'text' THEN CAST(value AS BLOB) ELSE "
+            "CAST(value AS TEXT) END" +
+                where) == place);
     CHECK(damage(folder, "DELETE FROM meta" + where) == place);
   }
 }

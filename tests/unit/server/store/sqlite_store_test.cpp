@@ -23,7 +23,8 @@ std::unique_ptr<Store> created(const std::string& folder) {
   return *std::move(store);
 }
 
-std::unique_ptr<Store> opened(const std::string& folder, StoreAccess access = StoreAccess::read_write) {
+std::unique_ptr<Store> opened(const std::string& folder,
+                              StoreAccess access = StoreAccess::read_write) {
   auto store = open_world(folder, access);
   if (!store) FAIL(store.error().message());
   return *std::move(store);
@@ -118,14 +119,14 @@ TEST_CASE("records, players and marks come back as they were appended", "[store]
   for (const auto* batch : {&first, &second}) {
     for (const EditRecord& record : *batch) {
       auto& mark = expected[{record.op.author, record.op.instance}];
-      mark.decided = std::max(mark.decided, record.op.seq);
+      mark.resolved = std::max(mark.resolved, record.op.seq);
       mark.last_us = std::max(mark.last_us, record.time_us);
     }
   }
   const auto marks = store->high_waters();
   REQUIRE(marks->size() == expected.size());
   for (const HighWater& mark : *marks) {
-    CHECK(mark.decided == expected[{mark.author, mark.instance}].decided);
+    CHECK(mark.resolved == expected[{mark.author, mark.instance}].resolved);
     CHECK(mark.last_us == expected[{mark.author, mark.instance}].last_us);
   }
   CHECK(store->check().has_value());
@@ -142,8 +143,9 @@ TEST_CASE("a mark never falls when an older client sequence is logged later", "[
   REQUIRE(store->append({}, {records.data(), 1}).has_value());
   REQUIRE(store->append({}, {records.data() + 1, 1}).has_value());
   REQUIRE(store->high_waters()->size() == 1);
-  CHECK(store->high_waters()->front().decided == 90);
-  CHECK(store->high_waters()->front().last_us == records[1].time_us);  // the client was there, though
+  CHECK(store->high_waters()->front().resolved == 90);
+  CHECK(store->high_waters()->front().last_us ==
+        records[1].time_us);  // the client was there, though
 }
 
 TEST_CASE("reading the log stops when asked to and may be nested", "[store]") {
@@ -193,7 +195,8 @@ TEST_CASE("a record with numbers that no log can hold is refused", "[store]") {
     auto records = sample_records(rng, 1, 6, 2);
     spoil(records[1]);
     const auto result = store->append({}, records);
-    if (result || result.error().kind != StoreError::Kind::bad_request) return std::string("not refused");
+    if (result || result.error().kind != StoreError::Kind::bad_request)
+      return std::string("not refused");
     return result.error().where + " " + result.error().what;
   };
   CHECK(reason([](EditRecord& record) { record.op.seq = kSequenceMax + 1; }) ==
@@ -202,7 +205,8 @@ TEST_CASE("a record with numbers that no log can hold is refused", "[store]") {
         "edit_log seq=7 client sequence exceeds 63 bits");
   CHECK(reason([](EditRecord& record) { record.subject = 7; }) ==
         "edit_log seq=7 subject is not an earlier edit");
-  CHECK(reason([](EditRecord& record) { record.log = 1; }) == "edit_log seq=7 belongs to another log");
+  CHECK(reason([](EditRecord& record) { record.log = 1; }) ==
+        "edit_log seq=7 belongs to another log");
   CHECK(*store->last_sequence() == 5);
   auto largest = sample_records(rng, 1, 6, 1);
   largest[0].op.seq = kSequenceMax;
@@ -244,16 +248,18 @@ TEST_CASE("snapshots replace each other and move the checkpoint", "[store]") {
   CHECK(store->check().has_value());
 }
 
-TEST_CASE("a snapshot that would harm the world is refused and nothing of its job is kept", "[store]") {
+TEST_CASE("a snapshot that would harm the world is refused and nothing of its job is kept",
+          "[store]") {
   const TempFolder folder;
   SplitMix64 rng(6);
   auto store = filled(folder.path(), rng, 10);
   const ChunkKey key{0, {1, 2, 3}}, other{0, {4, 5, 6}};
   const auto where_refused = [&](const Chunk& chunk, std::optional<Sequence> checkpoint) {
-    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {{other, sample_chunk(rng, {1, 1})},
-                                                               {key, std::make_shared<const Chunk>(chunk)}};
+    const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
+        {other, sample_chunk(rng, {1, 1})}, {key, std::make_shared<const Chunk>(chunk)}};
     const auto saved = store->save_snapshots(chunks, checkpoint);
-    if (saved || saved.error().kind != StoreError::Kind::bad_request) return std::string("not refused");
+    if (saved || saved.error().kind != StoreError::Kind::bad_request)
+      return std::string("not refused");
     return saved.error().where;
   };
   Chunk chunk = *sample_chunk(rng, {1, 11});
@@ -269,7 +275,8 @@ TEST_CASE("a snapshot that would harm the world is refused and nothing of its jo
   CHECK(where_refused(small, {}) == "snapshot chunk=1,2,3");
   CHECK(store->snapshot_keys()->empty());
 
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> good = {{key, std::make_shared<const Chunk>(chunk)}};
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> good = {
+      {key, std::make_shared<const Chunk>(chunk)}};
   REQUIRE(store->save_snapshots(good, 10).has_value());
   chunk.version = {1, 9};
   CHECK(where_refused(chunk, {}) == "snapshot chunk=1,2,3");  // older than the stored one
@@ -278,9 +285,12 @@ TEST_CASE("a snapshot that would harm the world is refused and nothing of its jo
   CHECK(store->snapshot_keys()->size() == 1);
 }
 
-TEST_CASE("a new world is for its owner alone, and a folder that is there stays as it is", "[store]") {
+TEST_CASE("a new world is for its owner alone, and a folder that is there stays as it is",
+          "[store]") {
   using std::filesystem::perms;
-  const auto mode = [](const std::string& path) { return std::filesystem::status(path).permissions(); };
+  const auto mode = [](const std::string& path) {
+    return std::filesystem::status(path).permissions();
+  };
   const perms own_file = perms::owner_read | perms::owner_write;
   const TempFolder folder;
   const std::string fresh = folder / "deep/world";
@@ -317,8 +327,10 @@ TEST_CASE("base chunks are taken once, and only while the log is empty", "[store
   CHECK((*store->load_base(a))->voxels == chunks[1].second->voxels);
   CHECK((*store->load_base(a))->version == Version{});
   CHECK((*store->load_base(b))->voxels == chunks[0].second->voxels);
-  CHECK(store->save_base({chunks.data(), 1}).error().kind == StoreError::Kind::bad_request);  // twice
-  const std::vector<std::pair<ChunkKey, ChunkPtr>> edited = {{{0, {9, 9, 9}}, sample_chunk(rng, {1, 1})}};
+  CHECK(store->save_base({chunks.data(), 1}).error().kind ==
+        StoreError::Kind::bad_request);  // twice
+  const std::vector<std::pair<ChunkKey, ChunkPtr>> edited = {
+      {{0, {9, 9, 9}}, sample_chunk(rng, {1, 1})}};
   CHECK(store->save_base(edited).error().where == "base chunk=9,9,9");
   REQUIRE(store->raise_epoch().has_value());
   REQUIRE(store->append({}, sample_records(rng, 1, 1, 1)).has_value());
@@ -344,7 +356,8 @@ TEST_CASE("a second writer is refused while readers come and go", "[store]") {
   REQUIRE(writer->append({}, sample_records(rng, 1, 4, 2)).has_value());
   CHECK(*reader->last_sequence() == 5);
   CHECK(log_of(*reader).size() == 5);
-  CHECK(reader->append({}, sample_records(rng, 1, 6, 1)).error().kind == StoreError::Kind::bad_request);
+  CHECK(reader->append({}, sample_records(rng, 1, 6, 1)).error().kind ==
+        StoreError::Kind::bad_request);
   CHECK(reader->raise_epoch().error().kind == StoreError::Kind::bad_request);
   CHECK(reader->save_snapshots({}, 1).error().kind == StoreError::Kind::bad_request);
   writer.reset();
@@ -368,7 +381,8 @@ TEST_CASE("a world of a newer format is refused and its bytes stay as they are",
   CHECK(bytes_of(file) == before);
   CHECK_FALSE(std::filesystem::exists(file + "-wal"));
   REQUIRE(raw_sql(file, "PRAGMA user_version = 0").empty());
-  CHECK(open_world(folder.path(), StoreAccess::read_only).error().kind == StoreError::Kind::corrupt);
+  CHECK(open_world(folder.path(), StoreAccess::read_only).error().kind ==
+        StoreError::Kind::corrupt);
 }
 
 TEST_CASE("what is not a world is refused and left alone", "[store]") {
@@ -377,7 +391,8 @@ TEST_CASE("what is not a world is refused and left alone", "[store]") {
   const auto kind = [&] { return open_world(folder.path(), StoreAccess::read_write).error().kind; };
   CHECK(kind() == StoreError::Kind::not_a_world);  // nothing there
   CHECK(std::filesystem::is_empty(folder.path()));
-  std::ofstream(file) << "hello, I am a text file and long enough to be mistaken for something else";
+  std::ofstream(file)
+      << "hello, I am a text file and long enough to be mistaken for something else";
   const auto text = bytes_of(file);
   CHECK(kind() == StoreError::Kind::not_a_world);
   CHECK(bytes_of(file) == text);
@@ -409,7 +424,8 @@ TEST_CASE("a folder that cannot be written is reported", "[store]") {
   const TempFolder folder;
   created(folder.path());
   std::filesystem::remove(folder / "world.lock");
-  std::filesystem::create_directory(folder / "world.lock");  // open() for writing fails for root as well
+  std::filesystem::create_directory(folder /
+                                    "world.lock");  // open() for writing fails for root as well
   const auto opened_again = open_world(folder.path(), StoreAccess::read_write);
   REQUIRE_FALSE(opened_again.has_value());
   CHECK(opened_again.error().kind == StoreError::Kind::io);
@@ -446,8 +462,11 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
       auto records = sample_records(rng, 1, seq, 100);
       for (EditRecord& record : records) {
         record.edit = {
-            SetVoxel{{rng.between(-2000, 2000), rng.between(0, 120), rng.between(-2000, 2000)}}, {}, 1};
-        record.op.instance = mix64(rng.below(8));  // random numbers of full width, few client processes
+            SetVoxel{{rng.between(-2000, 2000), rng.between(0, 120), rng.between(-2000, 2000)}},
+            {},
+            1};
+        record.op.instance =
+            mix64(rng.below(8));  // random numbers of full width, few client processes
       }
       REQUIRE(store->append({}, records).has_value());
     }
@@ -459,8 +478,9 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
 }
 
 TEST_CASE("an error message names file, place and cause in one line", "[store]") {
-  CHECK(StoreError{StoreError::Kind::corrupt, "w/world.sqlite", "edit_log seq=7", "checksum is wrong"}
-            .message() == "w/world.sqlite: edit_log seq=7: checksum is wrong");
+  CHECK(
+      StoreError{StoreError::Kind::corrupt, "w/world.sqlite", "edit_log seq=7", "checksum is wrong"}
+          .message() == "w/world.sqlite: edit_log seq=7: checksum is wrong");
   CHECK(StoreError{StoreError::Kind::io, "w/world.sqlite", "", "disk full"}.message() ==
         "w/world.sqlite: disk full");
 }

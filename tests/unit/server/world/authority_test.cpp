@@ -19,7 +19,8 @@ EditLimits limits() {
   return l;
 }
 
-EditOffer offer(ClientSequence seq, const EditShape& shape, Material material, AuthorId author = 1) {
+EditOffer offer(ClientSequence seq, const EditShape& shape, Material material,
+                AuthorId author = 1) {
   return {{author, 77, seq}, Cause::player, 0, {shape, {}, material}};
 }
 
@@ -39,9 +40,10 @@ void load(Authority& authority, const ChunkKey& key, const Chunk& chunk) {
 
 constexpr ChunkKey kOrigin{0, {0, 0, 0}};
 constexpr ChunkKey kEast{0, {1, 0, 0}};
-constexpr Now kNow{1000, 5000};
+constexpr Clocks kNow{1000, 5000};
 
-TEST_CASE("queued edits get consecutive sequences and each touched chunk's previous one", "[world]") {
+TEST_CASE("queued edits get consecutive sequences and each touched chunk's previous one",
+          "[world]") {
   Authority authority(limits(), {3, 40, 0});
   load(authority, kOrigin, base_chunk());
   CHECK_FALSE(authority.submit(offer(1, box(0, 4), 1), true).has_value());
@@ -94,15 +96,16 @@ TEST_CASE("an edit that changes no voxel still moves the version", "[world]") {
 
 TEST_CASE("a client sequence is decided once, by applying or by a final refusal", "[world]") {
   Authority authority(limits(), {1, 0, 0});
-  authority.decided().raise({1, 77, 10});  // from the store
-  CHECK(authority.submit(offer(10, box(0, 1), 1), true) == RejectReason::already_decided);
-  CHECK(authority.submit(offer(9, box(0, 1), 1), true) == RejectReason::already_decided);
+  authority.resolved().raise({1, 77, 10});  // from the store
+  CHECK(authority.submit(offer(10, box(0, 1), 1), true) == RejectReason::already_resolved);
+  CHECK(authority.submit(offer(9, box(0, 1), 1), true) == RejectReason::already_resolved);
   CHECK_FALSE(authority.submit(offer(20, box(0, 1), 1), true).has_value());  // gaps are allowed
   CHECK(authority.submit(offer(20, box(0, 1), 1), true) ==
-        RejectReason::already_decided);  // not yet committed
-  CHECK(authority.submit(offer(15, box(0, 1), 1), true) == RejectReason::already_decided);
+        RejectReason::already_resolved);  // not yet committed
+  CHECK(authority.submit(offer(15, box(0, 1), 1), true) == RejectReason::already_resolved);
   CHECK(authority.submit(offer(21, box(0, 1), 99), true) == RejectReason::unknown_material);
-  CHECK(authority.submit(offer(21, box(0, 1), 1), true) == RejectReason::unknown_material);  // as it was told
+  CHECK(authority.submit(offer(21, box(0, 1), 1), true) ==
+        RejectReason::unknown_material);  // as it was told
   // Another instance of the same author, and another author, count for themselves.
   EditOffer other = offer(1, box(0, 1), 1);
   other.op.instance = 78;
@@ -114,32 +117,33 @@ TEST_CASE("a client sequence is decided once, by applying or by a final refusal"
 TEST_CASE("every refusal is final, busy too, and is told again to whoever asks again", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   CHECK(authority.submit(offer(1, box(0, 1), 1), false) == RejectReason::busy);
-  CHECK(authority.decided().of(1, 77) == 1);
+  CHECK(authority.resolved().of(1, 77) == 1);
   CHECK(authority.queued() == 0);
   CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
   CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1), true).has_value());
   CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
   // What is decided or wrong is told even while the log is full.
-  CHECK(authority.submit(offer(2, box(0, 1), 1), false) == RejectReason::already_decided);
+  CHECK(authority.submit(offer(2, box(0, 1), 1), false) == RejectReason::already_resolved);
   CHECK(authority.submit(offer(3, box(0, 1), 99), false) == RejectReason::unknown_material);
 }
 
 TEST_CASE("an instance's oldest refusals are forgotten beyond the bound", "[world]") {
-  DecidedMarks marks;
-  for (ClientSequence seq = 1; seq <= DecidedMarks::kRefusalsMax + 1; ++seq) {
+  OperationWatermarks marks;
+  for (ClientSequence seq = 1; seq <= OperationWatermarks::kRefusalsMax + 1; ++seq) {
     marks.refuse({1, 7, seq}, RejectReason::busy);
   }
-  CHECK(marks.answer_to({1, 7, 1}) == RejectReason::already_decided);
+  CHECK(marks.answer_to({1, 7, 1}) == RejectReason::already_resolved);
   CHECK(marks.answer_to({1, 7, 2}) == RejectReason::busy);
-  CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_decided);
+  CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_resolved);
 }
 
 TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
   const auto reason = [](const EditDescriptor& edit) { return check_edit(edit, limits()); };
   CHECK_FALSE(reason({FillSphere{{0, 0, 0}, 20}, {}, 1}).has_value());
-  CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);              // volume
-  CHECK(reason({FillBox{{{0, 0, 0}, {4096, 1, 4096}}}, {}, 1}) == RejectReason::too_large);  // chunks
-  CHECK(reason({FillBox{{{0, 0, 0}, {0, 1, 1}}}, {}, 1}) == RejectReason::bad_edit);         // empty
+  CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);  // volume
+  CHECK(reason({FillBox{{{0, 0, 0}, {4096, 1, 4096}}}, {}, 1}) ==
+        RejectReason::too_large);                                                     // chunks
+  CHECK(reason({FillBox{{{0, 0, 0}, {0, 1, 1}}}, {}, 1}) == RejectReason::bad_edit);  // empty
   const auto stroke = [&](std::int32_t length, std::uint16_t radius) {
     return reason({FillStroke{{{0, 0, 0}, {length, 0, 0}}, radius}, {}, 1});
   };
@@ -151,11 +155,13 @@ TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
         RejectReason::too_large);  // chunks
   CHECK(reason({SetVoxel{{kWorldLimit, 0, 0}}, {}, 1}) == RejectReason::bad_edit);
   CHECK(reason({SetVoxel{{0, 0, 0}}, {}, 8}) == RejectReason::unknown_material);
-  CHECK(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 8}, 1}) == RejectReason::unknown_material);
+  CHECK(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 8}, 1}) ==
+        RejectReason::unknown_material);
   CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
 }
 
-TEST_CASE("the server's own edits may be larger and higher than players', but not without end", "[world]") {
+TEST_CASE("the server's own edits may be larger and higher than players', but not without end",
+          "[world]") {
   EditLimits narrow = limits();
   narrow.heights = {0, 8};
   Authority authority(narrow, {1, 0, 0});
@@ -195,7 +201,7 @@ TEST_CASE("a paste is checked by its touched cells and each of its materials", "
   CHECK(edit_tokens({SetVoxel{{1, 1, 1}}, {}, 1}, 16) == 1);
   CHECK(edit_tokens({FillSphere{{0, 0, 0}, 3}, {}, 1}, 16) == 8);
   CHECK(edit_tokens({FillSphere{{8, 8, 8}, 60}, {}, 1}, 16) == 9 * 9 * 9);  // by its box
-  FillStroke scribble;                                                      // many points, all in one chunk
+  FillStroke scribble;  // many points, all in one chunk
   scribble.radius = 1;
   for (std::int32_t i = 0; i < 100; ++i) scribble.points.push_back({4 + i % 2, 4 + i % 3, 4});
   CHECK(edit_tokens({scribble, {}, 1}, 16) == 1);
@@ -216,7 +222,8 @@ TEST_CASE("a commit ends before its message is too long, whatever the edits weig
   CHECK(clipboard->byte_size() > 48'000);
   CHECK(edit_tokens({Paste{{0, 0, 0}, clipboard, {}}, {}, kEmpty}, 128) == 48);
   for (ClientSequence seq = 1; seq <= 40; ++seq) {
-    CHECK_FALSE(authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty), true).has_value());
+    CHECK_FALSE(
+        authority.submit(offer(seq, Paste{{0, 0, 0}, clipboard, {}}, kEmpty), true).has_value());
   }
   std::size_t edits = 0, commits = 0;
   while (const auto batch = authority.commit(kNow)) {
@@ -290,7 +297,8 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
       (void)authority.commit(kNow);
       (void)resident.commit(kNow);
     }
-    if (seq == 30) REQUIRE(authority.chunks().begin_load(kOrigin));  // edits go on while it is being loaded
+    if (seq == 30)
+      REQUIRE(authority.chunks().begin_load(kOrigin));  // edits go on while it is being loaded
   }
   (void)authority.commit(kNow);
   (void)resident.commit(kNow);
@@ -304,7 +312,8 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
   CHECK(test::DenseChunk::of(late->voxels) == test::DenseChunk::of(early->voxels));
 }
 
-TEST_CASE("recovery puts records back on the stacks and skips what a snapshot contains", "[world]") {
+TEST_CASE("recovery puts records back on the stacks and skips what a snapshot contains",
+          "[world]") {
   // First run: five edits; the snapshot was taken after the second.
   Authority first(limits(), {1, 0, 0});
   load(first, kOrigin, base_chunk());
@@ -320,7 +329,7 @@ TEST_CASE("recovery puts records back on the stacks and skips what a snapshot co
   // Second run: the checkpoint lags behind the snapshot, as after a crash between two of a round's slices.
   Authority second(limits(), {2, 5, kNow.utc_us});
   second.chunks().set_saved(kOrigin, snapshot->version);
-  for (const EditRecord& record : log) second.restack(record);
+  for (const EditRecord& record : log) second.replay_onto_stack(record);
   CHECK(second.head() == 5);
   CHECK(second.chunks().version(kOrigin) == Version{1, 5});
   CHECK(second.chunks().stack_size(kOrigin) == 3);
@@ -334,8 +343,9 @@ TEST_CASE("recovery puts records back on the stacks and skips what a snapshot co
   CHECK(second.chunks().find(kOrigin)->version == Version{2, 6});
 }
 
-TEST_CASE("a loaded chunk that does not fit the log is quarantined, and its edits go on in the log alone",
-          "[world]") {
+TEST_CASE(
+    "a loaded chunk that does not fit the log is quarantined, and its edits go on in the log alone",
+    "[world]") {
   Authority authority(limits(), {2, 9, 0});
   authority.chunks().set_saved(kOrigin, {1, 7});
   SECTION("older than its snapshot") {

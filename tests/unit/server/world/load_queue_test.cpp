@@ -14,7 +14,8 @@ std::vector<std::int32_t> turns(LoadQueue& queue) {
   return order;
 }
 
-TEST_CASE("sessions take turns, each in its own order, and the world like one more session", "[world]") {
+TEST_CASE("sessions take turns, each in its own order, and the world like one more session",
+          "[world]") {
   LoadQueue queue(1);
   for (const std::int32_t x : {13, 11, 12}) queue.ask(1, key_of(x));
   for (const std::int32_t x : {22, 21}) queue.ask(2, key_of(x));

@@ -11,7 +11,7 @@ using namespace test;
 
 struct TravelBench : WorldBench {
   void travel(SessionId session, std::uint32_t request, Sequence seq) {
-    server.received(session, Travel{request, TravelTo::sequence, seq, 0}, now());
+    server.received(session, HistoryRequest{request, HistoryTarget::sequence, seq, 0}, now());
   }
   /// A worker has opened the oldest moment asked for.
   void open_one() {
@@ -27,10 +27,13 @@ struct TravelBench : WorldBench {
       Chunk chunk = dotted_chunk(kEdge);
       const Sequence seq = load.at / step * step;
       chunk.version = {seq == 0 ? 0U : 1U, seq};
-      server.past_chunk(load.session, load.request, load.key, std::make_shared<const Chunk>(chunk), now());
+      server.past_chunk(load.session, load.request, load.key, std::make_shared<const Chunk>(chunk),
+                        now());
     }
   }
-  std::vector<Moment> moments(SessionId session) const { return ports.messages<Moment>(session, kEdge); }
+  std::vector<HistoryState> moments(SessionId session) const {
+    return ports.messages<HistoryState>(session, kEdge);
+  }
 };
 
 TEST_CASE("moments are opened a few at a time, and of a session's wishes the newest", "[world]") {
@@ -61,13 +64,14 @@ TEST_CASE("moments are opened a few at a time, and of a session's wishes the new
   for (SessionId session = 2; session <= 4; ++session) {
     const auto moments = bench.moments(session);
     REQUIRE(moments.size() == 2);
-    CHECK(moments[0] == Moment{1, MomentPhase::begins, true, 5, 1000, ""});
-    CHECK(moments[1] == Moment{1, MomentPhase::complete, true, 5, 0, ""});
+    CHECK(moments[0] == HistoryState{1, HistoryPhase::begins, true, 5, 1000, ""});
+    CHECK(moments[1] == HistoryState{1, HistoryPhase::complete, true, 5, 0, ""});
   }
 }
 
-TEST_CASE("who looks at the past gets no commit of others, and the world as it is when it comes back",
-          "[world]") {
+TEST_CASE(
+    "who looks at the past gets no commit of others, and the world as it is when it comes back",
+    "[world]") {
   TravelBench bench;
   bench.join(1, 1);
   bench.join(2, 2);
@@ -83,8 +87,8 @@ TEST_CASE("who looks at the past gets no commit of others, and the world as it i
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).empty());
   CHECK(bench.commits(2).size() == 1);
-  bench.server.received(1, Travel{2, TravelTo::live, 0, 0}, bench.now());
-  CHECK(bench.moments(1).back() == Moment{2, MomentPhase::begins, false, 0, 0, ""});
+  bench.server.received(1, HistoryRequest{2, HistoryTarget::live, 0, 0}, bench.now());
+  CHECK(bench.moments(1).back() == HistoryState{2, HistoryPhase::begins, false, 0, 0, ""});
   REQUIRE(bench.ports.snapshots.size() == before + 10);
   CHECK(bench.ports.snapshots.back().session == 1);
   bench.edit(2, 2, kAtOrigin, 2);
@@ -104,7 +108,7 @@ TEST_CASE("a chunk that is the same at the next moment is not sent again", "[wor
   bench.open_one();
   bench.load_all(10);  // all at version 10, as before
   CHECK(bench.ports.snapshots.size() == before);
-  CHECK(bench.moments(1).back().phase == MomentPhase::complete);
+  CHECK(bench.moments(1).back().phase == HistoryPhase::complete);
   CHECK(bench.moments(1).back().request == 2);
   bench.travel(1, 3, 20);
   bench.open_one();
@@ -132,30 +136,33 @@ TEST_CASE("a full queue holds a moment and its chunks back, and loses none", "[w
   bench.server.drained(1, bench.now());
   bench.load_all();
   CHECK(bench.ports.snapshots.size() == before + 5);
-  CHECK(bench.moments(1).back().phase == MomentPhase::complete);
+  CHECK(bench.moments(1).back().phase == HistoryPhase::complete);
 }
 
-TEST_CASE("a refused moment leaves a session where it is; a chunk that cannot be read is named", "[world]") {
+TEST_CASE("a refused moment leaves a session where it is; a chunk that cannot be read is named",
+          "[world]") {
   TravelBench bench;
   bench.join(1, 1);
   bench.view(1, kSmall);
   bench.travel(1, 1, 99);
   bench.ports.moments.clear();
   bench.server.moment_opened(1, 1, Unexpected<std::string>{"no such edit"}, bench.now());
-  CHECK(bench.moments(1).back() == Moment{1, MomentPhase::refused, false, 0, 0, "no such edit"});
+  CHECK(bench.moments(1).back() ==
+        HistoryState{1, HistoryPhase::refused, false, 0, 0, "no such edit"});
   CHECK(bench.ports.past_loads.empty());
 
   bench.travel(1, 2, 3);
   bench.open_one();
   const auto load = bench.ports.past_loads.front();
   bench.ports.past_loads.pop_front();
-  bench.server.past_chunk(1, load.request, load.key, Unexpected<std::string>{"row damaged"}, bench.now());
+  bench.server.past_chunk(1, load.request, load.key, Unexpected<std::string>{"row damaged"},
+                          bench.now());
   const auto unavailable = bench.ports.messages<ChunkUnavailable>(1, kEdge);
   REQUIRE(unavailable.size() == 1);
   CHECK(unavailable[0].keys == std::vector<ChunkKey>{load.key});
   CHECK(bench.ports.lines.back().find("row damaged") != std::string::npos);
   bench.load_all();
-  CHECK(bench.moments(1).back().phase == MomentPhase::complete);
+  CHECK(bench.moments(1).back().phase == HistoryPhase::complete);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ void answer(WorldBench& bench) {
   while (!bench.ports.loads.empty()) {
     const ChunkKey key = bench.ports.loads.front();
     bench.ports.loads.pop_front();
-    bench.server.chunk_loaded(key, key.at.y == 0 ? dotted_chunk(kEdge) : empty_chunk(kEdge), bench.now());
+    bench.server.chunk_loaded(key, key.at.y == 0 ? dotted_chunk(kEdge) : empty_chunk(kEdge),
+                              bench.now());
   }
 }
 
@@ -97,8 +98,9 @@ TEST_CASE("gathered chunks wait for a tick at most", "[world]") {
   CHECK(uniform(bench, 1)[0].chunks.size() == 1);
 }
 
-TEST_CASE("gathered chunks go when a full queue has room, at their newest version, and none is lost",
-          "[world]") {
+TEST_CASE(
+    "gathered chunks go when a full queue has room, at their newest version, and none is lost",
+    "[world]") {
   WorldBench bench;
   bench.join(1, 1);
   bench.ports.full.insert(1);

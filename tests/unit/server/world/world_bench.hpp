@@ -9,7 +9,7 @@
 
 #include "protocol/codec/handshake.hpp"
 #include "server/world/world_server.hpp"
-#include "tests/unit/server/world/fake_ports.hpp"
+#include "tests/unit/server/world/fake_environment.hpp"
 
 namespace runstone::test {
 
@@ -40,7 +40,7 @@ struct WorldBench {
       : server(std::move(c), start, ports,
                [](std::span<std::uint8_t> out) { std::fill(out.begin(), out.end(), 9); }) {}
 
-  Now now() const { return {time_us, time_us + 1'000'000'000}; }
+  Clocks now() const { return {time_us, time_us + 1'000'000'000}; }
 
   Hello hello(std::uint8_t who, ClientInstance instance = 1) const {
     Hello h;
@@ -49,17 +49,17 @@ struct WorldBench {
     h.name = "player" + std::to_string(who);
     return h;
   }
-  Proof proof(std::uint8_t who, const Hello& h, const Welcome& w) const {
+  ClientAuth proof(std::uint8_t who, const Hello& h, const Welcome& w) const {
     return {sign(key_pair_of(seed_of(who)), client_transcript(h, w))};
   }
-  Ready join(SessionId session, std::uint8_t who, ClientInstance instance = 1) {
+  SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1) {
     server.connected(session, now());
     const Hello h = hello(who, instance);
     server.received(session, h, now());
     const auto welcome = ports.messages<Welcome>(session, 0);
     REQUIRE(welcome.size() == 1);
     server.received(session, proof(who, h, welcome[0]), now());
-    const auto ready = ports.messages<Ready>(session, kEdge);
+    const auto ready = ports.messages<SessionAccepted>(session, kEdge);
     REQUIRE(ready.size() == 1);
     return ready[0];
   }
@@ -81,9 +81,11 @@ struct WorldBench {
     time_us += later_us;
     server.tick(now());
   }
-  std::vector<Commit> commits(SessionId session) const { return ports.messages<Commit>(session, kEdge); }
+  std::vector<Commit> commits(SessionId session) const {
+    return ports.messages<Commit>(session, kEdge);
+  }
 
-  FakePorts ports;
+  FakeEnvironment ports;
   TimeUs time_us = 1'000'000;
   bool has_empty_base = false;  // of chunks of one material; else a snapshot is sent of each
   WorldServer server;

@@ -13,7 +13,8 @@ namespace {
 using namespace test;
 using Bench = WorldBench;
 
-TEST_CASE("hello is answered by a welcome that the server signed, and a proof opens the session", "[world]") {
+TEST_CASE("hello is answered by a welcome that the server signed, and a proof opens the session",
+          "[world]") {
   Bench bench;
   bench.server.connected(1, bench.now());
   const Hello hello = bench.hello(1);
@@ -26,15 +27,15 @@ TEST_CASE("hello is answered by a welcome that the server signed, and a proof op
   CHECK(welcome.encoding == ChunkEncoding::packed);
   CHECK(bench.ports.encodings.at(1) == ChunkEncoding::packed);
   CHECK(verify(welcome.server_key, server_transcript(hello, welcome), welcome.signature));
-  CHECK(bench.ports.messages<Ready>(1, kEdge).empty());
+  CHECK(bench.ports.messages<SessionAccepted>(1, kEdge).empty());
 
   bench.server.received(1, bench.proof(1, hello, welcome), bench.now());
-  const auto ready = bench.ports.messages<Ready>(1, kEdge);
+  const auto ready = bench.ports.messages<SessionAccepted>(1, kEdge);
   REQUIRE(ready.size() == 1);
   CHECK(ready[0].author == 1);
-  CHECK(ready[0].decided == 0);
+  CHECK(ready[0].resolved == 0);
   bench.tick();
-  const auto roster = bench.ports.messages<Roster>(1, kEdge);
+  const auto roster = bench.ports.messages<PlayerList>(1, kEdge);
   REQUIRE(roster.size() == 1);
   CHECK(roster[0].players.at(0).name == "player1");
 }
@@ -48,7 +49,8 @@ TEST_CASE("a client that can read raw chunks only gets raw chunks", "[world]") {
   CHECK(bench.ports.messages<Welcome>(1, 0).at(0).encoding == ChunkEncoding::raw);
 }
 
-TEST_CASE("a client gets coded chunks where it reads nothing else, or the server prefers them", "[world]") {
+TEST_CASE("a client gets coded chunks where it reads nothing else, or the server prefers them",
+          "[world]") {
   const auto chosen = [](ChunkEncoding preferred, std::uint8_t offered) {
     WorldConfig wanted = config();
     wanted.preferred_encoding = preferred;
@@ -83,10 +85,12 @@ TEST_CASE("each message at the wrong moment closes the session with its reason",
   SECTION("edit before hello") {
     closes(EditRequest{1, 0, {kAtOrigin, {}, 1}}, GoodbyeReason::not_authenticated);
   }
-  SECTION("chunk request before hello") { closes(ChunkRequest{}, GoodbyeReason::not_authenticated); }
+  SECTION("chunk request before hello") {
+    closes(ChunkRequest{}, GoodbyeReason::not_authenticated);
+  }
   SECTION("move before hello") { closes(Move{}, GoodbyeReason::not_authenticated); }
   SECTION("ping before hello") { closes(Ping{}, GoodbyeReason::not_authenticated); }
-  SECTION("proof before hello") { closes(Proof{}, GoodbyeReason::unexpected_message); }
+  SECTION("proof before hello") { closes(ClientAuth{}, GoodbyeReason::unexpected_message); }
   SECTION("a server's message") { closes(Pong{}, GoodbyeReason::unexpected_message); }
   SECTION("another protocol") {
     Hello other = hello;
@@ -100,7 +104,9 @@ TEST_CASE("each message at the wrong moment closes the session with its reason",
     bench.server.received(1, hello, bench.now());
     const Welcome welcome = bench.ports.messages<Welcome>(1, 0).at(0);
     SECTION("hello again") { closes(hello, GoodbyeReason::unexpected_message); }
-    SECTION("an edit") { closes(EditRequest{1, 0, {kAtOrigin, {}, 1}}, GoodbyeReason::not_authenticated); }
+    SECTION("an edit") {
+      closes(EditRequest{1, 0, {kAtOrigin, {}, 1}}, GoodbyeReason::not_authenticated);
+    }
     SECTION("a proof by another key") {
       closes(bench.proof(2, hello, welcome), GoodbyeReason::not_authenticated);
     }
@@ -110,13 +116,15 @@ TEST_CASE("each message at the wrong moment closes the session with its reason",
       closes(bench.proof(1, hello, other), GoodbyeReason::not_authenticated);
     }
     SECTION("a proof that the server made") {
-      closes(Proof{sign(key_pair_of(seed_of(1)), server_transcript(hello, welcome))},
+      closes(ClientAuth{sign(key_pair_of(seed_of(1)), server_transcript(hello, welcome))},
              GoodbyeReason::not_authenticated);
     }
     SECTION("after proof") {
       bench.server.received(1, bench.proof(1, hello, welcome), bench.now());
       SECTION("hello again") { closes(hello, GoodbyeReason::unexpected_message); }
-      SECTION("proof again") { closes(bench.proof(1, hello, welcome), GoodbyeReason::unexpected_message); }
+      SECTION("proof again") {
+        closes(bench.proof(1, hello, welcome), GoodbyeReason::unexpected_message);
+      }
       SECTION("a server's message") { closes(Durable{1, 1}, GoodbyeReason::unexpected_message); }
     }
   }
@@ -166,10 +174,11 @@ TEST_CASE("sockets that say nothing keep nobody out", "[world]") {
   CHECK(bench.ports.closed.empty());
 }
 
-TEST_CASE("the same key and instance again closes the older session; another instance does not", "[world]") {
+TEST_CASE("the same key and instance again closes the older session; another instance does not",
+          "[world]") {
   Bench bench;
-  const Ready first = bench.join(1, 1, 50);
-  const Ready other = bench.join(2, 1, 51);
+  const SessionAccepted first = bench.join(1, 1, 50);
+  const SessionAccepted other = bench.join(2, 1, 51);
   CHECK(other.author == first.author);
   CHECK(bench.ports.closed.empty());
   bench.join(3, 1, 50);
@@ -278,7 +287,7 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   REQUIRE(rejects.size() == 4);
   CHECK(rejects[0].reason == RejectReason::unknown_material);
   CHECK(rejects[1].reason == RejectReason::out_of_reach);
-  CHECK(rejects[2].reason == RejectReason::already_decided);
+  CHECK(rejects[2].reason == RejectReason::already_resolved);
   CHECK(rejects[3].reason == RejectReason::busy);
   CHECK(rejects[3].client_seq == 4);
   bench.ports.log_room = true;
@@ -288,7 +297,8 @@ TEST_CASE("rejects name the client's sequence and the reason", "[world]") {
   CHECK(bench.ports.records.size() == 2);
 }
 
-TEST_CASE("what became durable while a session opened is told to it, though the world rests", "[world]") {
+TEST_CASE("what became durable while a session opened is told to it, though the world rests",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.edit(1, 1, kAtOrigin);
@@ -327,20 +337,21 @@ TEST_CASE("a session that edits too fast is told so, and goes on later", "[world
   CHECK(bench.server.head() == 3);
 }
 
-TEST_CASE("ready names what was decided: by the store, by edits and by rejects of this run", "[world]") {
+TEST_CASE("ready names what was decided: by the store, by edits and by rejects of this run",
+          "[world]") {
   WorldStart start;
   start.log = {4, 20, 0};
   start.checkpoint = 20;
   start.players.push_back({6, key_pair_of(seed_of(1)).public_key, "old name"});
-  start.decided.push_back({6, 1, 12});
+  start.resolved.push_back({6, 1, 12});
   Bench bench(config(), start);
   CHECK(bench.join(1, 1).author == 6);
-  CHECK(bench.ports.messages<Ready>(1, kEdge)[0].decided == 12);
+  CHECK(bench.ports.messages<SessionAccepted>(1, kEdge)[0].resolved == 12);
   bench.edit(1, 13, kAtOrigin);
   bench.edit(1, 14, kAtOrigin, 99);
   bench.server.commit(bench.now());
   CHECK(bench.server.head() == 21);
-  CHECK(bench.join(2, 1).decided == 14);
+  CHECK(bench.join(2, 1).resolved == 14);
   CHECK(bench.join(3, 2).author == 7);
   REQUIRE(bench.ports.players.size() == 1);  // author 7 has not edited, author 6 has a new name
   CHECK(bench.ports.players[0].author == 6);
@@ -373,16 +384,17 @@ TEST_CASE("a new name of a known author is handed to the store once, without an 
   CHECK(bench.ports.records.size() == 1);
 }
 
-TEST_CASE("an author who never edited is forgotten with its last session, and its number stays unused",
-          "[world]") {
+TEST_CASE(
+    "an author who never edited is forgotten with its last session, and its number stays unused",
+    "[world]") {
   Bench bench;
   CHECK(bench.join(1, 1).author == 1);
   bench.edit(1, 7, SetVoxel{{1, 1, 1}}, 99);  // refused: no such material
   bench.server.disconnected(1);
   bench.tick();
-  const Ready again = bench.join(2, 1);
+  const SessionAccepted again = bench.join(2, 1);
   CHECK(again.author == 2);
-  CHECK(again.decided == 0);
+  CHECK(again.resolved == 0);
   CHECK(bench.join(3, 1, 2).author == 2);  // another instance of the same key
   bench.server.disconnected(2);
   bench.tick();
@@ -393,9 +405,9 @@ TEST_CASE("an author who never edited is forgotten with its last session, and it
   bench.tick();
   REQUIRE(bench.ports.players.size() == 1);
   CHECK(bench.ports.players[0].author == 2);
-  const Ready known = bench.join(5, 1);
+  const SessionAccepted known = bench.join(5, 1);
   CHECK(known.author == 2);
-  CHECK(known.decided == 1);
+  CHECK(known.resolved == 1);
   CHECK(bench.join(6, 6).author == 3);
 }
 
@@ -428,8 +440,9 @@ TEST_CASE("the durable watermark goes to the authors of edits at once, and again
   CHECK(bench.ports.messages<Durable>(3, kEdge).size() == 1);
 }
 
-TEST_CASE("an edit offered again is told to be durable at once, also in a session that opened since",
-          "[world]") {
+TEST_CASE(
+    "an edit offered again is told to be durable at once, also in a session that opened since",
+    "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.tick();
@@ -438,13 +451,14 @@ TEST_CASE("an edit offered again is told to be durable at once, also in a sessio
   bench.server.disconnected(1);
   bench.join(2, 1);
   bench.edit(2, 1, kAtOrigin);
-  REQUIRE(bench.ports.messages<Reject>(2, kEdge).at(0).reason == RejectReason::already_decided);
+  REQUIRE(bench.ports.messages<Reject>(2, kEdge).at(0).reason == RejectReason::already_resolved);
   bench.server.durable(1, bench.now());
   CHECK(bench.ports.messages<Durable>(2, kEdge).size() == 1);
 }
 
-TEST_CASE("a full session loses commits, gets fresh snapshots later and an answer for its own edits",
-          "[world]") {
+TEST_CASE(
+    "a full session loses commits, gets fresh snapshots later and an answer for its own edits",
+    "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.view(1, kSmall);
@@ -455,13 +469,14 @@ TEST_CASE("a full session loses commits, gets fresh snapshots later and an answe
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).empty());
   CHECK(bench.server.counters().chunks_stale == 1);
-  CHECK(bench.ports.messages<Reject>(1, kEdge).empty());  // answers travel in order with commits: it is owed
+  CHECK(bench.ports.messages<Reject>(1, kEdge)
+            .empty());  // answers travel in order with commits: it is owed
   // While it is stale it gets no commits of that chunk, and no snapshot before there is room.
   bench.ports.refuse_edits.clear();
   bench.tick(0);
   const auto rejects = bench.ports.messages<Reject>(1, kEdge);
   REQUIRE(rejects.size() == 1);
-  CHECK(rejects[0].reason == RejectReason::already_decided);
+  CHECK(rejects[0].reason == RejectReason::already_resolved);
   bench.edit(1, 2, SetVoxel{{20, 1, 1}}, 2);  // the chunk to the east is still subscribed
   bench.server.commit(bench.now());
   CHECK(bench.commits(1).size() == 1);
@@ -474,7 +489,8 @@ TEST_CASE("a full session loses commits, gets fresh snapshots later and an answe
   CHECK(bench.ports.snapshots[5].chunk->version == Version{1, 1});
 }
 
-TEST_CASE("answers that do not fit are owed in order, and too many of them close the session", "[world]") {
+TEST_CASE("answers that do not fit are owed in order, and too many of them close the session",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.ports.full.insert(1);
@@ -520,16 +536,20 @@ TEST_CASE("a chunk request brings chunks of the view again and ignores others", 
   Bench bench;
   bench.join(1, 1);
   bench.view(1, kSmall);
-  bench.server.received(1, ChunkRequest{{{0, {0, 0, 0}}, {0, {40, 0, 0}}, {3, {0, 0, 0}}}}, bench.now());
+  bench.server.received(1, ChunkRequest{{{0, {0, 0, 0}}, {0, {40, 0, 0}}, {3, {0, 0, 0}}}},
+                        bench.now());
   REQUIRE(bench.ports.snapshots.size() == 6);
   CHECK(bench.ports.snapshots[5].key == ChunkKey{});
   CHECK(bench.ports.loads.empty());
 }
 
-TEST_CASE("a quarantined chunk is reported, told to whoever wants it, and never loaded again", "[world]") {
+TEST_CASE("a quarantined chunk is reported, told to whoever wants it, and never loaded again",
+          "[world]") {
   Bench bench;
   const ChunkUnavailable expected{{ChunkKey{}}, UnavailableReason::damaged};
-  const auto told = [&](SessionId session) { return bench.ports.messages<ChunkUnavailable>(session, kEdge); };
+  const auto told = [&](SessionId session) {
+    return bench.ports.messages<ChunkUnavailable>(session, kEdge);
+  };
   bench.join(1, 1);
   bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
   REQUIRE(bench.ports.loads.size() == 1);
@@ -607,7 +627,7 @@ TEST_CASE("features are in force that both sides know; others are ignored", "[wo
   const Welcome welcome = bench.ports.messages<Welcome>(1, 0).at(0);
   CHECK(welcome.features == 0b0010);
   bench.server.received(1, bench.proof(1, hello, welcome), bench.now());
-  CHECK(bench.ports.messages<Ready>(1, kEdge).size() == 1);
+  CHECK(bench.ports.messages<SessionAccepted>(1, kEdge).size() == 1);
 }
 
 TEST_CASE("audits carry version and digest of chunks the session has", "[world]") {
@@ -617,10 +637,10 @@ TEST_CASE("audits carry version and digest of chunks the session has", "[world]"
   bench.edit(1, 1, kAtOrigin, 2);
   bench.server.commit(bench.now());
   bench.tick(1'000'000);
-  const auto audits = bench.ports.messages<Audit>(1, kEdge);
+  const auto audits = bench.ports.messages<DigestCheck>(1, kEdge);
   REQUIRE(audits.size() == 1);
   REQUIRE(audits[0].entries.size() == 5);  // all of them, each once
-  for (const AuditEntry& entry : audits[0].entries) {
+  for (const DigestCheckEntry& entry : audits[0].entries) {
     const ChunkPtr chunk = bench.server.find_chunk(entry.key);
     CHECK(entry.version == chunk->version);
     CHECK(entry.digest == digest_of(chunk->voxels));
@@ -669,13 +689,14 @@ TEST_CASE("after a failed log every edit is rejected busy", "[world]") {
   CHECK(bench.ports.messages<Reject>(1, kEdge).at(0).reason == RejectReason::busy);
 }
 
-TEST_CASE("a restarted world goes on from its log: versions, previous sequences and voxels", "[world]") {
+TEST_CASE("a restarted world goes on from its log: versions, previous sequences and voxels",
+          "[world]") {
   WorldStart start;
   start.log = {2, 2, 0};
   Bench bench(config(), start);
   const EditDescriptor first{kAtOrigin, {}, 1};
-  bench.server.restack({{1, 1}, {1, 1, 1}, 0, Cause::player, first});
-  bench.server.restack({{1, 2}, {1, 1, 2}, 0, Cause::player, {kAtOrigin, {}, 3}});
+  bench.server.replay_onto_stack({{1, 1}, {1, 1, 1}, 0, Cause::player, first});
+  bench.server.replay_onto_stack({{1, 2}, {1, 1, 2}, 0, Cause::player, {kAtOrigin, {}, 3}});
   bench.join(1, 1);
   bench.view(1, kSmall);
   const ChunkPtr chunk = bench.server.find_chunk({});

@@ -22,7 +22,9 @@ constexpr unsigned kEdge = 32;
 class Ledger {
  public:
   explicit Ledger(const char* name) : name_(name) {}
-  ~Ledger() { std::cout << name_ << ": " << met_ << " of " << checked_ << " numbers of the thesis met\n"; }
+  ~Ledger() {
+    std::cout << name_ << ": " << met_ << " of " << checked_ << " numbers of the thesis met\n";
+  }
   void check(const ThesisRow& row, const std::string& column, const std::string& found) {
     ++checked_;
     met_ += found == row.at(column) ? 1u : 0u;
@@ -53,7 +55,9 @@ std::string mean_text(double value) {
   return out.ends_with(".0") ? out.substr(0, out.size() - 2) : out;
 }
 
-unsigned number_of(const ThesisRow& row) { return static_cast<unsigned>(std::stoul(row.at("number"))); }
+unsigned number_of(const ThesisRow& row) {
+  return static_cast<unsigned>(std::stoul(row.at("number")));
+}
 
 /// Means over the 27 chunks of a world.
 struct WorldMeans {
@@ -118,7 +122,8 @@ void check_storage(Ledger& ledger, const ThesisRow& row, const MeshScene& scene,
   ledger.check(row, "rle_bytes_logged", rle_bytes_logged(scene));
 }
 
-TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices", "[scenarios][golden]") {
+TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices",
+          "[scenarios][golden]") {
   Ledger ledger("scenarios alone");
   int rows = 0;
   for (const ThesisRow& row : thesis_table("scenarios.csv")) {
@@ -138,7 +143,8 @@ TEST_CASE("every scenario alone has the thesis' voxels, runs, bytes and vertices
   CHECK(ledger.checked() == 36 * 8);
 }
 
-TEST_CASE("every scenario as the thesis' world of 27 chunks has its logged vertices", "[scenarios][golden]") {
+TEST_CASE("every scenario as the thesis' world of 27 chunks has its logged vertices",
+          "[scenarios][golden]") {
   Ledger ledger("scenarios as worlds");
   const auto known_defects = defects();
   std::map<unsigned, WorldMeans> means;

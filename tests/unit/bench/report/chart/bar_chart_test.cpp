@@ -25,8 +25,10 @@ std::vector<Element> columns_of(const SvgText& svg, const std::string& colour) {
 }  // namespace
 
 TEST_CASE("columns are as high as their values", "[chart]") {
-  const BarChart chart{
-      {"flat", "hills"}, {{"a", Role::ours, {10, 40}}, {"b", Role::baseline, {20, 80}}}, {"us"}, ""};
+  const BarChart chart{{"flat", "hills"},
+                       {{"a", Role::ours, {10, 40}}, {"b", Role::baseline, {20, 80}}},
+                       {"us"},
+                       ""};
   const SvgText svg = read_svg(svg_of(chart));
   const auto ours = columns_of(svg, "c-ours");
   const auto baseline = columns_of(svg, "c-baseline");
@@ -59,15 +61,17 @@ TEST_CASE("what was not measured is a cross, and negative columns hang down", "[
   CHECK(svg.has_text("a, y: not measured"));
   const auto columns = columns_of(svg, "c-ours");
   REQUIRE(columns.size() == 2);
-  CHECK(columns[0].number("y") + columns[0].number("height") == Approx(columns[1].number("y")).margin(0.2));
+  CHECK(columns[0].number("y") + columns[0].number("height") ==
+        Approx(columns[1].number("y")).margin(0.2));
   // A series that is too short has not been measured there.
-  CHECK(
-      read_svg(svg_of(BarChart{{"x", "y"}, {{"a", Role::ours, {5}}}, {}, ""})).with_class("missing").size() ==
-      1);
+  CHECK(read_svg(svg_of(BarChart{{"x", "y"}, {{"a", Role::ours, {5}}}, {}, ""}))
+            .with_class("missing")
+            .size() == 1);
 }
 
 TEST_CASE("many categories go into several rows", "[chart]") {
-  BarChart chart{{}, {{"a", Role::ours, {}}, {"b", Role::thesis, {}}, {"c", Role::other, {}}}, {"us"}, ""};
+  BarChart chart{
+      {}, {{"a", Role::ours, {}}, {"b", Role::thesis, {}}, {"c", Role::other, {}}}, {"us"}, ""};
   for (int i = 0; i < 45; ++i) {
     chart.categories.push_back("scenario " + std::to_string(i));
     for (Series& series : chart.series) series.values.push_back(50);

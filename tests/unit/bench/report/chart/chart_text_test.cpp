@@ -6,8 +6,10 @@
 using namespace runstone::bench::chart;
 
 TEST_CASE("text is escaped for tags and attributes alike", "[chart]") {
-  CHECK(escaped("a < b && c > \"d\" 'e'") == "a &lt; b &amp;&amp; c &gt; &quot;d&quot; &#39;e&#39;");
-  CHECK(escaped("64\xC2\xB3, \xC2\xB5s \xF0\x9F\x98\x80") == "64\xC2\xB3, \xC2\xB5s \xF0\x9F\x98\x80");
+  CHECK(escaped("a < b && c > \"d\" 'e'") ==
+        "a &lt; b &amp;&amp; c &gt; &quot;d&quot; &#39;e&#39;");
+  CHECK(escaped("64\xC2\xB3, \xC2\xB5s \xF0\x9F\x98\x80") ==
+        "64\xC2\xB3, \xC2\xB5s \xF0\x9F\x98\x80");
 }
 
 TEST_CASE("what is no UTF-8 or no XML becomes a replacement character", "[chart]") {

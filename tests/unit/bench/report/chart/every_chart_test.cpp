@@ -33,15 +33,17 @@ std::vector<std::string> plain_names(std::size_t count) {
 std::vector<Box> boxes_of(const Element& element) {
   const auto at = [&](const char* key) { return element.number(key); };
   if (element.name == "rect") return {{at("x"), at("y"), at("width"), at("height")}};
-  if (element.name == "circle") return {{at("cx") - at("r"), at("cy") - at("r"), 2 * at("r"), 2 * at("r")}};
+  if (element.name == "circle")
+    return {{at("cx") - at("r"), at("cy") - at("r"), 2 * at("r"), 2 * at("r")}};
   if (element.name == "line") {
-    return {{std::min(at("x1"), at("x2")), std::min(at("y1"), at("y2")), std::abs(at("x1") - at("x2")),
-             std::abs(at("y1") - at("y2"))}};
+    return {{std::min(at("x1"), at("x2")), std::min(at("y1"), at("y2")),
+             std::abs(at("x1") - at("x2")), std::abs(at("y1") - at("y2"))}};
   }
   if (element.name != "text") return {};
   const bool is_small = element.has_class("tick") || element.has_class("note");
   const double wide = width_of(element.text, is_small ? kTickSize : kTextSize);
-  if (double degrees = 0; std::sscanf(element.at("transform").c_str(), "rotate(%lf", &degrees) == 1) {
+  if (double degrees = 0;
+      std::sscanf(element.at("transform").c_str(), "rotate(%lf", &degrees) == 1) {
     const double across = wide * std::cos(degrees / 180 * 3.14159265);
     const double down = wide * std::sin(degrees / 180 * 3.14159265);
     if (element.has_class("end")) return {{at("x") - across, at("y"), across, -down}};
@@ -60,7 +62,8 @@ std::string fault_of(const std::string& picture) {
     return "no picture for readers";
   double width = 0;
   double height = 0;
-  if (std::sscanf(root.at("viewBox").c_str(), "0 0 %lf %lf", &width, &height) != 2) return "no viewBox";
+  if (std::sscanf(root.at("viewBox").c_str(), "0 0 %lf %lf", &width, &height) != 2)
+    return "no viewBox";
   if (!root.at("width").empty() || !root.at("style").empty()) return "a size or a style of its own";
   for (const Element& element : svg.elements) {
     for (const auto& [key, value] : element.attributes) {
@@ -102,7 +105,8 @@ TEST_CASE("any data gives a well-formed picture with everything inside", "[chart
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       for (const bool is_log : {false, true}) {
         for (const Width width : kWidths) {
-          for (const auto& [name, svg] : sample_svgs({plain_names(count), kinds[kind], is_log}, width)) {
+          for (const auto& [name, svg] :
+               sample_svgs({plain_names(count), kinds[kind], is_log}, width)) {
             CAPTURE(Catch::rngSeed(), count, kind, is_log, width == Width::wide, name);
             REQUIRE(fault_of(svg).empty());
           }
@@ -132,7 +136,8 @@ TEST_CASE("text does not overlap", "[chart][property]") {
     const auto value = [&] {
       return std::pow(10.0, decades * static_cast<double>(random() % 1000) / 1000) * 3;
     };
-    for (const std::size_t count : {std::size_t{1}, std::size_t{5}, std::size_t{16}, std::size_t{37}}) {
+    for (const std::size_t count :
+         {std::size_t{1}, std::size_t{5}, std::size_t{16}, std::size_t{37}}) {
       for (const bool is_log : {false, true}) {
         for (const Width width : kWidths) {
           for (const auto& [name, svg] : sample_svgs({plain_names(count), value, is_log}, width)) {
@@ -144,8 +149,8 @@ TEST_CASE("text does not overlap", "[chart][property]") {
             for (std::size_t a = 0; a < texts.size(); ++a) {
               for (std::size_t b = 0; b < a; ++b) {
                 if (!overlap(texts[a].second, texts[b].second)) continue;
-                CAPTURE(Catch::rngSeed(), decades, count, is_log, width == Width::wide, name, texts[a].first,
-                        texts[b].first);
+                CAPTURE(Catch::rngSeed(), decades, count, is_log, width == Width::wide, name,
+                        texts[a].first, texts[b].first);
                 FAIL_CHECK("overlap");
               }
             }
@@ -179,7 +184,8 @@ TEST_CASE("nothing to show is said", "[chart]") {
 }
 
 TEST_CASE("every mark says in a tooltip what it is", "[chart]") {
-  for (const auto& [name, svg] : sample_svgs({plain_names(4), [] { return 2.5; }, false}, Width::wide)) {
+  for (const auto& [name, svg] :
+       sample_svgs({plain_names(4), [] { return 2.5; }, false}, Width::wide)) {
     CAPTURE(name);
     const SvgText read = read_svg(svg);
     std::size_t tooltips = 0;
@@ -210,7 +216,8 @@ TEST_CASE("the style sheet knows every class, and both themes every colour", "[c
     }
   }
   std::vector<std::string> used;
-  for (std::size_t at = css.find("var(--"); at != std::string::npos; at = css.find("var(--", at + 1)) {
+  for (std::size_t at = css.find("var(--"); at != std::string::npos;
+       at = css.find("var(--", at + 1)) {
     const std::size_t end = css.find_first_of(",)", at);
     used.push_back(css.substr(at + 4, end - at - 4));
   }
@@ -230,8 +237,8 @@ TEST_CASE("the style sheet knows every class, and both themes every colour", "[c
 TEST_CASE("no two series look alike, even of one role", "[chart]") {
   const std::vector<Role> roles = {Role::ours,     Role::other, Role::ours,
                                    Role::baseline, Role::other, Role::baseline};
-  CHECK(colours_of(roles) ==
-        std::vector<std::string>{"c-ours", "c-other0", "c-ours2", "c-baseline", "c-other1", "c-baseline2"});
+  CHECK(colours_of(roles) == std::vector<std::string>{"c-ours", "c-other0", "c-ours2", "c-baseline",
+                                                      "c-other1", "c-baseline2"});
 }
 
 TEST_CASE("a frame holds both layouts", "[chart]") {

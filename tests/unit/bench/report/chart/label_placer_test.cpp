@@ -19,7 +19,8 @@ TEST_CASE("positions are spread as little as can be", "[chart]") {
   CHECK(spread({}, 10, 0, 19).empty());
 }
 
-TEST_CASE("spread positions keep their order, their distance and their bounds", "[chart][property]") {
+TEST_CASE("spread positions keep their order, their distance and their bounds",
+          "[chart][property]") {
   std::mt19937 random(Catch::rngSeed());
   for (int round = 0; round < 500; ++round) {
     std::vector<double> wanted(1 + random() % 16);
@@ -38,7 +39,8 @@ TEST_CASE("spread positions keep their order, their distance and their bounds", 
   }
 }
 
-TEST_CASE("labels keep off points, each other and the edge, and stay beside their point", "[chart]") {
+TEST_CASE("labels keep off points, each other and the edge, and stay beside their point",
+          "[chart]") {
   LabelPlacer placer({0, 0, 200, 100});
   placer.block({0, 0, 200, 20});
   placer.block_point(100, 50, 5);

@@ -50,8 +50,10 @@ LineChart many_lines(std::size_t count, const std::string& name) {
 }  // namespace
 
 TEST_CASE("a line goes through its points and breaks where there is none", "[chart]") {
-  const LineChart chart{
-      {"n", true}, {"us", true}, {{"a", Role::ours, {{1, 1}, {10, 10}, {100, NAN}, {1000, 1000}}}}, ""};
+  const LineChart chart{{"n", true},
+                        {"us", true},
+                        {{"a", Role::ours, {{1, 1}, {10, 10}, {100, NAN}, {1000, 1000}}}},
+                        ""};
   const SvgText svg = read_svg(svg_of(chart));
   const auto lines = svg.with_class("strong-line");
   REQUIRE(lines.size() == 1);
@@ -67,7 +69,8 @@ TEST_CASE("a line goes through its points and breaks where there is none", "[cha
   CHECK(dy < 0);  // up
 }
 
-TEST_CASE("names stand at the ends of lines, apart, and in a legend where they do not fit", "[chart]") {
+TEST_CASE("names stand at the ends of lines, apart, and in a legend where they do not fit",
+          "[chart]") {
   const SvgText ends = read_svg(svg_of(many_lines(16, "mesher ")));
   const auto names = names_in(ends);
   REQUIRE(names.size() == 16);
@@ -77,14 +80,17 @@ TEST_CASE("names stand at the ends of lines, apart, and in a legend where they d
   CHECK(names_in(legend).size() == 40);
   CHECK(legend.with_class("lead").empty());
   check_apart(names_in(legend));
-  CHECK(read_svg(svg_of(many_lines(3, std::string(60, 'x')), Width::narrow)).with_class("lead").empty());
+  CHECK(read_svg(svg_of(many_lines(3, std::string(60, 'x')), Width::narrow))
+            .with_class("lead")
+            .empty());
 }
 
 TEST_CASE("the thesis has dashed lines and hollow points", "[chart]") {
-  const LineChart lines{{}, {}, {{"t", Role::thesis, {{1, 1}, {2, 2}}}, {"a", Role::ours, {{1, 2}}}}, ""};
+  const LineChart lines{
+      {}, {}, {{"t", Role::thesis, {{1, 1}, {2, 2}}}, {"a", Role::ours, {{1, 2}}}}, ""};
   CHECK(read_svg(svg_of(lines)).with_class("dashed").size() == 1);
-  const SvgText points =
-      read_svg(svg_of(ScatterChart{{}, {}, {{1, 1, "t", Role::thesis}, {2, 2, "a", Role::ours}}, false, ""}));
+  const SvgText points = read_svg(svg_of(
+      ScatterChart{{}, {}, {{1, 1, "t", Role::thesis}, {2, 2, "a", Role::ours}}, false, ""}));
   REQUIRE(points.with_class("hollow").size() == 1);
   CHECK(points.with_class("hollow")[0].has_class("c-thesis"));
 }
@@ -109,7 +115,8 @@ TEST_CASE("names of points do not overlap, and ours is always there", "[chart][p
   }
 }
 
-TEST_CASE("points are where their values are, named when asked, with the good corner when asked", "[chart]") {
+TEST_CASE("points are where their values are, named when asked, with the good corner when asked",
+          "[chart]") {
   ScatterChart chart{{"x"},
                      {"y"},
                      {{0, 0, "a", Role::ours}, {10, 10, "b", Role::baseline, false}, {5, NAN, "c"}},
@@ -155,7 +162,8 @@ TEST_CASE("a table that is too wide goes on below", "[chart]") {
   for (int i = 0; i < 16; ++i) chart.columns.push_back("column " + std::to_string(i));
   const auto rows_named = [&](Width width) {
     const auto names = names_in(read_svg(svg_of(chart, width)));
-    return std::count_if(names.begin(), names.end(), [](const auto& name) { return name.text == "r"; });
+    return std::count_if(names.begin(), names.end(),
+                         [](const auto& name) { return name.text == "r"; });
   };
   CHECK(rows_named(Width::wide) == 1);
   CHECK(rows_named(Width::narrow) == 2);

@@ -46,7 +46,8 @@ TEST_CASE("bars of a rank are as long as their values, with value and note behin
 }
 
 TEST_CASE("in a narrow picture names stand above their bars", "[chart]") {
-  const RankChart chart{{"a rather long name of a mesher", "b"}, {}, {10, 40}, {"us"}, {"n", "m"}, ""};
+  const RankChart chart{
+      {"a rather long name of a mesher", "b"}, {}, {10, 40}, {"us"}, {"n", "m"}, ""};
   const SvgText narrow = read_svg(svg_of(chart, Width::narrow));
   const Element bar = narrow.with_class("c-rest").at(0);
   const Element& name = text_of(narrow, chart.names[0]);
@@ -82,7 +83,8 @@ TEST_CASE("parts of a stack follow one another, and their sum stands behind", "[
   CHECK(svg.with_class("missing").size() == 1);  // caves
 }
 
-TEST_CASE("a range is a bar from low to high, a tick at the middle and a whisker to far", "[chart]") {
+TEST_CASE("a range is a bar from low to high, a tick at the middle and a whisker to far",
+          "[chart]") {
   const RangeChart chart{{"edit"}, {{10, 22, 40, 80}},           {Role::ours},
                          {"ms"},   {"p10", "p50", "p90", "p99"}, ""};
   const SvgText svg = read_svg(svg_of(chart));
@@ -102,7 +104,8 @@ TEST_CASE("a range is a bar from low to high, a tick at the middle and a whisker
 
 TEST_CASE("a range shows what there is of it", "[chart]") {
   const auto drawn = [](const Range& range) {
-    return read_svg(svg_of(RangeChart{{"a", "b"}, {range, {1, 2, 3, 4}}, {Role::ours}, {}, {}, ""}));
+    return read_svg(
+        svg_of(RangeChart{{"a", "b"}, {range, {1, 2, 3, 4}}, {Role::ours}, {}, {}, ""}));
   };
   CHECK(drawn({NAN, 2, NAN, NAN}).with_class("c-ours").empty());
   CHECK(drawn({1, 2, 3, NAN}).with_class("c-ours").size() == 1);     // no whisker

@@ -27,7 +27,8 @@ inline Role sample_role(std::size_t i) {
 }
 
 /// Kind and picture.
-inline std::vector<std::pair<std::string, std::string>> sample_svgs(const SampleData& data, Width width) {
+inline std::vector<std::pair<std::string, std::string>> sample_svgs(const SampleData& data,
+                                                                    Width width) {
   const Axis axis{"time per chunk, \xC2\xB5s", data.is_log};
   const std::size_t count = data.names.size();
   std::vector<Role> roles;
@@ -51,14 +52,15 @@ inline std::vector<std::pair<std::string, std::string>> sample_svgs(const Sample
   }
   return {{"bars", svg_of(BarChart{data.names, series, axis, "bars"}, width)},
           {"rank",
-           svg_of(RankChart{data.names, roles, values(count), axis, {"", "\xC3\x97 2.5"}, "rank"}, width)},
+           svg_of(RankChart{data.names, roles, values(count), axis, {"", "\xC3\x97 2.5"}, "rank"},
+                  width)},
           {"stack", svg_of(StackChart{data.names, series, axis, "stack"}, width)},
           {"lines", svg_of(lines, width)},
           {"scatter", svg_of(scatter, width)},
           {"ranges", svg_of(ranges, width)},
-          {"heat",
-           svg_of(HeatMap{data.names, data.names, values(count * count), axis, format_value, true, "heat"},
-                  width)}};
+          {"heat", svg_of(HeatMap{data.names, data.names, values(count * count), axis, format_value,
+                                  true, "heat"},
+                          width)}};
 }
 
 }  // namespace runstone::bench::chart

@@ -34,14 +34,16 @@ TEST_CASE("a linear scale has ticks in steps of 1, 2 or 5", "[chart]") {
         Texts{"0", "20", "40", "60", "80", "100"});
   CHECK(texts_of(scale_of({3, 87}, false, bars, Scale::Ends::tight, 6)) ==
         Texts{"0", "20", "40", "60", "80"});
-  CHECK(texts_of(scale_of({0.02, 0.1}, false, bars, Scale::Ends::round, 4)) == Texts{"0.00", "0.05", "0.10"});
+  CHECK(texts_of(scale_of({0.02, 0.1}, false, bars, Scale::Ends::round, 4)) ==
+        Texts{"0.00", "0.05", "0.10"});
   CHECK(texts_of(scale_of({-4, 12}, false, bars, Scale::Ends::round, 5)) ==
         Texts{"-5", "0", "5", "10", "15"});
   CHECK(texts_of(scale_of({12000, 12004}, false, Scale::Start::lowest, Scale::Ends::round, 6)) ==
         Texts{"12,000", "12,001", "12,002", "12,003", "12,004"});
 }
 
-TEST_CASE("a logarithmic scale has ticks at 1, 2 and 5, at decades, or at some of them", "[chart]") {
+TEST_CASE("a logarithmic scale has ticks at 1, 2 and 5, at decades, or at some of them",
+          "[chart]") {
   using Texts = std::vector<std::string>;
   const auto lowest = Scale::Start::lowest;
   CHECK(texts_of(scale_of({3, 70}, true, lowest, Scale::Ends::round, 7)) ==
@@ -94,7 +96,8 @@ TEST_CASE("what has no place is known", "[chart]") {
   CHECK_FALSE(Scale::can_show(0, true));
   CHECK_FALSE(Scale::can_show(-3, true));
   CHECK_FALSE(Scale::can_show(1e-300, true));
-  CHECK_FALSE(scale_of({kNan, kInfinity}, false, Scale::Start::bars, Scale::Ends::round, 5).has_values());
+  CHECK_FALSE(
+      scale_of({kNan, kInfinity}, false, Scale::Start::bars, Scale::Ends::round, 5).has_values());
   CHECK_FALSE(scale_of({0, -1}, true, Scale::Start::bars, Scale::Ends::round, 5).has_values());
   CHECK(scale_of({kNan, 1}, true, Scale::Start::bars, Scale::Ends::round, 5).has_values());
 }
@@ -123,7 +126,8 @@ TEST_CASE("any values give a scale with ends apart, few ticks, in order, and pla
     const auto start = random() % 2 == 0 ? Scale::Start::bars : Scale::Start::lowest;
     const auto ends = random() % 2 == 0 ? Scale::Ends::round : Scale::Ends::tight;
     const std::size_t ticks = 2 + random() % 8;
-    CAPTURE(Catch::rngSeed(), values, is_log, start == Scale::Start::bars, ends == Scale::Ends::round, ticks);
+    CAPTURE(Catch::rngSeed(), values, is_log, start == Scale::Start::bars,
+            ends == Scale::Ends::round, ticks);
     Scale scale(values, is_log, start, ends, ticks);
     scale.lay(10, 110);
     REQUIRE(scale.low() < scale.high());

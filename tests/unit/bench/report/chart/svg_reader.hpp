@@ -114,8 +114,8 @@ class SvgReader {
   std::string take_name() {
     std::size_t length = 0;
     const auto is_name = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-             c == ':';
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '-' || c == ':';
     };
     while (length < rest_.size() && is_name(rest_[length])) ++length;
     if (length == 0) fail("no name");
@@ -158,7 +158,8 @@ class SvgReader {
   }
 
   void fail(const char* what) {
-    if (out_.error.empty()) out_.error = std::string(what) + " before: " + std::string(rest_.substr(0, 60));
+    if (out_.error.empty())
+      out_.error = std::string(what) + " before: " + std::string(rest_.substr(0, 60));
     rest_ = {};
   }
 

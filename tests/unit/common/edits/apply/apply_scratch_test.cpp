@@ -7,7 +7,8 @@
 
 namespace runstone::test {
 
-TEST_CASE("applying stacks allocates nothing once scratch, result and chunk have their size", "[edits]") {
+TEST_CASE("applying stacks allocates nothing once scratch, result and chunk have their size",
+          "[edits]") {
   SplitMix64 rng{31};
   ApplyScratch scratch;
   ApplyResult result;

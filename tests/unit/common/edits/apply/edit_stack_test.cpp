@@ -56,7 +56,8 @@ Applied apply(const Runs& start, const std::vector<EditDescriptor>& edits) {
     for (const PatchWrite write : {PatchWrite::pieces, PatchWrite::whole}) {
       RunChunk other = chunk_of_runs(start);
       Digest other_digest = digest_of(other);
-      const ApplyResult same = apply_stack_by({search, write}, other, other_digest, {}, edits, scratch);
+      const ApplyResult same =
+          apply_stack_by({search, write}, other, other_digest, {}, edits, scratch);
       REQUIRE(other == chunk);
       REQUIRE(other_digest == digest);
       REQUIRE(same.areas == result.areas);
@@ -84,8 +85,9 @@ TEST_CASE("figure 7.17: a change at the start of a new run shortens it", "[edits
   CHECK(result.areas == Areas{{1, 1, 2}});
 }
 
-TEST_CASE("figure 7.17: a change at the start of a new run to the material before moves the boundary",
-          "[edits]") {
+TEST_CASE(
+    "figure 7.17: a change at the start of a new run to the material before moves the boundary",
+    "[edits]") {
   const auto [runs, result] = apply({{20, A}, {512, B}}, {at_index(20, A)});
   CHECK(runs == Runs{{21, A}, {512, B}});
   CHECK(result.areas == Areas{{0, 2, 2}});
@@ -97,7 +99,8 @@ TEST_CASE("figure 7.18: a change amid a run cuts it in three", "[edits]") {
   CHECK(result.areas == Areas{{1, 1, 3}});
 }
 
-TEST_CASE("figure 7.19: a change at the start of a new line or layer lies in that line", "[edits]") {
+TEST_CASE("figure 7.19: a change at the start of a new line or layer lies in that line",
+          "[edits]") {
   for (const VoxelIndex start : {8u, 64u, 128u + 8u}) {
     const auto [runs, result] = apply({{512, A}}, {at_index(start, B)});
     CHECK(runs == Runs{{start, A}, {start + 1, B}, {512, A}});
@@ -115,7 +118,8 @@ TEST_CASE("a change of the last voxel ends the run list", "[edits]") {
 }
 
 TEST_CASE("a change that closes a gap merges with both neighbours", "[edits]") {
-  const auto [runs, result] = apply({{10, B}, {30, A}, {31, _}, {60, A}, {512, B}}, {at_index(30, A)});
+  const auto [runs, result] =
+      apply({{10, B}, {30, A}, {31, _}, {60, A}, {512, B}}, {at_index(30, A)});
   CHECK(runs == Runs{{10, B}, {60, A}, {512, B}});
   CHECK(result.areas == Areas{{1, 3, 1}});
 }
@@ -137,7 +141,8 @@ TEST_CASE("an edit to the material that is there changes nothing", "[edits]") {
 
 TEST_CASE("a stack that undoes itself changes nothing", "[edits]") {
   const Runs start = {{100, A}, {512, B}};
-  const auto [runs, result] = apply(start, {at_index(5, C), everywhere(A, {MaskKind::only_material, C})});
+  const auto [runs, result] =
+      apply(start, {at_index(5, C), everywhere(A, {MaskKind::only_material, C})});
   CHECK(runs == start);
   CHECK_FALSE(result.changed);
   CHECK(result.areas.empty());
@@ -147,9 +152,12 @@ TEST_CASE("masks write where they admit", "[edits]") {
   const Runs start = {{10, _}, {20, A}, {30, B}, {512, _}};
   CHECK(apply(start, {everywhere(C, {MaskKind::only_empty, 0})}).runs ==
         Runs{{10, C}, {20, A}, {30, B}, {512, C}});
-  CHECK(apply(start, {everywhere(C, {MaskKind::only_solid, 0})}).runs == Runs{{10, _}, {30, C}, {512, _}});
-  CHECK(apply(start, {everywhere(B, {MaskKind::only_material, A})}).runs == Runs{{10, _}, {30, B}, {512, _}});
-  CHECK(apply(start, {everywhere(_, {MaskKind::only_material, B})}).runs == Runs{{10, _}, {20, A}, {512, _}});
+  CHECK(apply(start, {everywhere(C, {MaskKind::only_solid, 0})}).runs ==
+        Runs{{10, _}, {30, C}, {512, _}});
+  CHECK(apply(start, {everywhere(B, {MaskKind::only_material, A})}).runs ==
+        Runs{{10, _}, {30, B}, {512, _}});
+  CHECK(apply(start, {everywhere(_, {MaskKind::only_material, B})}).runs ==
+        Runs{{10, _}, {20, A}, {512, _}});
 }
 
 TEST_CASE("a mask sees what the edits below it left", "[edits]") {
@@ -171,14 +179,16 @@ TEST_CASE("one fill of everything leaves one run and all layers dirty", "[edits]
   for (const auto& layers : result.dirty.layer) CHECK(layers == std::bitset<kSideMax>(0xff));
 }
 
-TEST_CASE("areas count their first run in the new list and join when no kept run lies between", "[edits]") {
+TEST_CASE("areas count their first run in the new list and join when no kept run lies between",
+          "[edits]") {
   const auto apart = apply({{512, A}}, {at_index(10, B), at_index(12, B)});
   CHECK(apart.result.areas == Areas{{0, 1, 5}});
   const auto two = apply({{20, A}, {40, B}, {60, A}, {512, _}}, {at_index(5, C), at_index(50, C)});
   CHECK(two.result.areas == Areas{{0, 1, 3}, {4, 1, 3}});
 }
 
-TEST_CASE("dirty layers of a stretch that wraps around a line are those of its two ends", "[edits]") {
+TEST_CASE("dirty layers of a stretch that wraps around a line are those of its two ends",
+          "[edits]") {
   // Voxels 6 .. 9: the end of line 0 and the start of line 1. The walk meets them as one stretch of a run
   // when the geometry covers both lines whole and the rest is there already.
   const auto [runs, result] = apply({{6, B}, {10, A}, {512, B}}, {everywhere(B)});
@@ -188,7 +198,8 @@ TEST_CASE("dirty layers of a stretch that wraps around a line are those of its t
   CHECK(result.dirty.layer[2] == std::bitset<kSideMax>(1));
 }
 
-TEST_CASE("dirty lines of a stretch that wraps around a layer are those of its two ends", "[edits]") {
+TEST_CASE("dirty lines of a stretch that wraps around a layer are those of its two ends",
+          "[edits]") {
   const auto [runs, result] = apply({{48, B}, {72, A}, {512, B}}, {everywhere(B)});
   CHECK(runs == Runs{{512, B}});
   CHECK(result.dirty.layer[0] == std::bitset<kSideMax>(0xff));

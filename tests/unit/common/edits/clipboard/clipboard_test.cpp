@@ -48,7 +48,8 @@ Bytes bytes_of(const Clipboard& clipboard) {
 // `count` runs of a cell each, then one of untouched cells.
 Result<std::shared_ptr<const Clipboard>> alternating(std::uint32_t count) {
   std::vector<Run> runs;
-  for (std::uint32_t i = 0; i < count; ++i) runs.push_back({i + 1, static_cast<Material>(1 + i % 2)});
+  for (std::uint32_t i = 0; i < count; ++i)
+    runs.push_back({i + 1, static_cast<Material>(1 + i % 2)});
   const Extent extent{128, 128, 4};
   runs.push_back({extent.volume(), 0});
   return Clipboard::of({1, 2}, cells_of(extent, runs));
@@ -71,7 +72,8 @@ TEST_CASE("a clipboard's first broken invariant is named", "[edits]") {
   CHECK(error_of({7}, cells_of({129, 1, 1}, {{129, 1}})) == ErrorCode::bad_value);
 }
 
-TEST_CASE("a builder takes cells in any axis order and keeps the one with the fewest runs", "[edits]") {
+TEST_CASE("a builder takes cells in any axis order and keeps the one with the fewest runs",
+          "[edits]") {
   // Along y untouched, empty, 9 throughout: three runs with y slowest.
   for (const AxisOrder order : kAxisOrders) {
     const Extent extent{5, 3, 4};
@@ -121,7 +123,8 @@ TEST_CASE("a clipboard may have as many bytes as the limit says, and none more",
   REQUIRE(longest.has_value());
   CHECK((*longest)->byte_size() == kClipboardBytesMax);
   CHECK(bytes_of(**longest).size() == kClipboardBytesMax);
-  const EditDescriptor edit = {Paste{{0, 0, 0}, *longest, {}}, {MaskKind::only_material, 65535}, kEmpty};
+  const EditDescriptor edit = {
+      Paste{{0, 0, 0}, *longest, {}}, {MaskKind::only_material, 65535}, kEmpty};
   const Bytes descriptor = encode(edit);
   CHECK(descriptor.size() <= descriptor_bytes_max(EditKind::paste));
   const auto back = decode_descriptor(descriptor);
@@ -146,14 +149,15 @@ TEST_CASE("only the canonical bytes of a clipboard are read", "[edits]") {
     bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), instead.begin(), instead.end());
     return bytes;
   };
-  CHECK(read_error(with(0, {6})) == ErrorCode::bad_value);                 // axis order
-  CHECK(read_error(with(1, {128})) == ErrorCode::bad_value);               // side
-  CHECK(read_error(with(4, {2})) == ErrorCode::truncated);                 // a material more than told
+  CHECK(read_error(with(0, {6})) == ErrorCode::bad_value);    // axis order
+  CHECK(read_error(with(1, {128})) == ErrorCode::bad_value);  // side
+  CHECK(read_error(with(4, {2})) == ErrorCode::truncated);    // a material more than told
   CHECK(read_error(with(4, {0x80, 0x80, 0x04})) == ErrorCode::bad_value);  // more than there can be
   CHECK(read_error(with(4, {10})) == ErrorCode::truncated);                // more than bytes left
-  CHECK(read_error(with(5, {0xff, 0xff, 0x03})) == ErrorCode::bad_value);  // a material beyond 65,535
-  CHECK(read_error(with(10, {3})) == ErrorCode::bad_value);                // a run behind the end
-  Bytes unused = {0, 0, 0, 0, 1, 0, 6, 2};  // one cell of 7, a palette of 0 and 7
+  CHECK(read_error(with(5, {0xff, 0xff, 0x03})) ==
+        ErrorCode::bad_value);                               // a material beyond 65,535
+  CHECK(read_error(with(10, {3})) == ErrorCode::bad_value);  // a run behind the end
+  Bytes unused = {0, 0, 0, 0, 1, 0, 6, 2};                   // one cell of 7, a palette of 0 and 7
   CHECK(read_error(unused) == ErrorCode::not_canonical);
   CHECK(read_error({0, 0, 0, 0, 0, 7, 0}) == ErrorCode::not_canonical);  // untouched alone
   for (std::size_t size = 0; size < good.size(); ++size) {
@@ -163,7 +167,8 @@ TEST_CASE("only the canonical bytes of a clipboard are read", "[edits]") {
   CHECK(read_error(Bytes(kClipboardBytesMax + 1, 0)) == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("random clipboards round trip, and flipped bytes are rejected or mean themselves", "[edits]") {
+TEST_CASE("random clipboards round trip, and flipped bytes are rejected or mean themselves",
+          "[edits]") {
   SplitMix64 rng{41};
   std::size_t survivors = 0;
   for (int round = 0; round < 300; ++round) {

@@ -18,8 +18,9 @@ TEST_CASE("the 48 orientations have the bytes 0 to 47", "[edits]") {
   CHECK_FALSE(Orientation{static_cast<AxisOrder>(6), 0}.valid());
 }
 
-TEST_CASE("a quarter of a turn brings +z to +x and +x to -z, and four of them bring everything back",
-          "[edits]") {
+TEST_CASE(
+    "a quarter of a turn brings +z to +x and +x to -z, and four of them bring everything back",
+    "[edits]") {
   const Orientation turned = Orientation{}.rotated_about_y(1);
   CHECK(turned.along(Axis::x) == Axis::z);
   CHECK(turned.along(Axis::y) == Axis::y);

@@ -66,9 +66,8 @@ TEST_CASE("a stroke has points, steps and a radius within its limits, and no poi
   };
   CHECK(validate(stroke({{0, 0, 0}, {1024, -1024, 1024}}, 512)).has_value());
   CHECK(validate(stroke({{0, 0, 0}, {0, 1, 0}, {0, 0, 0}})).has_value());
-  CHECK(
-      validate(stroke({{-kEnd + 1, 0, 0}, {-kEnd + 2, kEnd - 2, 0}, {-kEnd + 2, kEnd - 3, 0}})).has_value() ==
-      false);  // the step in y
+  CHECK(validate(stroke({{-kEnd + 1, 0, 0}, {-kEnd + 2, kEnd - 2, 0}, {-kEnd + 2, kEnd - 3, 0}}))
+            .has_value() == false);  // the step in y
   CHECK(validate(stroke({{-kEnd + 1, kEnd - 9, 0}, {-kEnd + 2, kEnd - 2, 0}})).has_value());
   CHECK(error_of(stroke({})) == ErrorCode::bad_value);
   CHECK(error_of(stroke({{0, 0, 0}})) == ErrorCode::bad_value);
@@ -86,8 +85,10 @@ TEST_CASE("a stroke has points, steps and a radius within its limits, and no poi
   CHECK(error_of(stroke(points)) == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("a paste has a clipboard, an orientation and no material, and its touched cells lie in the world",
-          "[edits]") {
+TEST_CASE(
+    "a paste has a clipboard, an orientation and no material, and its touched cells lie in the "
+    "world",
+    "[edits]") {
   ClipboardBuilder cells({4, 1, 1});
   cells.append(3, std::nullopt);
   cells.append(1, Material{300});
@@ -99,7 +100,8 @@ TEST_CASE("a paste has a clipboard, an orientation and no material, and its touc
   CHECK(validate(paste({kWorldLimit - 4, 0, 0})).has_value());
   CHECK(error_of(paste({kWorldLimit - 3, 0, 0})) == ErrorCode::bad_value);
   CHECK(validate(paste({kWorldLimit - 3, 0, 0}, Orientation{}.mirrored(Axis::x))).has_value());
-  CHECK(error_of(paste({kWorldLimit, 0, 0}, Orientation{}.mirrored(Axis::x))) == ErrorCode::bad_value);
+  CHECK(error_of(paste({kWorldLimit, 0, 0}, Orientation{}.mirrored(Axis::x))) ==
+        ErrorCode::bad_value);
   CHECK(error_of(paste({-kWorldLimit - 1, 0, 0})) ==
         ErrorCode::bad_value);  // though its only cell lies inside
   CHECK(error_of(paste({INT32_MAX, 0, 0})) == ErrorCode::bad_value);
@@ -108,8 +110,10 @@ TEST_CASE("a paste has a clipboard, an orientation and no material, and its touc
   EditDescriptor coloured = paste({0, 0, 0});
   coloured.material = 1;
   CHECK(error_of(coloured) == ErrorCode::bad_value);
-  CHECK(decode_error({6, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 1}) == ErrorCode::bad_value);   // likewise
-  CHECK(decode_error({6, 0, 0, 0, 0, 0, 48, 0, 0, 0, 0, 0, 7, 1}) == ErrorCode::bad_value);  // orientation
+  CHECK(decode_error({6, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 1}) ==
+        ErrorCode::bad_value);  // likewise
+  CHECK(decode_error({6, 0, 0, 0, 0, 0, 48, 0, 0, 0, 0, 0, 7, 1}) ==
+        ErrorCode::bad_value);  // orientation
   CHECK(decode_descriptor(Bytes{6, 0, 0, 0, 0, 0, 47, 0, 0, 0, 0, 0, 7, 1}).has_value());
 
   CHECK(material_max(paste({0, 0, 0})) == 300);
@@ -165,18 +169,24 @@ TEST_CASE("unknown kinds, long varints and out-of-range fields are rejected", "[
   }
   CHECK(decode_error({1, 4, 4, 0, 0, 0}) == ErrorCode::unknown_kind);
   CHECK(decode_error({1, 0, 0x84, 0x00, 0, 0, 0}) == ErrorCode::not_canonical);
-  CHECK(decode_error({1, 0, 0x80, 0x80, 0x04, 0, 0, 0}) == ErrorCode::bad_value);  // material 65,536
-  CHECK(decode_error({1, 0, 4, 0x80, 0x80, 0x80, 0x80, 0x04, 0, 0}) == ErrorCode::bad_value);  // x = 2^29
-  CHECK(decode_error({2, 0, 4, 0, 0, 0, 0x80, 0x20, 0, 0}) == ErrorCode::bad_value);           // side 4097
-  CHECK(decode_error({3, 0, 4, 0, 0, 0, 0x81, 0x04}) == ErrorCode::bad_value);                 // radius 513
-  CHECK(decode_error({4, 0, 4, 0x81, 0x04, 0, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);     // radius 513
-  CHECK(decode_error({4, 0, 4, 0, 0, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);              // radius 0
-  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0, 0, 0}) == ErrorCode::bad_value);           // the same point
-  CHECK(decode_error({4, 0, 4, 1, 0xff, 0x01, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);  // 257 points
-  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0x82, 0x10, 0, 0}) == ErrorCode::bad_value);  // step 1,025
-  CHECK(decode_error({4, 0, 4, 1, 1, 0, 0, 0, 2, 0, 0}) == ErrorCode::truncated);           // a point short
+  CHECK(decode_error({1, 0, 0x80, 0x80, 0x04, 0, 0, 0}) ==
+        ErrorCode::bad_value);  // material 65,536
+  CHECK(decode_error({1, 0, 4, 0x80, 0x80, 0x80, 0x80, 0x04, 0, 0}) ==
+        ErrorCode::bad_value);                                                        // x = 2^29
+  CHECK(decode_error({2, 0, 4, 0, 0, 0, 0x80, 0x20, 0, 0}) == ErrorCode::bad_value);  // side 4097
+  CHECK(decode_error({3, 0, 4, 0, 0, 0, 0x81, 0x04}) == ErrorCode::bad_value);        // radius 513
+  CHECK(decode_error({4, 0, 4, 0x81, 0x04, 0, 0, 0, 0, 2, 0, 0}) ==
+        ErrorCode::bad_value);                                                     // radius 513
+  CHECK(decode_error({4, 0, 4, 0, 0, 0, 0, 0, 2, 0, 0}) == ErrorCode::bad_value);  // radius 0
+  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0, 0, 0}) == ErrorCode::bad_value);  // the same point
+  CHECK(decode_error({4, 0, 4, 1, 0xff, 0x01, 0, 0, 0, 2, 0, 0}) ==
+        ErrorCode::bad_value);  // 257 points
+  CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0x82, 0x10, 0, 0}) ==
+        ErrorCode::bad_value);                                                     // step 1,025
+  CHECK(decode_error({4, 0, 4, 1, 1, 0, 0, 0, 2, 0, 0}) == ErrorCode::truncated);  // a point short
   // Every field in range, yet the box ends beyond the world.
-  CHECK(decode_error({2, 0, 4, 0xfe, 0xff, 0xff, 0xff, 0x03, 0, 0, 1, 0, 0}) == ErrorCode::bad_value);
+  CHECK(decode_error({2, 0, 4, 0xfe, 0xff, 0xff, 0xff, 0x03, 0, 0, 1, 0, 0}) ==
+        ErrorCode::bad_value);
 }
 
 TEST_CASE("descriptors round trip, and every truncation and extra byte is rejected", "[edits]") {
@@ -233,8 +243,9 @@ TEST_CASE("records round trip, and every truncation and extra byte is rejected",
   }
 }
 
-TEST_CASE("flipped record bytes are rejected or mean exactly their own bytes, and change the checksum",
-          "[edits]") {
+TEST_CASE(
+    "flipped record bytes are rejected or mean exactly their own bytes, and change the checksum",
+    "[edits]") {
   SplitMix64 rng{14};
   std::size_t survivors = 0;
   for (int round = 0; round < 200; ++round) {

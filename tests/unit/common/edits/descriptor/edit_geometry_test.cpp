@@ -9,7 +9,9 @@ namespace {
 
 EditDescriptor voxel(VoxelPos at) { return {SetVoxel{at}, {}, 1}; }
 EditDescriptor box(VoxelPos min, VoxelPos max) { return {FillBox{{min, max}}, {}, 1}; }
-EditDescriptor sphere(VoxelPos centre, std::uint16_t radius) { return {FillSphere{centre, radius}, {}, 1}; }
+EditDescriptor sphere(VoxelPos centre, std::uint16_t radius) {
+  return {FillSphere{centre, radius}, {}, 1};
+}
 
 std::vector<IndexSpan> spans_of(const EditDescriptor& edit, Extent extent = Extent::cube(8),
                                 AxisOrder order = AxisOrder::xyz) {
@@ -41,7 +43,8 @@ TEST_CASE("a stroke is the spheres along its line", "[edits]") {
   const auto stroke = [](std::vector<VoxelPos> points, std::uint16_t radius) {
     return EditDescriptor{FillStroke{std::move(points), radius}, {}, 1};
   };
-  CHECK(bounding_box(stroke({{0, 9, 0}, {5, 2, -7}, {1, 1, 1}}, 2)) == VoxelBox{{-2, -1, -9}, {8, 12, 4}});
+  CHECK(bounding_box(stroke({{0, 9, 0}, {5, 2, -7}, {1, 1, 1}}, 2)) ==
+        VoxelBox{{-2, -1, -9}, {8, 12, 4}});
   // Along x with radius 1: a bar of 3 x 3, and at each end the face of a sphere, which is a plus.
   const EditDescriptor bar = stroke({{2, 3, 3}, {5, 3, 3}}, 1);
   Spans middle;

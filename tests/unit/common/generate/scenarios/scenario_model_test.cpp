@@ -40,7 +40,8 @@ TEST_CASE("the sums of sines keep clear of zero, so that every maths library mak
   CHECK(smallest_wave_sum() > 1e-9);
 }
 
-TEST_CASE("scenarios without a formula and edges without a scenario are refused", "[generate][scenarios]") {
+TEST_CASE("scenarios without a formula and edges without a scenario are refused",
+          "[generate][scenarios]") {
   for (const unsigned number : {0u, 5u, 38u, 1000u}) {
     const auto model = scenario_model(number, 32);
     REQUIRE_FALSE(model.has_value());

@@ -11,8 +11,9 @@ namespace {
 
 constexpr Material kSolid = 7;
 
-TEST_CASE("a scenario's world repeats its model three times along each axis, whatever box is asked for",
-          "[generate][scenarios]") {
+TEST_CASE(
+    "a scenario's world repeats its model three times along each axis, whatever box is asked for",
+    "[generate][scenarios]") {
   SplitMix64 rng(Catch::rngSeed());
   for (const unsigned number : {1u, 2u, 8u, 9u, 14u, 17u, 20u, 23u, 30u}) {
     for (const unsigned edge : {8u, 32u}) {
@@ -31,8 +32,8 @@ TEST_CASE("a scenario's world repeats its model three times along each axis, wha
           for (int y = 0; y < extent.y; ++y) {
             for (int x = 0; x < extent.x; ++x) {
               const VoxelPos p{origin.x + x, origin.y + y, origin.z + z};
-              const bool solid =
-                  world.bounds().contains(p) && model.at((p.x + n) % n, (p.y + n) % n, (p.z + n) % n) != 0;
+              const bool solid = world.bounds().contains(p) &&
+                                 model.at((p.x + n) % n, (p.y + n) % n, (p.z + n) % n) != 0;
               wrong += dense.at(x, y, z) != (solid ? kSolid : kEmpty) ? 1 : 0;
             }
           }
@@ -48,7 +49,8 @@ TEST_CASE("a player stands on the highest voxel of a scenario's world", "[genera
   const ScenarioWorld ball(*scenario_model(7, 32), kSolid);  // radius 8 around 16 16 16
   CHECK(ball.surface_y(16, 16) == 32 + 24);
   CHECK(ball.surface_y(-16, 48) == 32 + 24);
-  CHECK(ball.surface_y(16, 9) == 32 + 20);  // 7 beside the middle: the last with 3 * 3 + 7 * 7 < 64 above it
+  CHECK(ball.surface_y(16, 9) ==
+        32 + 20);  // 7 beside the middle: the last with 3 * 3 + 7 * 7 < 64 above it
   CHECK(ball.surface_y(0, 0) == ball.y_min());
   CHECK(ball.surface_y(64, 16) == ball.y_min());
   const ScenarioWorld full(*scenario_model(1, 128), kSolid);
@@ -74,13 +76,14 @@ TEST_CASE("a pin makes a scenario's world, or says why not", "[generate][scenari
   };
   const auto world = made("number = 7\nedge = 16\n");
   REQUIRE(world.has_value());
-  CHECK((*world)->generate({-16, 0, 16}, Extent::cube(16)) == scenario_chunk(*scenario_model(7, 16), 2));
+  CHECK((*world)->generate({-16, 0, 16}, Extent::cube(16)) ==
+        scenario_chunk(*scenario_model(7, 16), 2));
   CHECK(made("").has_value());
   CHECK(made("material = \"dirt\"").has_value());
   CHECK(code("material = \"cheese\"") == ErrorCode::not_found);
   CHECK(code("number = 5") == ErrorCode::not_found);
-  for (const char* bad : {"number = 0", "number = 38", "number = -1", "edge = 0", "edge = 24", "edge = 256",
-                          "height = 3", "number = \"7\"", "number ="}) {
+  for (const char* bad : {"number = 0", "number = 38", "number = -1", "edge = 0", "edge = 24",
+                          "edge = 256", "height = 3", "number = \"7\"", "number ="}) {
     CAPTURE(bad);
     CHECK(code(bad) == ErrorCode::bad_value);
   }

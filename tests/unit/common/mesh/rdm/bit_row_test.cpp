@@ -36,7 +36,8 @@ void check_rows() {
   }
   for (unsigned count = 0; count <= kRowBits<Row>; ++count) {
     const Row below = bits_below<Row>(count);
-    for (unsigned bit = 0; bit < kRowBits<Row>; ++bit) REQUIRE((below >> bit & 1) == (bit < count ? 1u : 0u));
+    for (unsigned bit = 0; bit < kRowBits<Row>; ++bit)
+      REQUIRE((below >> bit & 1) == (bit < count ? 1u : 0u));
   }
   std::array<Row, kRowBits<Row>> square;
   for (Row& row : square) row = random_row<Row>(rng);

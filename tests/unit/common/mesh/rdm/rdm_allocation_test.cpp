@@ -22,7 +22,8 @@ MeshScene scene_of_transparents(Extent extent) {
   MeshScene scene;
   const auto striped = [extent](std::uint32_t stripe) {
     RunChunk chunk = uniform_chunk(extent, kWater);
-    for (std::uint32_t i = 0; i + stripe < chunk.volume(); i += 3 * stripe) fill(chunk, i, stripe, kGlass);
+    for (std::uint32_t i = 0; i + stripe < chunk.volume(); i += 3 * stripe)
+      fill(chunk, i, stripe, kGlass);
     return chunk;
   };
   scene.chunk = striped(1);
@@ -66,7 +67,8 @@ TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto& [scene, visibility] = all[i];
       const MeshNeighbours around = scene.pointers();
-      const auto cost = allocations_of([&] { mesh_rdm(scene.chunk, around, *visibility, scratch, mesh); });
+      const auto cost =
+          allocations_of([&] { mesh_rdm(scene.chunk, around, *visibility, scratch, mesh); });
       counted += cost.count;
       CAPTURE(i);
       if (grown) CHECK(cost.count == 0);
@@ -75,7 +77,8 @@ TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh
   }
 }
 
-TEST_CASE("meshing with kept borders, and making them, allocates nothing once all have grown", "[mesh]") {
+TEST_CASE("meshing with kept borders, and making them, allocates nothing once all have grown",
+          "[mesh]") {
   SplitMix64 rng(25);
   const std::vector<Place> all = places(rng);
   RdmScratch scratch;
@@ -121,9 +124,10 @@ TEST_CASE("remeshing layers allocates nothing once scratch and mesh have grown",
   std::size_t counted = 0;
   for (int round = 0; round < 12; ++round) {
     fill(scene.chunk, voxel, 1, round % 2 == 0 ? kStone : kWater);
-    counted = allocations_of([&] {
-                mesh_rdm_layers(scene.chunk, scene.pointers(), visibility, dirty, {}, scratch, mesh);
-              }).count;
+    counted =
+        allocations_of([&] {
+          mesh_rdm_layers(scene.chunk, scene.pointers(), visibility, dirty, {}, scratch, mesh);
+        }).count;
   }
   CHECK(counted == 0);
 }

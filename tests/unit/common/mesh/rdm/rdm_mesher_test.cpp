@@ -112,7 +112,8 @@ TEST_CASE("each direction is culled by its own neighbour", "[mesh]") {
     scene.neighbours[d] = uniform_chunk(kSmall, kDirt);
     const ChunkMesh mesh = checked_mesh(scene);
     REQUIRE(mesh.opaque.quads.size() == 5);
-    for (const Quad quad : mesh.opaque.quads) CHECK(unpack(quad).direction != static_cast<Direction>(d));
+    for (const Quad quad : mesh.opaque.quads)
+      CHECK(unpack(quad).direction != static_cast<Direction>(d));
   }
 }
 
@@ -120,8 +121,8 @@ TEST_CASE("borders are culled for all pairs of axis orders in all directions", "
   const Extent extent{8, 9, 10};
   const auto pattern = [](int salt) {
     return [salt](int x, int y, int z) {
-      return static_cast<Material>(mix64(static_cast<std::uint64_t>(((salt * 31 + x) * 31 + y) * 31 + z)) %
-                                   4);
+      return static_cast<Material>(
+          mix64(static_cast<std::uint64_t>(((salt * 31 + x) * 31 + y) * 31 + z)) % 4);
     };
   };
   for (const AxisOrder ours : kAxisOrders) {
@@ -140,16 +141,17 @@ TEST_CASE("borders are culled for all pairs of axis orders in all directions", "
 
 TEST_CASE("a neighbour may be deeper than the chunk", "[mesh]") {
   MeshScene scene = scene_of(uniform_chunk(kSmall, kStone));
-  scene.neighbours[static_cast<std::size_t>(Direction::neg_y)] =
-      chunk_where({8, 20, 8}, AxisOrder::yzx, [](int, int y, int) { return y == 19 ? kDirt : kEmpty; });
+  scene.neighbours[static_cast<std::size_t>(Direction::neg_y)] = chunk_where(
+      {8, 20, 8}, AxisOrder::yzx, [](int, int y, int) { return y == 19 ? kDirt : kEmpty; });
   CHECK(checked_mesh(scene).opaque.quads.size() == 5);
 }
 
 TEST_CASE("two opaque materials hide each other and never share a quad", "[mesh]") {
   for (const AxisOrder order : kAxisOrders) {
-    const ChunkMesh mesh = checked_mesh(
-        scene_of(chunk_where(kSmall, order, [](int, int y, int) { return y < 4 ? kStone : kDirt; })));
-    CHECK(mesh.opaque.quads.size() == 10);  // top, bottom, and each of the four sides in two materials
+    const ChunkMesh mesh = checked_mesh(scene_of(
+        chunk_where(kSmall, order, [](int, int y, int) { return y < 4 ? kStone : kDirt; })));
+    CHECK(mesh.opaque.quads.size() ==
+          10);  // top, bottom, and each of the four sides in two materials
     CHECK(faces_of(mesh, kStone) == 64 + 4 * 32);
     CHECK(faces_of(mesh, kDirt) == 64 + 4 * 32);
   }
@@ -157,7 +159,8 @@ TEST_CASE("two opaque materials hide each other and never share a quad", "[mesh]
 
 TEST_CASE("water next to water shows nothing between them, also across a border", "[mesh]") {
   for (const AxisOrder order : kAxisOrders) {
-    const RunChunk half = chunk_where(kSmall, order, [](int x, int, int) { return x < 4 ? kWater : kEmpty; });
+    const RunChunk half =
+        chunk_where(kSmall, order, [](int x, int, int) { return x < 4 ? kWater : kEmpty; });
     const ChunkMesh mesh = checked_mesh(scene_of(half));
     CHECK(mesh.opaque.quads.empty());
     CHECK(mesh.transparent.quads.size() == 6);
@@ -168,7 +171,8 @@ TEST_CASE("water next to water shows nothing between them, also across a border"
 TEST_CASE("water against glass shows both faces, in the transparent pass", "[mesh]") {
   for (const AxisOrder order : kAxisOrders) {
     const ChunkMesh mesh = checked_mesh(surrounded(
-        chunk_where(kSmall, order, [](int x, int, int) { return x < 4 ? kWater : kGlass; }), kStone));
+        chunk_where(kSmall, order, [](int x, int, int) { return x < 4 ? kWater : kGlass; }),
+        kStone));
     CHECK(mesh.opaque.quads.empty());
     REQUIRE(mesh.transparent.quads.size() == 2);
     CHECK(unpack(mesh.transparent.layer(Direction::pos_x, 3)[0]).material == kWater);
@@ -179,7 +183,8 @@ TEST_CASE("water against glass shows both faces, in the transparent pass", "[mes
 TEST_CASE("water against stone shows the stone and not the water", "[mesh]") {
   for (const AxisOrder order : kAxisOrders) {
     const ChunkMesh mesh = checked_mesh(surrounded(
-        chunk_where(kSmall, order, [](int, int y, int) { return y < 4 ? kStone : kWater; }), kStone));
+        chunk_where(kSmall, order, [](int, int y, int) { return y < 4 ? kStone : kWater; }),
+        kStone));
     CHECK(mesh.transparent.quads.empty());
     REQUIRE(mesh.opaque.quads.size() == 1);
     CHECK(unpack(mesh.opaque.quads[0]) == QuadFields{0, 3, 0, 8, 8, Direction::pos_y, kStone});
@@ -189,12 +194,12 @@ TEST_CASE("water against stone shows the stone and not the water", "[mesh]") {
 TEST_CASE("a strip goes on where only what it looks at changes", "[mesh]") {
   // A wall of stone towards water below and air above is one quad in every axis order.
   for (const AxisOrder order : kAxisOrders) {
-    const ChunkMesh mesh = checked_mesh(
-        surrounded(chunk_where(kSmall, order,
-                               [](int x, int y, int) { return x < 4   ? kStone
-                                                              : y < 4 ? kWater
-                                                                      : kEmpty; }),
-                   kStone));
+    const ChunkMesh mesh = checked_mesh(surrounded(
+        chunk_where(kSmall, order,
+                    [](int x, int y, int) { return x < 4   ? kStone
+                                                   : y < 4 ? kWater
+                                                           : kEmpty; }),
+        kStone));
     CHECK(mesh.opaque.layer(Direction::pos_x, 3).size() == 1);
   }
 }
@@ -228,7 +233,8 @@ TEST_CASE("shapes of the thesis have its face and vertex counts", "[mesh]") {
       {"SphereMid", [](int x, int y, int z) { return in_sphere(x, y, z, 8); }, 4632, 1944},
       {"SphereLarge", [](int x, int y, int z) { return in_sphere(x, y, z, 16); }, 19032, 8520},
       {"StripsComplex",
-       [](int x, int y, int z) { return x / 11 % 2 == 0 && y / 11 % 2 == 0 && z / 11 % 2 == 0; }, 21168, 192},
+       [](int x, int y, int z) { return x / 11 % 2 == 0 && y / 11 % 2 == 0 && z / 11 % 2 == 0; },
+       21168, 192},
       {"Chessboard", [](int x, int y, int z) { return (x + y + z) % 2 == 0; }, 393216, 393216},
       {"StripsY", [](int, int y, int) { return y % 2 == 0; }, 139264, 384},
       {"StripsZ1", [](int, int, int z) { return z % 2 == 0; }, 139264, 384},
@@ -236,8 +242,10 @@ TEST_CASE("shapes of the thesis have its face and vertex counts", "[mesh]") {
   };
   for (const Case& c : cases) {
     for (const AxisOrder order : kAxisOrders) {
-      const MeshScene scene = scene_of(chunk_where(
-          Extent::cube(32), order, [&](int x, int y, int z) { return c.solid(x, z, y) ? kStone : kEmpty; }));
+      const MeshScene scene =
+          scene_of(chunk_where(Extent::cube(32), order, [&](int x, int y, int z) {
+            return c.solid(x, z, y) ? kStone : kEmpty;
+          }));
       const ChunkMesh mesh = mesh_of(scene);
       CAPTURE(c.name, order);
       CHECK(4 * expected_faces(scene).size() == c.vertices_culled);

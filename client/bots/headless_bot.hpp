@@ -1,0 +1,35 @@
+// HeadlessBot: a bot without voxels, of which one thread carries a thousand: it verifies all that comes, and measures.
+#pragma once
+#include "client/bots/bot.hpp"
+#include "client/bots/headless_session.hpp"
+
+namespace runstone {
+
+class HeadlessBot final : public Bot {
+ public:
+  /// `crowd` must outlive the bot; `clock` as in HeadlessSession.
+  HeadlessBot(BotConfig config, FleetStatistics& fleet, TimeUs (*clock)());
+
+  HeadlessSession& session() { return session_; }
+  const HeadlessSession& session() const { return session_; }
+  bool loaded() const override { return session_.loaded(); }
+  BotCounts counts() const override;
+
+ private:
+  const Welcome* world() const override {
+    return session_.is_open() ? &*session_.welcome() : nullptr;
+  }
+  void set_view(const View& view) override { session_.set_view(view); }
+  void set_pose(const Pose& pose) override { session_.set_pose(pose); }
+  const Ground& ground() const override { return crowd_.ground; }
+  void tick(TimeUs now_us) override { session_.tick(now_us); }
+  TimeUs tick_due_us(TimeUs /*now_us*/) const override { return session_.tick_due_us(); }
+  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
+  bool is_answered() const override { return session_.local_edits().all().empty(); }
+  void depart() override { session_.close(GoodbyeReason::closing, ""); }
+
+  FleetStatistics& crowd_;
+  HeadlessSession session_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,196 @@
+#include "client/bots/version_tracker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/key_text.hpp"
+
+namespace runstone {
+
+void Violations::add(const std::string& name, std::string what) {
+  Entry& entry = all_[name];
+  if (entry.count++ == 0) entry.first = std::move(what);
+}
+
+void Violations::merge(const Violations& other) {
+  for (const auto& [name, theirs] : other.all_) {
+    Entry& ours = all_[name];
+    if (ours.count == 0) ours.first = theirs.first;
+    ours.count += theirs.count;
+  }
+}
+
+std::uint64_t Violations::total() const {
+  std::uint64_t sum = 0;
+  for (const auto& [name, entry] : all_) sum += entry.count;
+  return sum;
+}
+
+void VersionCounts::merge(const VersionCounts& other) {
+  snapshots += other.snapshots;
+  stale += other.stale;
+  outside += other.outside;
+  followed += other.followed;
+  contained += other.contained;
+  held_back += other.held_back;
+  resent += other.resent;
+  audited += other.audited;
+  behind_us.merge(other.behind_us);
+}
+
+void VersionTracker::open(Epoch epoch) {
+  epoch_ = epoch;
+  chunks_.clear();
+  requests_.clear();
+  held_ = unavailable_ = behind_ = 0;
+}
+
+void VersionTracker::set_view(const View& view) {
+  view_ = view;
+  for (auto it = chunks_.begin(); it != chunks_.end();) {
+    if (view.contains(it->first)) {
+      ++it;
+      continue;
+    }
+    forget(it->second);
+    it = chunks_.erase(it);
+  }
+}
+
+void VersionTracker::forget(const Known& chunk) {
+  if (chunk.held) --held_;
+  if (chunk.unavailable) --unavailable_;
+  if (chunk.behind_us) --behind_;
+}
+
+void VersionTracker::receive(const ChunkSnapshot& snapshot, TimeUs now_us) {
+  if (!digest_holds(snapshot)) {
+    violations_.add("snapshot digest", "chunk " + text_of(snapshot.key) + " at seq " +
+                                           std::to_string(snapshot.chunk.version.seq));
+  }
+  take(snapshot.key, snapshot.chunk.version, now_us);
+}
+
+void VersionTracker::receive(const UniformChunks& uniform, TimeUs now_us) {
+  for (const UniformChunk& chunk : uniform.chunks) take(chunk.key, chunk.version, now_us);
+}
+
+/// A snapshot, of which the voxels do not matter any more.
+void VersionTracker::take(const ChunkKey& key, Version version, TimeUs now_us) {
+  if (version.epoch > epoch_) {
+    violations_.add("epoch",
+                    "chunk " + text_of(key) + " is of epoch " + std::to_string(version.epoch));
+  }
+  ++counts_.snapshots;
+  if (key.lod != 0 || !view_ || !view_->contains(key.at)) {
+    ++counts_.outside;
+    return;
+  }
+  Known& chunk = chunks_[key.at];
+  if (std::exchange(chunk.unavailable, false)) --unavailable_;
+  if (chunk.held && version.seq < chunk.at) {
+    ++counts_.stale;
+    return;
+  }
+  // Only a snapshot that says more than what is held stands for commits.
+  if (chunk.held && version.seq > chunk.at) ++counts_.resent;
+  if (!std::exchange(chunk.held, true)) ++held_;
+  chunk.at = version.seq;
+  chunk.latest = std::max(chunk.latest, version.seq);
+  chunk.is_asked = false;
+  settle(chunk, now_us);
+}
+
+void VersionTracker::receive(const ChunkUnavailable& unavailable) {
+  for (const ChunkKey& key : unavailable.keys) {
+    if (key.lod != 0 || !view_ || !view_->contains(key.at)) continue;
+    Known& chunk = chunks_[key.at];
+    forget(chunk);
+    chunk = {};
+    chunk.unavailable = true;
+    ++unavailable_;
+  }
+}
+
+void VersionTracker::receive(const DigestCheck& audit, TimeUs now_us) {
+  for (const DigestCheckEntry& entry : audit.entries) {
+    const auto found = chunks_.find(entry.key.at);
+    if (entry.key.lod != 0 || found == chunks_.end() || !found->second.held) continue;
+    ++counts_.audited;
+    // Commits are gathered for a while, and an audit may overtake them.
+    found->second.latest = std::max(found->second.latest, entry.version.seq);
+    settle(found->second, now_us);
+  }
+}
+
+void VersionTracker::follow(ChunkCoord at, Sequence previous, Sequence seq, TimeUs now_us) {
+  if (!view_ || !view_->contains(at)) return;
+  Known& chunk = chunks_[at];
+  if (chunk.unavailable) return;
+  chunk.latest = std::max(chunk.latest, seq);
+  if (chunk.held && seq <= chunk.at) {
+    ++counts_.contained;
+    return;
+  }
+  if (chunk.held && chunk.waiting.empty() && chunk.at == previous) {
+    chunk.at = seq;
+    ++counts_.followed;
+    if (chunk.behind_us) settle(chunk, now_us);
+    return;
+  }
+  ++counts_.held_back;
+  if (chunk.waiting.size() == kWaitingLinksMax) chunk.waiting.clear();
+  chunk.waiting.push_back({previous, seq});
+  if (chunk.held) settle(chunk, now_us);
+}
+
+/// Takes what continues the version, and notes whether something is missing. Requires a held chunk.
+void VersionTracker::settle(Known& chunk, TimeUs now_us) {
+  std::size_t taken = 0;
+  for (; taken < chunk.waiting.size(); ++taken) {
+    const Link& link = chunk.waiting[taken];
+    if (link.seq <= chunk.at) {
+      ++counts_.contained;
+    } else if (link.previous == chunk.at) {
+      chunk.at = link.seq;
+      ++counts_.followed;
+    } else {
+      break;
+    }
+  }
+  chunk.waiting.erase(chunk.waiting.begin(),
+                      chunk.waiting.begin() + static_cast<std::ptrdiff_t>(taken));
+  const bool is_behind = chunk.at < chunk.latest;
+  if (is_behind && !chunk.behind_us) {
+    chunk.behind_us = now_us;
+    ++behind_;
+  } else if (!is_behind && chunk.behind_us) {
+    counts_.behind_us.add(now_us - *chunk.behind_us);
+    chunk.behind_us.reset();
+    chunk.is_asked = false;
+    --behind_;
+  }
+}
+
+void VersionTracker::tick(TimeUs now_us) {
+  if (behind_ == 0) return;
+  for (auto& [at, chunk] : chunks_) {
+    if (!chunk.behind_us || chunk.is_asked || now_us - *chunk.behind_us < kResendUsMax) continue;
+    const ChunkKey key{0, at};
+    violations_.add("gap", "chunk " + text_of(key) + " stands at seq " + std::to_string(chunk.at) +
+                               ", edit " + std::to_string(chunk.latest) +
+                               " touched it, and what is between did not come");
+    chunk.is_asked = true;
+    requests_.push_back(key);
+  }
+}
+
+std::vector<ChunkKey> VersionTracker::take_requests() { return std::exchange(requests_, {}); }
+
+std::optional<Sequence> VersionTracker::version(ChunkCoord at) const {
+  const auto found = chunks_.find(at);
+  if (found == chunks_.end() || !found->second.held) return std::nullopt;
+  return found->second.at;
+}
+
+}  // namespace runstone

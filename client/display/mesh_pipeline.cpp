@@ -1,0 +1,139 @@
+#include "client/display/mesh_pipeline.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "common/mesh/visibility.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+
+MeshPipeline::MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> draw_thread,
+                           bool watched, unsigned workers, std::function<void()> wake)
+    : watched_(watched),
+      workers_(workers),
+      wake_(std::move(wake)),
+      recorder_(draw_thread ? LatencyStage::presented : LatencyStage::meshed),
+      planner_(replica),
+      draw_thread_(std::move(draw_thread)) {}
+
+void MeshPipeline::set_materials(const MaterialTable& materials) {
+  if (pool_ && materials_ == materials) return;
+  materials_ = materials;
+  if (draw_thread_) draw_thread_->set_materials(materials_);
+  planner_.forget_meshes();
+  pool_.reset();
+  pool_ = std::make_unique<MeshPool>(VisibilityTable(materials_), workers_, steady_now_ns, wake_);
+}
+
+void MeshPipeline::take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us) {
+  recorder_.take(news, clock, now_us);
+  planner_.take(news.chunks);
+  for (const auto& [key, reason] : news.unavailable) join_.done(key, now_us);
+  if (!draw_thread_) return;
+  for (const ChunkNews& chunk : news.chunks) {
+    if (!chunk.removed) continue;
+    draw_thread_->remove(chunk.key);
+    changed_ = true;
+  }
+}
+
+void MeshPipeline::take_drawn() {
+  if (!draw_thread_) return;
+  // In the order of the draw thread: a frame presents the uploads before it and none after it.
+  for (const DrawDone& done : draw_thread_->take_done()) {
+    if (const auto* upload = std::get_if<UploadDone>(&done)) {
+      recorder_.uploaded(upload->key, upload->serial, upload->at_us);
+    }
+    if (const auto* frame = std::get_if<FrameDone>(&done)) take_frame(*frame);
+  }
+}
+
+void MeshPipeline::take_frame(const FrameDone& frame) {
+  recorder_.presented(frame.presented_us);
+  ++frames_.presented;
+  frames_.draw_us.add(frame.presented_us - frame.started_us);
+  if (frame_.screenshots) screenshots_written_ = frame.unwritten.empty();
+  frame_ = {};
+  if (!watched_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
+  for (const std::string& file : frame.unwritten)
+    spdlog::warn("picture={} cannot be written", file);
+}
+
+void MeshPipeline::mesh() {
+  if (!pool_) return;
+  take_results();
+  mesh_layers();
+  push_jobs();
+}
+
+void MeshPipeline::take_results() {
+  for (MeshResult& result : pool_->take_results()) take_result(std::move(result));
+}
+
+void MeshPipeline::take_result(MeshResult result) {
+  (result.layers_only ? layers_ns_ : whole_ns_).add(result.mesh_ns);
+  if (!planner_.finish(result.key, result.number, result.mesh)) return;
+  recorder_.meshed(result.key, result.serial, result.meshed_us);
+  join_.done(result.key, result.meshed_us);
+  if (!draw_thread_) return;
+  draw_thread_->upload(result.key, {result.serial, result.edge, std::move(result.mesh)});
+  changed_ = uploads_waiting_ = true;
+  edits_waiting_ = edits_waiting_ || recorder_.open_edits() != 0;
+}
+
+void MeshPipeline::mesh_layers() {
+  for (const TimeUs until_us = steady_now_us() + kMeshHereUs; steady_now_us() < until_us;) {
+    const auto job = planner_.next(JobSize::layers);
+    if (!job) return;
+    take_result(pool_->mesh_here(*job));
+  }
+}
+
+void MeshPipeline::push_jobs() {
+  while (pool_->in_flight() < pool_->capacity()) {
+    auto job = planner_.next();
+    if (!job) return;
+    pool_->push(std::move(*job));
+  }
+}
+
+void MeshPipeline::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
+                        const std::function<std::vector<Marker>()>& markers) {
+  if (!draw_thread_ || frame_.under_way) return;
+  const bool screenshot_due =
+      !screenshots_.empty() && (is_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
+  // Off screen nobody watches terrain arrive: frames are for edits and pictures, and would only slow the
+  // loading.
+  const bool due = changed_ && now_us >= next_frame_us_;
+  if (!due && !screenshot_due && !edits_waiting_) return;
+  FrameOrder order{camera, size[0], size[1], markers(), {}};
+  if (screenshot_due) order.screenshots = std::exchange(screenshots_, {});
+  draw_thread_->draw(std::move(order));
+  ++frames_ordered_;
+  frame_ = {true, uploads_waiting_, screenshot_due};
+  changed_ = uploads_waiting_ = edits_waiting_ = false;
+  if (watched_) next_frame_us_ = now_us + kFrameUs;
+}
+
+void MeshPipeline::request_screenshot(std::string path, TimeUs now_us) {
+  screenshots_.push_back(std::move(path));
+  screenshot_since_us_ = now_us;
+}
+
+bool MeshPipeline::has_caught_up() {
+  if (!last_frame_) last_frame_ = frames_ordered_ + (edits_waiting_ ? 1 : 0);
+  return frames_.presented >= *last_frame_;
+}
+
+void MeshPipeline::report(ChunkStats& chunks, FrameStats& frames) const {
+  chunks.whole_ns = whole_ns_;
+  chunks.layers_ns = layers_ns_;
+  chunks.kept_mesh_bytes = planner_.kept_bytes();
+  chunks.mesh_jobs = planner_.jobs();
+  chunks.chunks_meshed = planner_.chunks_meshed();
+  frames = frames_;
+}
+
+}  // namespace runstone

@@ -1,0 +1,67 @@
+#include "client/fleet/fleet_bot.hpp"
+
+#include <utility>
+
+#include "client/bots/headless_bot.hpp"
+#include "client/bots/replica_bot.hpp"
+#include "client/fleet/fleet.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+void add_session(FleetReport& report, const ReplicaBot& bot) {
+  const EditLedger::Standing standing = bot.standing();
+  report.standing.held += standing.held;
+  report.standing.intact += standing.intact;
+  report.standing.changed += standing.changed;
+  report.standing.unseen += standing.unseen;
+  report.audited += bot.session().replica().counters().audited;
+  report.drifted += bot.session().replica().counters().drifted;
+}
+
+void add_session(FleetReport& report, const HeadlessBot& bot) {
+  const HeadlessSession& session = bot.session();
+  report.commits += session.counts().commits;
+  report.commit_edits += session.counts().edits;
+  report.versions.merge(session.book().counts());
+  report.violations.merge(session.book().violations());
+}
+
+template <class BotType>
+class Member final : public FleetBot {
+ public:
+  template <class... BotArguments>
+  Member(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
+      : member_(io, net, std::forward<BotArguments>(arguments)...) {}
+
+  Bot& bot() override { return member_.bot(); }
+  const NetStats& stats() const override { return member_.link().stats(); }
+  bool is_final() const override { return member_.link().is_final(); }
+  std::string failure(const std::string& what) const override { return member_.failure(what); }
+  void step(TimeUs now_us) override { member_.step(now_us); }
+  void leave(std::int64_t milliseconds) override { member_.leave(milliseconds); }
+  void add_to(FleetReport& report) const override {
+    const BotType& bot = member_.bot();
+    report.counts.merge(bot.counts());
+    report.bytes_received += stats().bytes_received.load();
+    report.bytes_sent += stats().bytes_sent.load();
+    report.traffic.add({stats().received.read(), stats().sent.read()});
+    for (const auto& [reason, count] : member_.link().losses()) report.losses[reason] += count;
+    add_session(report, bot);
+  }
+
+ private:
+  FleetMember<BotType> member_;
+};
+
+}  // namespace
+
+std::unique_ptr<FleetBot> make_member(asio::io_context& io, const NetConfig& net,
+                                      const BotConfig& config, FleetStatistics& fleet,
+                                      bool has_replica) {
+  if (has_replica) return std::make_unique<Member<ReplicaBot>>(io, net, config, fleet);
+  return std::make_unique<Member<HeadlessBot>>(io, net, config, fleet, steady_now_us);
+}
+
+}  // namespace runstone

@@ -1,0 +1,199 @@
+#include "server/admin/command_handler.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "common/core/hex.hpp"
+#include "common/core/key_text.hpp"
+#include "server/admin/author_names.hpp"
+#include "server/admin/log_line.hpp"
+#include "server/draw/preview_pictures.hpp"
+#include "server/rollback/newest_edits.hpp"
+
+namespace runstone {
+namespace {
+
+constexpr std::size_t kPlayersTold = 500;  // of those who are not here: anybody can make keys
+
+}  // namespace
+
+CommandHandler::CommandHandler(WorldServer& world, RollbackService& rollback,
+                               RollbackService::Workers& workers, MaterialTable materials,
+                               std::string world_folder, std::function<void()> stop)
+    : world_(world),
+      rollback_(rollback),
+      workers_(workers),
+      materials_(std::move(materials)),
+      world_folder_(std::move(world_folder)),
+      stop_(std::move(stop)) {}
+
+void CommandHandler::run(const CommandCaller& caller, const std::string& line, const Clocks& now,
+                         CommandReply reply) {
+  const auto command = parse_command(line, now.utc_us);
+  if (!command) return refuse(reply, command.error());
+  if (!caller.is_operator && !is_for_everybody(*command)) {
+    return refuse(
+        reply, "that command is for operators: the server's setting `operators` names their keys");
+  }
+  if (std::holds_alternative<HelpCommand>(*command))
+    return reply({command_help(caller.is_operator), true, true});
+  if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
+  if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
+  if (std::holds_alternative<StopCommand>(*command)) {
+    reply({"the server stops", true, true});
+    return stop_();
+  }
+  if (const auto* undo = std::get_if<UndoCommand>(&*command)) {
+    if (caller.author == 0) {
+      return refuse(
+          reply,
+          "undo and redo are for players: the console has no edits of its own (rollback undo ID "
+          "takes a rollback back)");
+    }
+    return undo->is_redo ? rollback_.redo(caller.author, now, std::move(reply))
+                         : rollback_.undo(caller.author, now, std::move(reply));
+  }
+  if (const auto* log_of = std::get_if<LogCommand>(&*command)) return log(*log_of, now, reply);
+  if (const auto* preview_of = std::get_if<RollbackPreviewCommand>(&*command)) {
+    return preview(*preview_of, now, reply);
+  }
+  if (std::holds_alternative<RollbackListCommand>(*command))
+    return rollback_.list(std::move(reply));
+  const auto& rollback = std::get<RollbackCommand>(*command);
+  switch (rollback.verb) {
+    case RollbackCommand::Verb::apply:
+      return rollback_.apply(rollback.id, caller.author, std::move(reply));
+    case RollbackCommand::Verb::cancel:
+      return rollback_.cancel(rollback.id, std::move(reply));
+    case RollbackCommand::Verb::undo:
+      return rollback_.undo_rollback(rollback.id, caller.author, now, std::move(reply));
+  }
+}
+
+void CommandHandler::status(const CommandReply& reply) const {
+  const WorldCounters& c = world_.counters();
+  reply({"sessions " + std::to_string(world_.session_count()) + ", edits " +
+             std::to_string(world_.head()) + " (on disk " + std::to_string(world_.durable()) +
+             "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
+             std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
+             std::to_string(world_.resident_chunks()) + " (" +
+             std::to_string(world_.resident_bytes() >> 20) + " MiB), damaged " +
+             std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
+             std::to_string(rollback_.running()),
+         true, true});
+}
+
+void CommandHandler::players(const CommandReply& reply) {
+  std::map<AuthorId, WorldServer::Present> here;
+  for (WorldServer::Present& player : world_.present()) here[player.author] = std::move(player);
+  auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
+  workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
+               [rows, here, reply](const std::string& error) {
+                 if (!error.empty()) return refuse(reply, "players: " + error);
+                 if (!*rows) return refuse(reply, "players: " + rows->error().message());
+                 std::map<AuthorId, std::string> lines;
+                 for (const PlayerRow& row : **rows) {
+                   lines[row.author] =
+                       row.name + " #" + std::to_string(row.author) + " key " + to_hex(row.key);
+                 }
+                 for (const auto& [author, player] : here) {
+                   lines[author] = player.name + " #" + std::to_string(author) + " key " +
+                                   to_hex(player.key) + " is here, at " +
+                                   text_of(VoxelPos{static_cast<std::int32_t>(player.at.x),
+                                                    static_cast<std::int32_t>(player.at.y),
+                                                    static_cast<std::int32_t>(player.at.z)});
+                 }
+                 std::string text = lines.empty() ? "nobody has ever been here\n" : "";
+                 std::size_t told = 0;
+                 for (const auto& [author, line] : lines) {
+                   if (here.contains(author) || told < kPlayersTold) text += line + "\n";
+                   told += here.contains(author) ? 0 : 1;
+                 }
+                 if (told > kPlayersTold)
+                   text +=
+                       "and " + std::to_string(told - kPlayersTold) + " more who are not here\n";
+                 text.pop_back();
+                 reply({text, true, true});
+               });
+}
+
+void CommandHandler::resolve(const CommandFilter& filter, const std::string& command,
+                             const CommandReply& reply,
+                             std::function<void(const SelectionFilter&)> go_on) {
+  SelectionFilter out;
+  out.from_us = filter.from_us.value_or(out.from_us);
+  out.until_us = filter.until_us.value_or(out.until_us);
+  out.box = filter.box;
+  out.cause = filter.cause;
+  const bool has_names = std::any_of(filter.authors.begin(), filter.authors.end(),
+                                     [](const auto& a) { return !a.number; });
+  for (const CommandFilter::Author& author : filter.authors) {
+    if (author.number) out.authors.push_back(*author.number);
+  }
+  if (!has_names) return go_on(out);
+  auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
+  workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
+               [rows, out, filter, command, reply, go_on](const std::string& error) mutable {
+                 if (!error.empty()) return refuse(reply, command + ": " + error);
+                 if (!*rows) return refuse(reply, command + ": " + rows->error().message());
+                 const AuthorNames names(**rows);
+                 for (const CommandFilter::Author& author : filter.authors) {
+                   if (author.number) continue;
+                   const auto named = names.find(author.name);
+                   if (!named) {
+                     return refuse(reply,
+                                   command + " author \"" + author.name + "\": " + named.error());
+                   }
+                   out.authors.push_back(*named);
+                 }
+                 go_on(out);
+               });
+}
+
+void CommandHandler::log(const LogCommand& command, const Clocks& now, const CommandReply& reply) {
+  world_.commit(now);
+  resolve(
+      command.filter, "log", reply,
+      [this, limit = command.limit, reply](const SelectionFilter& filter) {
+        SelectionFilter on_disk = filter;
+        on_disk.last = world_.durable();
+        auto text = std::make_shared<std::string>();
+        auto wrong = std::make_shared<std::string>();
+        workers_.run(
+            [on_disk, limit, text, wrong, materials = materials_](Store& reader, const Generator&) {
+              const auto rows = reader.players();
+              const auto newest = newest_edits(reader, on_disk, limit);
+              if (!rows) *wrong = rows.error().message();
+              if (!newest) *wrong = newest.error().message();
+              if (!wrong->empty()) return;
+              const AuthorNames names(*rows);
+              for (const EditRecord& record : *newest) {
+                *text += log_line(record, names.of(record.op.author), materials) + "\n";
+              }
+            },
+            [text, wrong, reply](const std::string& error) {
+              if (!error.empty() || !wrong->empty()) return refuse(reply, "log: " + error + *wrong);
+              if (text->empty()) *text = "no edit matches\n";
+              text->pop_back();
+              reply({*text, true, true});
+            });
+      });
+}
+
+void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks& now,
+                             const CommandReply& reply) {
+  const auto go_on = [this, now, reply, picture = command.picture](const SelectionFilter& filter) {
+    if (!picture) return rollback_.preview(filter, now, reply);
+    const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
+    rollback_.preview(
+        filter, now, reply, [pictures](const RestorePlan& plan) { pictures->see(plan); },
+        [pictures](Store& reader, const Generator& generator, const std::string& id) {
+          return pictures->draw(reader, generator, id);
+        });
+  };
+  resolve(command.filter, "rollback preview", reply, go_on);
+}
+
+}  // namespace runstone

@@ -1,0 +1,117 @@
+#include "server/world/handshake_handlers.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "server/world/presence.hpp"
+
+namespace runstone {
+namespace {
+
+ChunkEncoding choose_encoding(const WorldConfig& config, std::uint8_t offered) {
+  const auto offers = [&](ChunkEncoding e) {
+    return (offered >> (static_cast<unsigned>(e) - 1) & 1U) != 0;
+  };
+  if (offers(config.preferred_encoding)) return config.preferred_encoding;
+  for (const ChunkEncoding e : {ChunkEncoding::packed, ChunkEncoding::raw}) {
+    if (offers(e)) return e;
+  }
+  return ChunkEncoding::coded;
+}
+
+Welcome welcome_of(const WorldState& world) {
+  const WorldConfig& config = world.config;
+  Welcome welcome;
+  welcome.world_id = config.world_id;
+  welcome.epoch = world.authority.epoch();
+  welcome.durable = world.durable;
+  welcome.head = world.authority.head();
+  welcome.chunk_edge = config.chunk_edge;
+  welcome.heights = config.heights;
+  welcome.spawn = config.spawn;
+  welcome.materials = config.materials;
+  welcome.server_key = config.server_keys.public_key;
+  welcome.edit_volume_max = config.edit_volume_max;
+  welcome.view_radius_max = config.view_radius_max;
+  return welcome;
+}
+
+/// Only open sessions count: silent sockets must not keep players out.
+bool close_if_full(WorldState& world, SessionId session) {
+  const auto open = static_cast<std::size_t>(
+      std::count_if(world.sessions.begin(), world.sessions.end(),
+                    [](const auto& s) { return s.second.state == SessionStage::open; }));
+  if (open < world.config.sessions_max) return false;
+  close_session(
+      world, session, GoodbyeReason::server_full,
+      "the server holds " + std::to_string(world.config.sessions_max) + " sessions at most");
+  return true;
+}
+
+}  // namespace
+
+void on_hello(WorldState& world, SessionId session, const Hello& hello) {
+  WorldSession& mine = *world.find(session);
+  if (hello.protocol != kProtocolVersion) {
+    close_session(world, session, GoodbyeReason::wrong_protocol,
+                  "client speaks protocol " + std::to_string(hello.protocol) + ", server " +
+                      std::to_string(kProtocolVersion));
+    return;
+  }
+  if (close_if_full(world, session)) return;
+  Welcome welcome = welcome_of(world);
+  welcome.encoding = choose_encoding(world.config, hello.encodings);
+  welcome.features = world.config.features & hello.features;
+  world.random(welcome.challenge);
+  welcome.signature = sign(world.config.server_keys, server_transcript(hello, welcome));
+  mine.key = hello.key;
+  mine.instance = hello.instance;
+  mine.name = hello.name;
+  mine.proof_transcript = client_transcript(hello, welcome);
+  mine.durable_told = welcome.durable;
+  mine.state = SessionStage::awaits_proof;
+  world.ports.set_encoding(session, welcome.encoding);
+  world.ports.set_features(session, welcome.features);
+  send_or_close(world, session, welcome);
+}
+
+void on_client_auth(WorldState& world, SessionId session, const ClientAuth& proof,
+                    const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  if (!verify(mine.key, mine.proof_transcript, proof.signature)) {
+    close_session(world, session, GoodbyeReason::not_authenticated,
+                  "the proof does not fit the key");
+    return;
+  }
+  for (const auto& [other, theirs] : world.sessions) {
+    if (other == session || theirs.state != SessionStage::open) continue;
+    if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
+    close_session(world, other, GoodbyeReason::already_connected,
+                  "the same client connected again");
+    break;  // there was one at most; the loop's iterators end here
+  }
+  if (close_if_full(world, session)) return;
+  mine.proof_transcript = {};
+  mine.state = SessionStage::open;
+  mine.author = world.players.enter(mine.key, mine.name);
+  if (world.players.is_renamed(mine.author) &&
+      world.ports.log_has_room(world.authority.queued() + 1)) {
+    world.ports.log_append({*world.players.take_unsaved(mine.author)}, {});
+  }
+  mine.pose.at = world.config.spawn;
+  mine.pose_changed = true;
+  mine.edits = TokenBucket(world.config.edits_per_second, world.config.edit_burst);
+  mine.heard_us = now.steady_us;
+  world.interest.open(session);
+  world.ports.opened(session);
+  ++world.counters.sessions_opened;
+  world.ports.log(WorldLogLevel::info, "session=" + std::to_string(session) +
+                                           " open author=" + std::to_string(mine.author) +
+                                           " name=\"" + mine.name + "\"");
+  world.roster_changed = true;
+  const SessionAccepted ready{mine.author,
+                              world.authority.resolved().of(mine.author, mine.instance)};
+  if (send_or_close(world, session, ready)) send_all_poses_to(world, session);
+}
+
+}  // namespace runstone

@@ -1,0 +1,91 @@
+#include "server/world/presence.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace runstone {
+namespace {
+
+/// Two clients of one player are one line.
+std::map<AuthorId, std::string> names_of(const WorldState& world) {
+  std::map<AuthorId, std::string> names;
+  for (const auto& [id, session] : world.sessions) {
+    if (session.state == SessionStage::open) names[session.author] = session.name;
+  }
+  return names;
+}
+
+PlayerList whole_roster(const std::map<AuthorId, std::string>& names) {
+  PlayerList roster;
+  roster.players.reserve(names.size());
+  for (const auto& [author, name] : names) roster.players.push_back({author, name});
+  return roster;
+}
+
+PlayerList change_between(const std::map<AuthorId, std::string>& before,
+                          const std::map<AuthorId, std::string>& after) {
+  PlayerList change;
+  change.is_change = true;
+  for (const auto& [author, name] : after) {
+    const auto known = before.find(author);
+    if (known == before.end() || known->second != name) change.players.push_back({author, name});
+  }
+  for (const auto& [author, name] : before) {
+    if (!after.contains(author)) change.left.push_back(author);
+  }
+  return change;
+}
+
+}  // namespace
+
+void broadcast_roster(WorldState& world) {
+  if (!world.roster_changed) return;
+  world.roster_changed = false;
+  std::map<AuthorId, std::string> names = names_of(world);
+  const PlayerList change = change_between(world.roster, names);
+  const bool has_change = !change.players.empty() || !change.left.empty();
+  const EncodedMessage encoded_change = encode_message(change);
+  std::optional<EncodedMessage> encoded_whole;  // most of the time nobody needs it
+  for (const SessionId session : world.open_sessions()) {
+    WorldSession& mine = *world.find(session);
+    if (mine.has_roster && !has_change) continue;
+    if (!mine.has_roster && !encoded_whole) encoded_whole = encode_message(whole_roster(names));
+    mine.has_roster =
+        send_or_skip(world, session, mine.has_roster ? encoded_change : *encoded_whole);
+    if (!mine.has_roster) world.roster_changed = true;
+  }
+  world.roster = std::move(names);
+}
+
+void broadcast_poses(WorldState& world, const Clocks& now) {
+  const std::vector<SessionId> open = world.open_sessions();
+  const TimeUs interval = std::max(world.config.pose_interval_us,
+                                   kPoseIntervalUsPerSession * static_cast<TimeUs>(open.size()));
+  if (now.steady_us - world.poses_us < interval) return;
+  world.poses_us = now.steady_us;
+  PlayerPoses poses;
+  const auto next = std::upper_bound(open.begin(), open.end(), world.pose_served);
+  const auto first = static_cast<std::size_t>(next - open.begin());
+  for (std::size_t i = 0; i < open.size() && poses.players.size() < kPosesMax; ++i) {
+    const SessionId id = open[(first + i) % open.size()];
+    WorldSession& session = *world.find(id);
+    if (!session.pose_changed) continue;
+    session.pose_changed = false;
+    world.pose_served = id;
+    poses.players.push_back({session.author, session.pose});
+  }
+  if (poses.players.empty()) return;
+  const EncodedMessage encoded = encode_message(poses);
+  for (const SessionId session : open) send_or_skip(world, session, encoded);
+}
+
+void send_all_poses_to(WorldState& world, SessionId session) {
+  PlayerPoses poses;
+  for (const auto& [id, other] : world.sessions) {
+    if (other.state == SessionStage::open) poses.players.push_back({other.author, other.pose});
+  }
+  send_or_skip(world, session, encode_message(poses));
+}
+
+}  // namespace runstone

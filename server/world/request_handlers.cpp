@@ -1,0 +1,68 @@
+#include "server/world/request_handlers.hpp"
+
+#include <algorithm>
+
+#include "server/world/delivery.hpp"
+#include "server/world/edit_check.hpp"
+
+namespace runstone {
+
+void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
+                      const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  for (const ChunkKey& key : request.keys) {
+    mine.claims.drop(key);  // what it holds is not what it wants
+    const auto state = world.interest.find(session)->state(key);
+    const bool is_settled = state == ChunkInterest::subscribed ||
+                            state == ChunkInterest::unavailable || state == ChunkInterest::recalled;
+    if (is_settled) {
+      if (mine.visit) mine.visit->sent.erase(key);
+      world.interest.set_state(session, key, ChunkInterest::wanted);
+      ++world.counters.chunks_requested;
+    }
+  }
+  deliver(world, session, now);
+  collect_released(world);
+}
+
+void on_edit(WorldState& world, SessionId session, const EditRequest& request, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  const OperationId op{mine.author, mine.instance, request.client_seq};
+  const double reach = world.config.reach_max;
+  const std::uint64_t tokens =
+      std::min(edit_tokens(request.edit, world.config.chunk_edge), world.config.edit_burst);
+  std::optional<RejectReason> refusal;
+  if (world.authority.resolved().knows(op)) {
+    refusal = world.authority.resolved().answer_to(op);
+  } else if (!mine.edits.take(tokens, now.steady_us)) {
+    refusal = RejectReason::rate_limited;
+    world.authority.refuse(op, *refusal);
+  } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
+    refusal = RejectReason::out_of_reach;
+    world.authority.refuse(op, *refusal);
+  } else {
+    const bool has_room =
+        world.accepts_edits && world.ports.log_has_room(world.authority.queued() + 1);
+    refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
+                                     has_room);
+  }
+  if (!refusal) return;
+  ++world.counters.edits_rejected;
+  const bool maybe_applied = *refusal == RejectReason::already_resolved;
+  const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
+  mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
+  answer(world, session, {request.client_seq, *refusal, "", applied_by});
+}
+
+void on_move(WorldState& world, SessionId session, const Move& move) {
+  WorldSession& mine = *world.find(session);
+  if (mine.pose == move.pose) return;
+  mine.pose = move.pose;
+  mine.pose_changed = true;
+}
+
+void on_ping(WorldState& world, SessionId session, const Ping& ping, const Clocks& now) {
+  send_or_skip(world, session, encode_message(Pong{ping.sent_us, now.steady_us}));
+}
+
+}  // namespace runstone

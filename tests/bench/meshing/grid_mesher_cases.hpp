@@ -1,0 +1,15 @@
+// Contestants that mesh a dense grid which is ready before they are timed.
+#pragma once
+#include <string_view>
+
+#include "common/mesh/visibility.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+
+namespace runstone::bench {
+
+/// simple, greedy, naive_greedy, run_strips, run_strips_hidden, optimal_greedy, monotone, poly2tri or grid_rdm
+/// (mesher_case.hpp), still without its name. `visibility` must outlive it. Aborts on another name.
+MesherCase grid_contestant(std::string_view name, const Volume& volume,
+                           const VisibilityTable& visibility);
+
+}  // namespace runstone::bench

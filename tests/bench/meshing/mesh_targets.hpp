@@ -1,0 +1,14 @@
+// The bars of meshing, and what rows say about them. All are of chunks in their best axis order, which is how
+// holders keep them.
+#pragma once
+#include <vector>
+
+#include "tests/bench/edits/edit_case.hpp"
+#include "tests/bench/harness/target.hpp"
+#include "tests/bench/meshing/mesh_result.hpp"
+
+namespace runstone::bench {
+
+std::vector<Target> mesh_targets(const std::vector<MeshRow>& rows, const EditTiming& edits);
+
+}  // namespace runstone::bench

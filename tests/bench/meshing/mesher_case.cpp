@@ -1,0 +1,206 @@
+#include "tests/bench/meshing/mesher_case.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "common/core/assert.hpp"
+#include "common/mesh/rdm/rdm_mesher.hpp"
+#include "common/runs/reorder.hpp"
+#include "tests/bench/meshing/grid_mesher_cases.hpp"
+#include "tests/bench/meshing/mesher_case_state.hpp"
+#include "tests/reference/binary_greedy.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/reference/material_octree.hpp"
+#include "tests/reference/rle_rdm.hpp"
+
+namespace runstone::bench {
+namespace {
+
+using namespace reference;
+
+constexpr std::array<std::string_view, 17> kNames = {"rdm",
+                                                     "rdm_kept",
+                                                     "rdm_plain",
+                                                     "decode_binary",
+                                                     "grid_binary",
+                                                     "mask_binary",
+                                                     "culled",
+                                                     "simple",
+                                                     "greedy",
+                                                     "naive_greedy",
+                                                     "run_strips",
+                                                     "run_strips_hidden",
+                                                     "optimal_greedy",
+                                                     "monotone",
+                                                     "poly2tri",
+                                                     "grid_rdm",
+                                                     "rle_rdm"};
+
+/// Adds the time since `start` to a phase; returns the time now.
+std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
+  const std::uint64_t now = now_ns();
+  phases[static_cast<std::size_t>(phase)] += now - start;
+  return now;
+}
+
+MesherCase rdm(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    RdmScratch scratch;
+    ChunkMesh mesh;
+    MeshNeighbours neighbours;
+    std::array<ChunkBorders, kDirectionCount> kept;
+    MeshBorders borders{};
+    ChunkBorders own;
+  };
+  auto state = std::make_shared<State>();
+  state->scratch.use_plain_path(name == "rdm_plain");
+  state->neighbours = volume.scene.pointers();
+  MesherCase out = contestant_of(state, volume.scene.chunk.runs.byte_size());
+  ChunkBorders* own = nullptr;
+  if (name == "rdm_kept") {
+    for (std::size_t d = 0; d < kDirectionCount; ++d) {
+      if (state->neighbours[d] == nullptr) continue;
+      state->kept[d].read(*state->neighbours[d], visibility);
+      state->borders[d] = &state->kept[d];
+    }
+    own = &state->own;
+    own->read(volume.scene.chunk, visibility);
+    out.storage_bytes += own->byte_size();
+  }
+  out.mesh = [state, own, &volume, &visibility](PhaseTimes&) {
+    mesh_rdm(volume.scene.chunk, state->neighbours, state->borders, visibility, state->scratch,
+             state->mesh, own);
+  };
+  return out;
+}
+
+MesherCase binary(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    GridNeighbours neighbours;
+    std::vector<Material> layer;
+    DenseGrid grid;
+    OccupancyMask mask;
+    BinaryScratch scratch;
+    ChunkMesh mesh;
+  };
+  auto state = std::make_shared<State>();
+  state->neighbours = volume.scene.pointers();
+  const RunChunk& chunk = volume.scene.chunk;
+  decode(chunk, state->neighbours, state->layer, state->grid);
+  occupancy_of(state->grid, visibility, state->mask);
+  MesherCase out = contestant_of(state, state->grid.byte_size());
+  if (name == "mask_binary") {
+    out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
+    out.mesh = [state](PhaseTimes&) {
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  } else if (name == "grid_binary") {
+    out.mesh = [state, &visibility](PhaseTimes& phases) {
+      const std::uint64_t start = now_ns();
+      occupancy_of(state->grid, visibility, state->mask);
+      book(phases, Phase::mask, start);
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  } else {
+    out.storage_bytes = chunk.runs.byte_size();
+    out.mesh = [state, &chunk, &visibility](PhaseTimes& phases) {
+      std::uint64_t time = now_ns();
+      decode(chunk, state->neighbours, state->layer, state->grid);
+      time = book(phases, Phase::decode, time);
+      occupancy_of_decoded(chunk, state->neighbours, state->grid, visibility, state->mask);
+      book(phases, Phase::mask, time);
+      mesh_binary_greedy(state->grid, state->mask, state->scratch, state->mesh);
+    };
+  }
+  return out;
+}
+
+/// An octree deep enough for a cube of `side` voxels.
+MaterialOctree octree_over(VoxelPos origin, std::int32_t side) {
+  const auto bricks =
+      static_cast<unsigned>((side + MaterialOctree::kBrickSide - 1) / MaterialOctree::kBrickSide);
+  return {origin, static_cast<unsigned>(std::bit_width(bricks - 1))};
+}
+
+MesherCase culled(const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    MaterialOctree octree;
+    DenseGrid grid;
+    std::vector<Quad> quads;
+  };
+  const auto side = static_cast<std::int32_t>(volume.edge);
+  // The chunk at 0 0 0, what is next to it around.
+  auto state = std::make_shared<State>(State{octree_over({-side, -side, -side}, 3 * side), {}, {}});
+  MaterialOctree alone = octree_over({}, side);
+  state->octree.insert({}, volume.scene.chunk);
+  alone.insert({}, volume.scene.chunk);
+  for (unsigned d = 0; d < kDirectionCount; ++d) {
+    const auto& beside = volume.scene.neighbours[d];
+    const VoxelPos at = origin_of(neighbour({}, static_cast<Direction>(d)), side);
+    if (beside) state->octree.insert(at, *beside);
+  }
+  state->octree.compact();
+  alone.compact();
+  MesherCase out = contestant_of(state, alone.byte_size());
+  out.mesh = [state, &volume, &visibility](PhaseTimes& phases) {
+    const CulledPhases spent = mesh_culled(state->octree, {}, volume.scene.chunk.extent, visibility,
+                                           now_ns, state->grid, state->quads);
+    phases[static_cast<std::size_t>(Phase::octree)] += spent.octree;
+  };
+  return out;
+}
+
+MesherCase rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
+  struct State {
+    RunChunk chunk;
+    std::vector<Quad> quads;
+  };
+  auto state = std::make_shared<State>(State{reorder(volume.scene.chunk, AxisOrder::zyx), {}});
+  MesherCase out = contestant_of(state, state->chunk.runs.byte_size());
+  out.mesh = [state, &visibility](PhaseTimes&) {
+    mesh_rle_rdm(state->chunk, visibility, state->quads);
+  };
+  return out;
+}
+
+MesherCase of_name(std::string_view name, const Volume& volume, const VisibilityTable& visibility) {
+  if (name.starts_with("rdm")) return rdm(name, volume, visibility);
+  if (name.ends_with("_binary")) return binary(name, volume, visibility);
+  if (name == "culled") return culled(volume, visibility);
+  if (name == "rle_rdm") return rle_rdm(volume, visibility);
+  return grid_contestant(name, volume, visibility);
+}
+
+}  // namespace
+
+std::uint64_t now_ns() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+}
+
+std::uint64_t core_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 +
+         static_cast<std::uint64_t>(now.tv_nsec);
+}
+
+std::span<const std::string_view> mesher_case_names() { return kNames; }
+
+std::optional<MesherCase> make_mesher_case(std::string_view name, const Volume& volume,
+                                           const VisibilityTable& visibility) {
+  const auto known = std::find(kNames.begin(), kNames.end(), name);
+  RUNSTONE_ASSERT(known != kNames.end());
+  if (name.ends_with("_binary") && volume.edge > kBinarySideMax) return std::nullopt;
+  MesherCase out = of_name(name, volume, visibility);
+  out.name = *known;
+  return out;
+}
+
+}  // namespace runstone::bench

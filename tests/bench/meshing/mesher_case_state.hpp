@@ -1,0 +1,38 @@
+// What all mesher_cases share: their buffers, and how the last mesh in them is counted and copied out.
+#pragma once
+#include <cstddef>
+#include <memory>
+
+#include "common/mesh/chunk_mesh.hpp"
+#include "tests/bench/meshing/mesher_case.hpp"
+
+namespace runstone::bench {
+
+/// A mesher_case whose last mesh lies in `state`, as a ChunkMesh `mesh`, a list `quads` or a TriangleMesh
+/// `triangles`, and which keeps it alive. Name and mesher come later.
+template <class State>
+MesherCase contestant_of(std::shared_ptr<State> state, std::size_t storage_bytes) {
+  const auto quads = [state]() -> std::size_t {
+    if constexpr (requires { state->mesh; })
+      return state->mesh.quad_count();
+    else if constexpr (requires { state->triangles; })
+      return 0;
+    else
+      return state->quads.size();
+  };
+  const auto surface = [state](reference::Surface& out) {
+    out.clear();
+    if constexpr (requires { state->mesh; }) {
+      for (const QuadLayers* pass : {&state->mesh.opaque, &state->mesh.transparent}) {
+        out.quads.insert(out.quads.end(), pass->quads.begin(), pass->quads.end());
+      }
+    } else if constexpr (requires { state->triangles; }) {
+      out.triangles = state->triangles;
+    } else {
+      out.quads = state->quads;
+    }
+  };
+  return {"", {}, quads, surface, storage_bytes};
+}
+
+}  // namespace runstone::bench

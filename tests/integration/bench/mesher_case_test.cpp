@@ -1,0 +1,65 @@
+// What a mesher_case hands out is the mesh it made.
+#include "tests/bench/meshing/mesher_case.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/bench/worlds/measured_worlds.hpp"
+#include "tests/bench/worlds/seeded_worlds.hpp"
+#include "tests/reference/culled_mesher.hpp"
+#include "tests/support/polygon_checks.hpp"
+#include "tests/support/triangle_oracle.hpp"
+
+using namespace runstone;
+using namespace runstone::bench;
+
+TEST_CASE("every contestant hands out its last mesh, in place of what was there", "[bench]") {
+  for (const VoxelWorld& world : seeded_worlds()) {
+    for (const Volume& volume : volumes_of(world, 16)) {
+      const auto owed = test::expected_faces(volume.scene, seeded_materials());
+      reference::Surface surface;
+      for (const std::string_view name : mesher_case_names()) {
+        CAPTURE(world.name, name);
+        const auto mesher_case = make_mesher_case(name, volume, *world.visibility);
+        REQUIRE(mesher_case.has_value());
+        PhaseTimes phases{};
+        mesher_case->mesh(phases);
+        surface.quads.emplace_back();  // left over from another
+        surface.triangles.vertices.emplace_back();
+        mesher_case->surface(surface);
+        CHECK(surface.quads.size() == mesher_case->quads());
+        CHECK(surface.triangles.vertices.empty() ==
+              (owed.empty() || (name != "monotone" && name != "poly2tri")));
+        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden")
+          continue;  // hidden faces too
+        CHECK(test::surface_difference(surface, volume.scene.chunk.extent, seeded_materials(), owed)
+                  .value_or("") == "");
+      }
+    }
+  }
+}
+
+TEST_CASE("in a real world polygons show the faces that culling shows", "[bench]") {
+  const auto worlds =
+      MeasuredWorlds::open({"luanti"}, RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
+  REQUIRE(worlds.has_value());
+  const MeasuredWorld world = worlds->at_edge(0, 32);
+  test::PolygonJury jury;
+  std::vector<Quad> culled;
+  std::size_t faces = 0;
+  for (std::size_t v = 0; v < world.volumes.size(); ++v) {
+    const test::MeshScene& scene = world.volumes[v].scene;
+    reference::mesh_culled(test::grid_of(scene), *world.visibility, culled);
+    std::vector<test::UnitFace> owed;
+    for (const Quad quad : culled) {
+      const QuadFields q = unpack(quad);
+      owed.push_back({q.x, q.y, q.z, q.direction, q.material});
+    }
+    faces += owed.size();
+    CAPTURE(world.parts[v]);
+    // The world's materials have no table here; those beyond one count as opaque, and which are drawn is said
+    // by the faces.
+    CHECK(jury.fault(scene, *world.visibility, MaterialTable{}, owed) == "");
+  }
+  CHECK(faces > 10'000);
+}

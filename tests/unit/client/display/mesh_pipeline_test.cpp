@@ -1,0 +1,216 @@
+#include "client/display/mesh_pipeline.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "client/net/wake_up.hpp"
+#include "common/os/steady_clock.hpp"
+#include "tests/support/authority_model.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tests/unit/client/display/fake_screen.hpp"
+
+using namespace runstone;
+using test::AuthorityModel;
+using test::FakeScreenBook;
+
+namespace {
+
+constexpr std::int32_t kEdge = 16;
+
+/// One chunk in view, meshed on this thread, drawn on a fake screen off screen.
+struct Fixture {
+  Fixture() {
+    replica.set_view({{0, 0, 0}, 0, 0});
+    static_cast<void>(replica.open({kEdge, 5, 77, 1, 0, 0, 0}));
+    MaterialTable materials;
+    REQUIRE(materials.add({"red", {220, 30, 30, 255}, Visibility::opaque, {}}).has_value());
+    pipeline.set_materials(materials);
+    replica.receive(world.snapshot({0, 0, 0}), {});
+    turn();
+    order();
+    take_frames(1);
+  }
+  ~Fixture() { book.release(); }
+  Fixture(const Fixture&) = delete;
+  Fixture& operator=(const Fixture&) = delete;
+
+  /// What others did reaches the workers and the draw thread.
+  void turn() {
+    pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
+    pipeline.mesh();  // meshes
+    pipeline.mesh();  // hands over
+  }
+  void edit(VoxelPos at) {
+    REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, 1}), {}).has_value());
+    turn();
+  }
+  void order() {
+    pipeline.draw(steady_now_us(), Camera{}, {8, 4}, [] { return std::vector<Marker>{}; });
+  }
+  void take_frames(std::uint64_t presented) {
+    while (pipeline.frames_presented() < presented) {
+      wake.wait(std::chrono::seconds(1));
+      pipeline.take_drawn();
+    }
+  }
+  std::uint64_t edits_presented() const {
+    const LatencyReport report = pipeline.recorder().report();
+    return report[EditPath::remote].step[static_cast<std::size_t>(LatencyStage::presented)].count();
+  }
+  std::size_t draws() const {
+    const auto lines = book.lines();
+    return static_cast<std::size_t>(std::count(lines.begin(), lines.end(), "draw"));
+  }
+
+  AuthorityModel world{kEdge, 1};
+  Replica replica;
+  FakeScreenBook book;
+  WakeUp wake;
+  MeshPipeline pipeline{
+      replica,
+      std::make_unique<DrawThread>(test::fake_screen_on(book), DrawPriority::normal,
+                                   [this] { wake.notify(); }),
+      false, 0, [this] { wake.notify(); }};
+  ClientSequence edits = 0;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(
+    Fixture,
+    "an edit meshed while a frame is under way is presented by the next frame, not by that one",
+    "[client_app]") {
+  book.hold();
+  edit({1, 1, 1});
+  order();
+  book.wait_until_drawing();
+  edit({5, 5, 5});
+  order();  // one is under way: none is added
+  CHECK_FALSE(pipeline.is_settled());
+  book.release();
+  take_frames(2);
+  CHECK(edits_presented() == 1);
+  CHECK(pipeline.recorder().open_edits() == 1);
+  CHECK(draws() == 2);
+  order();
+  take_frames(3);
+  CHECK(edits_presented() == 2);
+  CHECK(pipeline.recorder().open_edits() == 0);
+  CHECK(pipeline.is_settled());
+}
+
+TEST_CASE_METHOD(Fixture, "off screen an edit is drawn at once and anything else after a pause",
+                 "[client_app]") {
+  pipeline.moved();
+  pipeline.draw(0, Camera{}, {8, 4},
+                [] { return std::vector<Marker>{}; });  // long before the pause ends
+  CHECK(pipeline.screenshots_done());
+  edit({5, 5, 5});
+  pipeline.draw(0, Camera{}, {8, 4}, [] { return std::vector<Marker>{}; });
+  take_frames(2);
+  CHECK(draws() == 2);
+  CHECK(edits_presented() == 1);
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "nothing is settled before a frame has shown it, terrain as little as edits",
+                 "[client_app]") {
+  CHECK(pipeline.is_settled());
+  replica.set_view({{0, 0, 0}, 1, 0});
+  pipeline.view_changed();
+  replica.receive(world.snapshot({1, 0, 0}), {});
+  pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
+  CHECK_FALSE(pipeline.is_settled());  // to mesh
+  for (const ChunkCoord at : {ChunkCoord{-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    replica.receive(world.snapshot(at), {});
+  }
+  for (int job = 0; job < 10; ++job) turn();  // one each: five chunks, the first one perhaps again
+  CHECK(pipeline.recorder().open_edits() == 0);
+  CHECK_FALSE(pipeline.is_settled());  // handed over
+  book.hold();
+  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
+                [] { return std::vector<Marker>{}; });
+  book.wait_until_drawing();
+  CHECK_FALSE(pipeline.is_settled());  // being drawn
+  book.release();
+  take_frames(2);
+  CHECK(pipeline.is_settled());
+}
+
+TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is", "[client_app]") {
+  const test::TempFolder folder;
+  pipeline.request_screenshot(folder / "a.png", steady_now_us());
+  book.hold();
+  order();
+  book.wait_until_drawing();
+  pipeline.take_drawn();
+  CHECK_FALSE(pipeline.screenshots_done());
+  book.release();
+  take_frames(2);
+  CHECK(pipeline.screenshots_done());
+  CHECK(pipeline.screenshots_written());
+  CHECK(std::filesystem::file_size(folder / "a.png") > 0);
+  pipeline.request_screenshot(folder / "nosuch/b.png", steady_now_us());
+  order();
+  take_frames(3);
+  CHECK(pipeline.screenshots_done());
+  CHECK_FALSE(pipeline.screenshots_written());
+  pipeline.moved();
+  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
+                [] { return std::vector<Marker>{}; });
+  take_frames(4);
+  CHECK_FALSE(pipeline.screenshots_written());  // a frame without pictures says nothing about them
+}
+
+TEST_CASE_METHOD(Fixture, "catching up waits for what was handed over, whatever comes later",
+                 "[client_app]") {
+  edit({5, 5, 5});
+  CHECK_FALSE(pipeline.has_caught_up());
+  book.hold();
+  order();
+  book.wait_until_drawing();
+  edit({6, 5, 5});
+  book.release();
+  take_frames(2);
+  CHECK(pipeline.recorder().open_edits() == 1);
+  CHECK(pipeline.has_caught_up());
+}
+
+TEST_CASE_METHOD(Fixture, "the report tells whole meshes from meshes of layers, and what is kept",
+                 "[client_app]") {
+  const auto counts = [this] {
+    ChunkStats chunks;
+    FrameStats frames;
+    pipeline.report(chunks, frames);
+    CHECK(chunks.mesh_jobs == chunks.whole_ns.count() + chunks.layers_ns.count());
+    return std::array{chunks.whole_ns.count(), chunks.layers_ns.count(), chunks.kept_mesh_bytes};
+  };
+  CHECK(counts() == std::array<std::uint64_t, 3>{1, 0, 0});
+  edit({5, 5, 5});
+  CHECK(counts() == std::array<std::uint64_t, 3>{1, 1, sizeof(ChunkMesh) + 6 * sizeof(Quad)});
+}
+
+TEST_CASE_METHOD(Fixture, "where materials look different all is meshed again", "[client_app]") {
+  edit({5, 5, 5});
+  edit({6, 5, 5});
+  const auto quads_uploaded = [this] {
+    order();
+    take_frames(pipeline.frames_presented() + 1);
+    const auto lines = book.lines();
+    const auto upload = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
+      return line.starts_with("upload");
+    });
+    return *upload;
+  };
+  CHECK(quads_uploaded() == "upload 0 quads 6");
+  MaterialTable invisible;
+  REQUIRE(invisible.add({"gone", {}, Visibility::empty, {}}).has_value());
+  pipeline.set_materials(invisible);
+  turn();
+  pipeline.moved();
+  pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
+                [] { return std::vector<Marker>{}; });
+  take_frames(pipeline.frames_presented() + 1);
+  CHECK(book.lines()[book.lines().size() - 2] == "upload 0 quads 0");
+}

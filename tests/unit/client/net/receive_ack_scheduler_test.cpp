@@ -1,0 +1,21 @@
+#include "client/net/receive_ack_scheduler.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace runstone {
+namespace {
+
+TEST_CASE("what was read is told at once after a pause, then by time or by bytes", "[client_net]") {
+  ReceiveAckScheduler report;
+  CHECK_FALSE(report.due(0).has_value());
+  CHECK(report.is_due(1, 5'000'000));
+  report.told(1, 5'000'000);
+  CHECK_FALSE(report.due(1).has_value());  // nothing new
+  CHECK_FALSE(report.is_due(2, 5'000'000 + kReceivedEveryUs - 1));
+  CHECK(report.is_due(2, 5'000'000 + kReceivedEveryUs));
+  CHECK(report.is_due(1 + kReceivedEveryBytes, 5'000'000 + kReceivedUsMin));
+  CHECK_FALSE(report.is_due(1 + kReceivedEveryBytes, 5'000'000 + kReceivedUsMin - 1));  // no flood
+}
+
+}  // namespace
+}  // namespace runstone

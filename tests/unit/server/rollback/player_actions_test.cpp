@@ -1,0 +1,115 @@
+#include "server/rollback/player_actions.hpp"
+
+#include "server/rollback/chunk_logs.hpp"
+#include "tests/unit/server/rollback/rollback_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr SessionId kGriefer = 1, kBuilder = 2;
+
+/// Ana sets voxels; those from the second on are built over by another. All in one chunk.
+struct BuiltOver : DeskBench {
+  explicit BuiltOver(int edits) {
+    ana = join(kBuilder);
+    join(kGriefer);
+    for (int i = 0; i < edits; ++i) set(kBuilder, {i % 16, i / 16, 0}, 1);
+    for (int i = 1; i < edits; ++i) set(kGriefer, {i % 16, i / 16, 0}, 2);
+    write_log();
+  }
+  AuthorId ana = 0;
+};
+
+}  // namespace
+
+TEST_CASE("an undo passes by sixteen edits with nothing left, and says so where there are more",
+          "[rollback][undo]") {
+  const int passed = GENERATE(15, 16, 17, 40);
+  CAPTURE(passed);
+  BuiltOver bench(1 + passed);
+  bench.desk.undo(bench.ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(bench.answer().is_ok == (passed < 16));
+  CHECK(bench.at({0, 0, 0}) == (passed < 16 ? kEmpty : Material{1}));
+  if (passed >= 16) {
+    CHECK(bench.answer().text.starts_with("undo: nothing is left of the 16 edits that are next"));
+  }
+}
+
+TEST_CASE("what an undo reads of the log serves all edits that it looks at", "[rollback][undo]") {
+  BuiltOver bench(16);
+  std::size_t asked = 0;
+  const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
+                                        bench.bench.server.durable(), [&] { return ++asked > 0; });
+  REQUIRE(found.has_value());
+  REQUIRE(found->change.has_value());
+  CHECK(found->change->action == 1);
+  // 16 records of hers, 31 of the chunk, and once for each of 16 plans.
+  CHECK(asked == 16 + 31 + 16);
+}
+
+TEST_CASE("an undo that nobody waits for ends at once", "[rollback][undo]") {
+  BuiltOver bench(16);
+  for (std::size_t allowed = 0; allowed < 16 + 31 + 16; ++allowed) {
+    std::size_t asked = 0;
+    const auto found =
+        next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
+                           bench.bench.server.durable(), [&] { return ++asked <= allowed; });
+    REQUIRE_FALSE(found.has_value());
+    CHECK(found.error().kind == StoreError::Kind::cancelled);
+    CHECK(asked == allowed + 1);
+  }
+}
+
+TEST_CASE("a stop ends the reading of undos and jobs", "[rollback][undo]") {
+  BuiltOver bench(2);
+  bench.desk.undo(bench.ana, bench.bench.now(), bench.reply());
+  SECTION("while it looks for what is next") {
+    bench.desk.stop();
+    REQUIRE(bench.work());
+    CHECK(bench.answer().text == "undo: not now: the server stops");
+    CHECK(bench.desk.running() == 0);
+  }
+  SECTION("while its chunks are planned") {
+    REQUIRE(bench.work());
+    bench.tick();
+    REQUIRE(bench.works.size() == 1);
+    bench.desk.stop();
+    bench.settle();
+    CHECK_FALSE(bench.answer().is_ok);
+    CHECK(bench.answer().text.find("cancelled") != std::string::npos);
+    CHECK(bench.at({0, 0, 0}) == 1);
+  }
+}
+
+TEST_CASE("the log of a chunk is the same read once, in parts, or each time", "[rollback]") {
+  BuiltOver bench(12);
+  const ChunkKey key{0, {0, 0, 0}};
+  std::size_t read = 0, read_to_keep = 0;
+  const auto count = [&] { return ++read > 0; };
+  const auto visited = [&](ChunkLogs& logs, Sequence first, Sequence last) {
+    std::vector<Sequence> out;
+    const auto done =
+        logs.visit(key, first, last, [&](const EditRecord& r) { out.push_back(r.version.seq); });
+    REQUIRE(done.has_value());
+    return out;
+  };
+  ChunkLogs each(*bench.store, count);
+  ChunkLogs kept(*bench.store, count, 1 << 20);
+  ChunkLogs tight(*bench.store, count, 5 * sizeof(EditRecord));
+  const std::vector<std::pair<Sequence, Sequence>> ranges = {{8, 12}, {10, 9},  {10, 11}, {3, 4},
+                                                             {1, 23}, {20, 23}, {2, 2}};
+  for (const auto& [first, last] : ranges) {
+    CAPTURE(first, last);
+    std::vector<Sequence> expected;
+    for (Sequence seq = first; seq <= last; ++seq) expected.push_back(seq);
+    CHECK(visited(each, first, last) == expected);
+    CHECK(visited(tight, first, last) == expected);
+    const std::size_t before = read;
+    CHECK(visited(kept, first, last) == expected);
+    read_to_keep += read - before;
+  }
+  CHECK(read_to_keep == 23);
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,136 @@
+// DeskBench: a world strand over a world on disk, and a rollback desk, with nothing that runs by itself: the
+// test says when the log is written, when a worker works and when a tick comes.
+#pragma once
+#include <catch2/catch.hpp>
+#include <deque>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/rollback/rollback_service.hpp"
+#include "tests/support/dense_chunk.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+
+class DeskBench : public RollbackService::Workers {
+ public:
+  explicit DeskBench(WorldConfig c = config())
+      : bench(std::move(c)), desk(bench.server, *this, [this](std::span<std::uint8_t> out) {
+          for (auto& byte : out) byte = static_cast<std::uint8_t>(++random_);
+        }) {
+    WorldMeta meta = sample_meta();
+    REQUIRE(meta.chunk_edge == kEdge);
+    REQUIRE(create_world(folder.path(), meta).has_value());
+    store = *open_world(folder.path(), StoreAccess::read_write);
+    REQUIRE(store->raise_epoch().has_value());
+    GeneratorPin pin;
+    pin.name = "empty";
+    generator = *make_generator(pin, meta.materials);
+    bench.has_empty_base = true;  // as the generator makes it
+  }
+
+  void run(Work work, std::function<void(std::string)> then) override {
+    works.emplace_back(std::move(work), std::move(then));
+  }
+  /// One piece of work; false if there is none.
+  bool work() {
+    if (works.empty()) return false;
+    auto [job, then] = std::move(works.front());
+    works.pop_front();
+    job(*store, *generator);
+    then("");
+    return true;
+  }
+
+  /// What was ordered goes to disk.
+  void write_log() {
+    bench.server.commit(bench.now());
+    auto& records = bench.ports.records;
+    if (written < records.size()) {
+      const std::span<const EditRecord> fresh(records.data() + written, records.size() - written);
+      const auto done = store->append(std::exchange(bench.ports.players, {}), fresh);
+      INFO((done ? "" : done.error().message()));
+      REQUIRE(done.has_value());
+      written = bench.ports.log_written = records.size();
+      bench.server.durable(records.back().version.seq, bench.now());
+    }
+  }
+  void tick() {
+    bench.tick();
+    desk.tick(bench.now());
+  }
+  /// Until nothing is under way.
+  void settle() {
+    for (int i = 0; i < 2000; ++i) {
+      write_log();
+      tick();
+      while (work()) desk.tick(bench.now());
+      if (works.empty() && desk.running() == 0 && written == bench.ports.records.size() && i > 2)
+        return;
+    }
+    FAIL("the desk does not come to rest");
+  }
+
+  CommandReply reply() {
+    return [this](const DeskAnswer& answer) { answers.push_back(answer); };
+  }
+  /// The last answer to what was asked; it must be there.
+  DeskAnswer answer() {
+    REQUIRE_FALSE(answers.empty());
+    REQUIRE(answers.back().is_done);
+    return answers.back();
+  }
+
+  /// A session that sees the first chunks, and edits.
+  AuthorId join(SessionId session) {
+    const AuthorId author = bench.join(session, static_cast<std::uint8_t>(session)).author;
+    bench.view(session, View{{0, 0, 0}, 4, 1});
+    return author;
+  }
+  void edit(SessionId session, const EditShape& shape, Material material) {
+    bench.edit(session, ++client_seq[session], shape, material);
+    bench.server.commit(bench.now());
+    bench.answer_loads();
+  }
+  void fill(SessionId session, VoxelBox box, Material material) {
+    edit(session, FillBox{box}, material);
+  }
+  void set(SessionId session, VoxelPos at, Material material) {
+    edit(session, SetVoxel{at}, material);
+  }
+  Material at(VoxelPos p) {
+    const ChunkPtr chunk = bench.server.find_chunk({0, chunk_of(p, kEdge)});
+    REQUIRE(chunk != nullptr);
+    return material_at(chunk->voxels, local_of(p, kEdge));
+  }
+  /// Digest of each edited chunk in memory.
+  std::vector<std::pair<ChunkKey, Digest>> digests() {
+    std::vector<std::pair<ChunkKey, Digest>> out;
+    for (const auto& [key, chunk] : bench.server.edited_chunks()) {
+      if (chunk->digest != Digest{}) out.emplace_back(key, chunk->digest);
+    }
+    return out;
+  }
+
+  TempFolder folder;
+  std::unique_ptr<Store> store;
+  std::unique_ptr<Generator> generator;
+  WorldBench bench;
+  std::deque<std::pair<Work, std::function<void(std::string)>>> works;
+  std::vector<DeskAnswer> answers;
+  std::map<SessionId, ClientSequence> client_seq;
+  std::size_t written = 0;
+
+ private:
+  std::uint64_t random_ = 0;
+
+ public:
+  RollbackService desk;
+};
+
+}  // namespace runstone::test

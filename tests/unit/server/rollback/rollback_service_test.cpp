@@ -1,0 +1,444 @@
+#include "server/rollback/rollback_service.hpp"
+
+#include "tests/unit/server/rollback/rollback_bench.hpp"
+
+namespace runstone::test {
+namespace {
+
+constexpr SessionId kGriefer = 1, kBuilder = 2;
+constexpr VoxelBox kHouse = {{0, 0, 0}, {8, 8, 8}};
+constexpr VoxelBox kGrief = {{-20, 0, -20}, {20, 4, 20}};
+
+SelectionFilter of_author(AuthorId author) {
+  SelectionFilter filter;
+  filter.authors = {author};
+  return filter;
+}
+
+/// The builder's house, then the griefer all over it.
+struct Night : DeskBench {
+  Night() {
+    griefer = join(kGriefer);
+    builder = join(kBuilder);
+    fill(kBuilder, kHouse, 2);
+    before = digests();
+    fill(kGriefer, kGrief, 1);
+    write_log();
+  }
+  std::string preview_id() {
+    desk.preview(of_author(griefer), bench.now(), reply());
+    settle();
+    REQUIRE(answer().is_ok);
+    const std::string text = answer().text;
+    REQUIRE(text.starts_with("preview p"));
+    return text.substr(8, text.find(':') - 8);
+  }
+  AuthorId griefer = 0, builder = 0;
+  std::vector<std::pair<ChunkKey, Digest>> before;
+};
+
+}  // namespace
+
+TEST_CASE("a rollback gives the world back as it was, and its undo takes that back", "[rollback]") {
+  Night night;
+  const auto griefed = night.digests();
+  const std::string id = night.preview_id();
+  CHECK(night.answer().text.find("would take back 1 edit ") != std::string::npos);
+  CHECK(night.answer().text.find("6400 voxels in 16 chunks") != std::string::npos);
+  CHECK(night.answer().text.find("nothing has changed yet") != std::string::npos);
+  CHECK(night.digests() == griefed);
+  night.desk.apply(id, 0, night.reply());
+  night.settle();
+  CHECK(night.answer().is_ok);
+  CHECK(night.digests() == night.before);
+  const EditRecord first = night.bench.ports.records[2];
+  CHECK(first.cause == Cause::rollback);
+  CHECK(first.op.author == 0);
+  CHECK(first.op.seq == 1);
+  CHECK(first.subject == 2);
+  CHECK(night.bench.ports.records.back().op.instance == first.op.instance);
+
+  SECTION("by the sequence of its first edit") {
+    night.desk.undo_rollback("3", 0, night.bench.now(), night.reply());
+    night.settle();
+    CHECK(night.answer().is_ok);
+    CHECK(night.digests() == griefed);
+    CHECK(night.bench.ports.records.back().cause == Cause::undo);
+    night.desk.list(night.reply());
+    night.settle();
+    CHECK(night.answer().text.find("rollback 3 ") == 0);
+    CHECK(night.answer().text.find("taken back by 19") != std::string::npos);
+    // The undo is a group of its own, and can be taken back in turn.
+    night.desk.undo_rollback("19", 0, night.bench.now(), night.reply());
+    night.settle();
+    CHECK(night.digests() == night.before);
+  }
+  SECTION("by the preview's id") {
+    night.desk.undo_rollback(id, 0, night.bench.now(), night.reply());
+    night.settle();
+    CHECK(night.digests() == griefed);
+  }
+  SECTION("not by an edit within") {
+    night.desk.undo_rollback("4", 0, night.bench.now(), night.reply());
+    night.settle();
+    CHECK_FALSE(night.answer().is_ok);
+    CHECK(night.answer().text.find("no rollback begins there") != std::string::npos);
+    CHECK(night.digests() == night.before);
+  }
+  SECTION("a second rollback of the same edits says that nothing is left") {
+    night.desk.preview(of_author(night.griefer), night.bench.now(), night.reply());
+    night.settle();
+    CHECK(night.answer().text.find("nothing to do: 1 edit match, but nothing of them is left") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("a rollback of nobody says so", "[rollback]") {
+  Night night;
+  night.desk.preview(of_author(99), night.bench.now(), night.reply());
+  night.settle();
+  CHECK(night.answer().is_ok);
+  CHECK(night.answer().text == "rollback preview: nothing to do: no edit matches");
+  night.desk.apply("p1", 0, night.reply());
+  CHECK_FALSE(night.answer().is_ok);
+  CHECK(night.answer().text.find("there is no preview \"p1\"") != std::string::npos);
+}
+
+TEST_CASE("what others build during a rollback stands", "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.desk.apply(id, 0, night.reply());
+  // The builder builds in every chunk again and again, before, between and behind plan and slice.
+  std::set<VoxelPos> built;
+  int step = 0;
+  while (night.desk.running() > 0 || step < 4) {
+    REQUIRE(step < 400);
+    const auto build = [&](int salt) {
+      const VoxelPos p{-20 + (step * 7 + salt * 3) % 40, (step + salt) % 4,
+                       -20 + (step * 11 + salt * 5) % 40};
+      night.set(kBuilder, p, 3);
+      built.insert(p);
+    };
+    if (step < 60) build(0);
+    night.write_log();
+    if (step < 60) build(1);
+    while (night.work()) {
+    }
+    if (step < 60) build(2);
+    night.tick();
+    ++step;
+  }
+  night.settle();
+  CHECK(night.answer().is_ok);
+  for (int z = -20; z < 20; ++z) {
+    for (int y = 0; y < 4; ++y) {
+      for (int x = -20; x < 20; ++x) {
+        const VoxelPos p{x, y, z};
+        const Material house = kHouse.contains(p) ? Material{2} : kEmpty;
+        const Material expected = built.contains(p) ? Material{3} : house;
+        CAPTURE(x, y, z);
+        if (night.at(p) != expected) REQUIRE(night.at(p) == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("a chunk that somebody changes before every slice is restored by masked edits",
+          "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.desk.apply(id, 0, night.reply());
+  int blinks = 0;
+  while (night.desk.running() > 0) {
+    REQUIRE(++blinks < 200);
+    night.write_log();
+    while (night.work()) {
+    }
+    // One voxel on, off, on in every chunk, so that no plan ever fits.
+    for (int x = -20; x < 20; x += 13) {
+      for (int z = -20; z < 20; z += 13)
+        night.set(kBuilder, {x, 0, z}, static_cast<Material>(3 + blinks % 2));
+    }
+    night.tick();
+  }
+  CHECK(night.answer().is_ok);
+  CHECK(night.at({1, 1, 1}) == 2);
+  CHECK(night.at({-3, 2, 5}) == kEmpty);
+  CHECK(night.at({-20, 0, -20}) >= 3);
+  bool is_masked = false;
+  for (const EditRecord& record : night.bench.ports.records) {
+    is_masked |=
+        record.cause == Cause::rollback && record.edit.mask == Mask{MaskKind::only_material, 1};
+  }
+  CHECK(is_masked);
+}
+
+TEST_CASE("a rollback waits while the log is full, and says when it cannot be written",
+          "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  const std::size_t ordered = night.bench.ports.records.size();
+  night.bench.ports.log_room = false;
+  night.desk.apply(id, 0, night.reply());
+  for (int i = 0; i < 20; ++i) {
+    night.tick();
+    while (night.work()) {
+    }
+  }
+  CHECK(night.bench.ports.records.size() == ordered);
+  CHECK(night.desk.running() == 1);
+  SECTION("room again") {
+    night.bench.ports.log_room = true;
+    night.settle();
+    CHECK(night.answer().is_ok);
+    CHECK(night.digests() == night.before);
+  }
+  SECTION("the disk fails") {
+    night.bench.server.log_failed();
+    night.tick();
+    CHECK_FALSE(night.answer().is_ok);
+    CHECK(night.answer().text.find("failed after 0 of 16 chunks") != std::string::npos);
+    CHECK(night.answer().text.find("its log cannot be written") != std::string::npos);
+    CHECK(night.desk.running() == 0);
+    night.desk.undo(night.builder, night.bench.now(), night.reply());
+    CHECK_FALSE(night.answer().is_ok);
+  }
+  SECTION("cancelled") {
+    night.desk.cancel(id, night.reply());
+    night.tick();
+    CHECK_FALSE(night.answer().is_ok);
+    CHECK(night.answer().text.find("was cancelled after 0 of 16 chunks") != std::string::npos);
+  }
+}
+
+TEST_CASE(
+    "a disk that fails while a worker still plans ends the rollback, and the worker's answer is no "
+    "harm",
+    "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.desk.apply(id, 0, night.reply());
+  night.tick();
+  REQUIRE_FALSE(night.works.empty());
+  night.bench.server.log_failed();
+  night.tick();
+  CHECK_FALSE(night.answer().is_ok);
+  while (night.work()) {
+  }
+  night.tick();
+  CHECK(night.desk.running() == 0);
+  CHECK(night.works.empty());
+}
+
+TEST_CASE("a rollback that is cancelled midway can be taken back", "[rollback]") {
+  Night night;
+  const auto griefed = night.digests();
+  // More chunks than a slice has.
+  night.fill(kGriefer, {{-60, 0, -60}, {60, 1, 60}}, 1);
+  night.write_log();
+  const std::string id = night.preview_id();
+  night.desk.apply(id, 0, night.reply());
+  night.tick();
+  while (night.work()) {
+  }
+  night.tick();
+  night.desk.cancel(id, night.reply());
+  night.settle();
+  CHECK_FALSE(night.answer().is_ok);
+  CHECK(night.answer().text.find(
+            "was cancelled after 16 of 64 chunks; `rollback undo 4` takes it back") !=
+        std::string::npos);
+  night.desk.undo_rollback(id, 0, night.bench.now(), night.reply());
+  night.settle();
+  CHECK(night.answer().is_ok);
+  CHECK(night.at({-19, 3, -19}) == 1);
+  CHECK(night.at({-59, 0, 1}) == 1);
+}
+
+TEST_CASE("players undo and redo their own edits, and nobody else's", "[rollback][undo]") {
+  DeskBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  const AuthorId ben = bench.join(kGriefer);
+  const auto undo = [&](AuthorId who) {
+    bench.desk.undo(who, bench.bench.now(), bench.reply());
+    bench.settle();
+    return bench.answer().is_ok;
+  };
+  const auto redo = [&](AuthorId who) {
+    bench.desk.redo(who, bench.bench.now(), bench.reply());
+    bench.settle();
+    return bench.answer().is_ok;
+  };
+  CHECK_FALSE(undo(ana));
+  CHECK(bench.answer().text == "nothing to undo");
+  bench.fill(kBuilder, {{0, 0, 0}, {4, 4, 4}}, 1);
+  bench.fill(kBuilder, {{2, 0, 0}, {6, 4, 4}}, 2);  // overlaps
+  bench.set(kGriefer, {5, 0, 0}, 3);                // over ana's second
+  CHECK(undo(ana));
+  CHECK(bench.answer().text == "undo: 63 voxels in 1 chunk");
+  CHECK(bench.at({3, 1, 1}) == 1);
+  CHECK(bench.at({4, 1, 1}) == kEmpty);
+  CHECK(bench.at({5, 0, 0}) == 3);
+  CHECK(bench.bench.ports.records.back().op.author == ana);
+  CHECK(bench.bench.ports.records.back().subject == 2);
+  CHECK(undo(ana));
+  CHECK(bench.at({0, 0, 0}) == kEmpty);
+  CHECK(bench.at({5, 0, 0}) == 3);
+  CHECK_FALSE(undo(ana));
+  CHECK(redo(ana));
+  CHECK(bench.at({0, 0, 0}) == 1);
+  CHECK(bench.at({3, 1, 1}) == 1);
+  CHECK(redo(ana));
+  CHECK(bench.at({3, 1, 1}) == 2);
+  CHECK(bench.at({5, 0, 0}) == 3);
+  CHECK_FALSE(redo(ana));
+  CHECK(undo(ben));
+  CHECK(bench.at({5, 0, 0}) == 2);  // what was there before ben
+  CHECK(undo(ana));
+  bench.set(kBuilder, {9, 9, 9}, 4);
+  CHECK_FALSE(redo(ana));  // something new was built since
+  CHECK(bench.answer().text == "nothing to redo");
+}
+
+TEST_CASE("an undo of what others have built over entirely passes on to the one before",
+          "[rollback][undo]") {
+  DeskBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  bench.join(kGriefer);
+  bench.set(kBuilder, {1, 1, 1}, 1);
+  bench.set(kBuilder, {2, 2, 2}, 1);
+  bench.set(kGriefer, {2, 2, 2}, 2);
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.at({1, 1, 1}) == kEmpty);
+  CHECK(bench.at({2, 2, 2}) == 2);
+}
+
+TEST_CASE("one undo of a player at a time; it waits until the edit is on disk",
+          "[rollback][undo]") {
+  DeskBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  bench.set(kBuilder, {1, 1, 1}, 1);
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.tick();
+  CHECK(bench.works.empty());  // the log does not have it yet
+  bench.write_log();
+  bench.tick();
+  CHECK(bench.works.size() == 1);
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text == "undo: one of yours is still under way");
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.at({1, 1, 1}) == kEmpty);
+}
+
+TEST_CASE("a rollback goes on where the log holds fewer edits than a slice has", "[rollback]") {
+  Night night;
+  const std::string id = night.preview_id();
+  night.bench.ports.log_records_max = 3;
+  night.desk.apply(id, 0, night.reply());
+  night.settle();
+  CHECK(night.answer().is_ok);
+  CHECK(night.digests() == night.before);
+}
+
+TEST_CASE("undo and redo cost of the player's edits a second, and say when they wait for them",
+          "[rollback][undo]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 10;
+  slow.edit_burst = 21;
+  DeskBench bench(slow);
+  const AuthorId ana = bench.join(kBuilder);
+  bench.join(kGriefer);
+  bench.fill(kBuilder, kGrief,
+             1);  // in 16 chunks: a token for each, then as many pastes, two tokens each
+  bench.write_log();
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.tick();
+  while (bench.work()) bench.tick();
+  while (bench.work()) bench.tick();
+  const std::size_t written = bench.bench.ports.records.size();
+  CHECK(written > 1);
+  CHECK(written < 17);
+  CHECK(bench.answers.back().text ==
+        "undo waits: the author's edits per second are used up (edits_per_second)");
+  CHECK_FALSE(bench.answers.back().is_done);
+  bench.set(kBuilder, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).back().reason ==
+        RejectReason::rate_limited);
+  bench.set(kGriefer, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kGriefer, kEdge).empty());
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  CHECK(bench.answers.back().text.find(
+            "one of yours is still under way, and waits: the author's edits") != std::string::npos);
+  bench.desk.list(bench.reply());
+  bench.work();
+  CHECK(bench.answers.back().text.find("(waits: the author's edits per second are used up") !=
+        std::string::npos);
+  const std::size_t told = bench.answers.size();
+  const TimeUs began = bench.bench.time_us;
+  bench.settle();
+  CHECK(bench.answer().text == "undo: 6400 voxels in 16 chunks");
+  CHECK(bench.answers.size() == told + 1);  // it says once that it waits
+  CHECK(bench.bench.time_us - began >= 1'500'000);
+  CHECK(bench.at({-1, 0, 0}) == kEmpty);
+}
+
+TEST_CASE("a rollback costs nobody's edits a second", "[rollback]") {
+  WorldConfig slow = config();
+  slow.edits_per_second = 1;
+  slow.edit_burst = 17;  // a fill of 16 chunks, and one edit
+  DeskBench bench(slow);
+  const AuthorId ana = bench.join(kBuilder);
+  bench.fill(kBuilder, kGrief, 1);
+  bench.write_log();
+  bench.desk.preview(of_author(ana), bench.bench.now(), bench.reply());
+  bench.settle();
+  bench.desk.apply("p1", ana, bench.reply());
+  const TimeUs began = bench.bench.time_us;
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(bench.bench.time_us - began < 1'000'000);
+  bench.set(kBuilder, {0, 9, 0}, 1);
+  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).empty());
+}
+
+TEST_CASE("the undos of one run are one client instance of each author, and no rollbacks",
+          "[rollback][undo]") {
+  DeskBench bench;
+  const AuthorId ana = bench.join(kBuilder);
+  const AuthorId ben = bench.join(kGriefer);
+  for (int i = 0; i < 3; ++i) bench.set(kBuilder, {i, 0, 0}, 1);
+  bench.set(kGriefer, {0, 5, 0}, 1);
+  const auto last = [&] { return bench.bench.ports.records.back(); };
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  const EditRecord first = last();
+  CHECK(first.op.seq == 2);
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ana, first.op.instance, 3});
+  bench.desk.redo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ana, first.op.instance, 4});
+  bench.desk.undo(ben, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(last().op == OperationId{ben, first.op.instance, 2});
+
+  bench.desk.undo_rollback(std::to_string(first.version.seq), 0, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK_FALSE(bench.answer().is_ok);
+  CHECK(bench.answer().text.find("no rollback begins there") != std::string::npos);
+
+  // A client of hers that comes under that instance pushes the numbers up, no more.
+  bench.bench.join(9, static_cast<std::uint8_t>(kBuilder), first.op.instance);
+  bench.bench.edit(9, 1000, SetVoxel{{9, 9, 9}});
+  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.settle();
+  CHECK(bench.answer().is_ok);
+  CHECK(last().op == OperationId{ana, first.op.instance, 1001});
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,145 @@
+// FakeEnvironment: the outside of a world strand as plain lists, for tests: what was sent, loaded, logged and
+// saved. Nothing answers by itself; the test answers.
+#pragma once
+#include <algorithm>
+#include <deque>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/world/world_environment.hpp"
+
+namespace runstone::test {
+
+class FakeEnvironment : public WorldEnvironment {
+ public:
+  struct Sent {
+    SessionId session = 0;
+    EncodedMessage message;
+  };
+  struct SentSnapshot {
+    SessionId session = 0;
+    ChunkKey key;
+    ChunkPtr chunk;
+  };
+  struct Closed {
+    SessionId session = 0;
+    GoodbyeReason reason{};
+    std::string text;
+  };
+  struct Save {
+    std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
+    Sequence checkpoint = 0;
+  };
+
+  std::vector<Sent> sent;
+  std::vector<SentSnapshot> snapshots;                // updates among them
+  std::vector<std::pair<ChunkKey, Version>> updates;  // and what the session held
+  std::vector<Closed> closed;
+  std::vector<PlayerRow> players;
+  std::vector<EditRecord> records;
+  std::deque<ChunkKey> loads;
+  struct PastLoad {
+    SessionId session = 0;
+    std::uint32_t request = 0;
+    Sequence at = 0;
+    ChunkKey key;
+  };
+  std::vector<Save> saves;
+  std::deque<std::pair<SessionId, HistoryRequest>> moments;
+  std::deque<PastLoad> past_loads;
+  std::vector<std::string> lines;
+  std::map<SessionId, ChunkEncoding> encodings;
+  std::set<SessionId> full;                        // every send to them is refused
+  std::set<SessionId> refuse_edits;                // sends of the edits class are
+  std::map<SessionId, std::size_t> snapshot_room;  // snapshots left; absent: no bound
+  bool log_room = true;
+  std::size_t log_records_max =
+      std::numeric_limits<std::size_t>::max();  // that are not written yet
+  std::size_t log_written = 0;                  // of `records`
+
+  bool send(SessionId session, const EncodedMessage& message) override {
+    if (full.contains(session)) return false;
+    if (message.frame_class == FrameClass::edits && refuse_edits.contains(session)) return false;
+    sent.push_back({session, message});
+    return true;
+  }
+  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override {
+    if (full.contains(session)) return false;
+    const auto room = snapshot_room.find(session);
+    if (room != snapshot_room.end()) {
+      if (room->second == 0) return false;
+      --room->second;
+    }
+    snapshots.push_back({session, key, chunk});
+    return true;
+  }
+  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                   Version held) override {
+    if (!send_snapshot(session, key, chunk)) return false;
+    updates.emplace_back(key, held);
+    return true;
+  }
+  void set_encoding(SessionId session, ChunkEncoding encoding) override {
+    encodings[session] = encoding;
+  }
+  void close(SessionId session, GoodbyeReason reason, const std::string& text) override {
+    closed.push_back({session, reason, text});
+  }
+  bool log_has_room(std::size_t more) const override {
+    return log_room && more <= log_records_max &&
+           records.size() - log_written <= log_records_max - more;
+  }
+  void log_append(std::vector<PlayerRow> new_players,
+                  std::vector<EditRecord> new_records) override {
+    players.insert(players.end(), new_players.begin(), new_players.end());
+    records.insert(records.end(), new_records.begin(), new_records.end());
+  }
+  void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void open_moment(SessionId session, const HistoryRequest& travel) override {
+    moments.emplace_back(session, travel);
+  }
+  void load_past_chunk(SessionId session, std::uint32_t request, Sequence at,
+                       const ChunkKey& key) override {
+    past_loads.push_back({session, request, at, key});
+  }
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
+                      Sequence checkpoint) override {
+    saves.push_back({std::move(chunks), checkpoint});
+  }
+  void log(WorldLogLevel /*level*/, const std::string& line) override { lines.push_back(line); }
+
+  /// Messages of one kind sent to a session, oldest first.
+  template <class Kind>
+  std::vector<Kind> messages(SessionId session, std::uint16_t chunk_edge) const {
+    std::vector<Kind> found;
+    for (const Sent& s : sent) {
+      if (s.session != session) continue;
+      auto message =
+          decode_message(Sender::server, s.message.frame_class, *s.message.bytes, chunk_edge);
+      RUNSTONE_ASSERT(message.has_value());
+      if (auto* kind = std::get_if<Kind>(&*message)) found.push_back(std::move(*kind));
+    }
+    return found;
+  }
+};
+
+/// Base chunk of a world of this edge that is not of one material: a voxel in its last corner.
+inline Chunk dotted_chunk(unsigned edge) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);
+  fill(chunk.voxels, chunk.voxels.volume() - 1, 1, 1);
+  chunk.digest = digest_of(chunk.voxels);
+  return chunk;
+}
+
+/// Empty base chunk of a world of this edge.
+inline Chunk empty_chunk(unsigned edge) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);
+  return chunk;
+}
+
+}  // namespace runstone::test

@@ -1,0 +1,110 @@
+#include "server/world/presence.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/unit/server/world/world_bench.hpp"
+
+namespace runstone::test {
+
+using Bench = WorldBench;
+
+TEST_CASE("poses go to everyone when they changed, ten times a second at most", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.join(2, 2);
+  bench.tick(100'000);
+  const std::size_t before = bench.ports.messages<PlayerPoses>(1, kEdge).size();
+  bench.tick(100'000);
+  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
+  Pose pose;
+  pose.at = {1, 2, 3};
+  bench.server.received(2, Move{pose}, bench.now());
+  bench.server.received(2, Move{pose}, bench.now());
+  bench.tick(50'000);
+  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
+  bench.tick(50'000);
+  const auto poses = bench.ports.messages<PlayerPoses>(1, kEdge);
+  REQUIRE(poses.size() == before + 1);
+  REQUIRE(poses.back().players.size() == 1);
+  CHECK(poses.back().players[0].author == 2);
+  CHECK(poses.back().players[0].pose == pose);
+}
+
+TEST_CASE("in a crowd poses go out less often and some at a time, and everybody has a turn",
+          "[world]") {
+  WorldConfig c = config();
+  c.pose_interval_us = 10'000;
+  Bench bench(c);
+  constexpr std::uint8_t kPlayers = 150;  // 75 ms
+  const auto move_all = [&](double x) {
+    Pose pose;
+    pose.at = {x, 0, 0};
+    for (SessionId id = 1; id <= kPlayers; ++id) bench.server.received(id, Move{pose}, bench.now());
+  };
+  for (SessionId id = 1; id <= kPlayers; ++id) bench.join(id, static_cast<std::uint8_t>(id));
+  bench.ports.sent.clear();
+  move_all(1);
+  for (int i = 0; i < 3; ++i) bench.tick(30'000);
+  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == 1);
+  for (int i = 0; i < 2; ++i) {
+    move_all(2 + i);  // they never stand still
+    bench.tick(kPoseIntervalUsPerSession * kPlayers);
+  }
+  const auto poses = bench.ports.messages<PlayerPoses>(1, kEdge);
+  REQUIRE(poses.size() == 3);
+  std::set<AuthorId> seen;
+  for (const PlayerPoses& some : poses) {
+    CHECK(some.players.size() <= kPosesMax);
+    for (const PlayerPose& one : some.players) seen.insert(one.author);
+  }
+  CHECK(seen.size() == kPlayers);
+}
+
+TEST_CASE(
+    "the roster is told whole once, then as changes, and whole again after one that did not fit",
+    "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.tick();
+  bench.join(2, 2);
+  bench.join(3, 3);
+  bench.tick();
+  auto told = bench.ports.messages<PlayerList>(1, kEdge);
+  REQUIRE(told.size() == 2);
+  CHECK_FALSE(told[0].is_change);
+  CHECK(told[1].is_change);
+  CHECK(told[1].players == std::vector<PlayerName>{{2, "player2"}, {3, "player3"}});
+  told = bench.ports.messages<PlayerList>(3, kEdge);
+  REQUIRE(told.size() == 1);
+  CHECK_FALSE(told[0].is_change);
+  CHECK(told[0].players.size() == 3);
+  bench.ports.full.insert(1);
+  bench.server.disconnected(2);
+  bench.tick();
+  bench.ports.full.clear();
+  bench.tick();
+  told = bench.ports.messages<PlayerList>(1, kEdge);
+  REQUIRE(told.size() == 3);
+  CHECK_FALSE(told[2].is_change);
+  CHECK(told[2].players.size() == 2);
+  told = bench.ports.messages<PlayerList>(3, kEdge);
+  REQUIRE(told.size() == 2);
+  CHECK(told[1].is_change);
+  CHECK(told[1].left == std::vector<AuthorId>{2});
+  bench.tick();
+  CHECK(bench.ports.messages<PlayerList>(3, kEdge).size() == 2);  // no news
+}
+
+TEST_CASE("a second client of a player neither comes nor goes", "[world]") {
+  Bench bench;
+  bench.join(1, 1);
+  bench.tick();
+  bench.join(2, 1, 77);
+  bench.tick();
+  bench.server.disconnected(2);
+  bench.tick();
+  CHECK(bench.ports.messages<PlayerList>(1, kEdge).size() == 1);
+}
+
+}  // namespace runstone::test
