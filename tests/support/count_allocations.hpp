@@ -1,10 +1,8 @@
-// Counts what a test program takes from the heap: it replaces the global operator new, with and without an
-// alignment. Include it in one file of a program. Test programs are single-threaded unless a test starts
-// threads; then read it while they rest.
+// Counts what a program takes from the heap. A program that calls allocations() links a global operator new that counts
+// (with and without an alignment); other programs keep the standard one. Thread: the counters are atomic; read them while
+// the threads that allocate are at rest.
 #pragma once
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <cstddef>
 
 namespace runstone::test {
 
@@ -12,14 +10,10 @@ struct Allocations {
   std::size_t count = 0, bytes = 0;
 };
 
-namespace counting {
-inline std::atomic<std::size_t> count{0}, bytes{0};
-}
+/// Returns the allocations since the program began.
+Allocations allocations();
 
-/// Since the program began.
-inline Allocations allocations() { return {counting::count, counting::bytes}; }
-
-/// Of a call.
+/// Returns the allocations during a call of `f`.
 template <class F>
 Allocations allocations_of(F&& f) {
   const Allocations before = allocations();
@@ -29,31 +23,3 @@ Allocations allocations_of(F&& f) {
 }
 
 }  // namespace runstone::test
-
-// Not inlined: g++ would see free() meet operator new and warn.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++runstone::test::counting::count;
-  runstone::test::counting::bytes += size;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (void* p = operator new(size, std::nothrow)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align,
-                                     const std::nothrow_t&) noexcept {
-  ++runstone::test::counting::count;
-  runstone::test::counting::bytes += size;
-  const auto step = static_cast<std::size_t>(align);
-  return std::aligned_alloc(step, (size + step - 1) / step * step);
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t align) {
-  if (void* p = operator new(size, align, std::nothrow)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
-}
