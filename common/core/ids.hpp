@@ -1,12 +1,14 @@
 // Identities and order: who made an edit, and where it stands in the one log.
 #pragma once
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 namespace runstone {
 
 using Material = std::uint16_t;  // index into the material table
 inline constexpr Material kEmpty = 0;
+inline constexpr std::size_t kMaterialCountMax = 65536;
 
 using TimeUs = std::int64_t;  // microseconds; each use says of which clock
 

@@ -1,7 +1,5 @@
 #include "common/edits/descriptor/edit_record.hpp"
 
-#include <xxhash.h>
-
 #include <limits>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -94,11 +92,6 @@ Result<EditRecord> decode_record(ByteView in) {
     return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
   }
   return record;
-}
-
-std::uint64_t record_checksum(const EditRecord& record) {
-  const Bytes bytes = encode_record(record);
-  return XXH3_64bits(bytes.data(), bytes.size());
 }
 
 }  // namespace runstone

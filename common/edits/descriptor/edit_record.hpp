@@ -37,7 +37,4 @@ Bytes encode_record(const EditRecord& record);
 /// The reverse; only canonical bytes pass, and the bounding box must be the descriptor's.
 Result<EditRecord> decode_record(ByteView in);
 
-/// XXH3-64 of encode_record(): stored beside the record, so that a damaged row is seen, never applied.
-std::uint64_t record_checksum(const EditRecord& record);
-
 }  // namespace runstone

@@ -39,7 +39,7 @@ TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh
 }
 
 TEST_CASE("codes fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
-  const VisibilityTable v(many_materials());  // 1 to 149 opaque, 150 to 299 transparent
+  const VisibilityTable v(visibilities(many_materials()));  // 1 to 149 opaque, 150 to 299 transparent
   rdm::ChunkPalette codes;
   for (Material material = 1; material <= 127; ++material) codes.number(material, v);
   for (Material material = 150; material < 278; ++material) codes.number(material, v);
