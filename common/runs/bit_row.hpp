@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace runstone::rdm {
+namespace runstone {
 
 using Row64 = std::uint64_t;
 __extension__ using Row128 = unsigned __int128;
@@ -62,4 +62,4 @@ void transpose(std::array<Row, kRowBits<Row>>& rows) {
   }
 }
 
-}  // namespace runstone::rdm
+}  // namespace runstone

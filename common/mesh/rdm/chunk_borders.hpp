@@ -1,5 +1,5 @@
 // ChunkBorders: what the six outermost layers of a chunk hide, a bit a voxel. The helper structure for borders
-// that thesis 9.1 asks for: whoever keeps it beside a chunk spares the meshes of the six chunks around it
+// that thesis 9.1 asks for: whoever keeps it adjacent a chunk spares the meshes of the six chunks around it
 // from reading runs that lie nowhere near them. It pays where whole chunks are meshed again and again; our
 // client meshes most of them once and does not keep it (docs/meshing.md).
 #pragma once

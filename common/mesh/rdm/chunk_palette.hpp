@@ -18,15 +18,15 @@ using PaletteIndex = std::uint32_t;
 using BytePaletteIndex = std::uint8_t;
 inline constexpr PaletteIndex kTransparentBit = PaletteIndex{1} << 31;
 
-/// A code in the form C. BytePaletteIndex requires ChunkPalette::fit_bytes().
-template <class C>
-constexpr C code_as(PaletteIndex code) {
-  return static_cast<C>(sizeof(C) == 1 ? code | code >> 24 : code);
+/// A index in the form Index. BytePaletteIndex requires ChunkPalette::fit_bytes().
+template <class Index>
+constexpr Index index_as(PaletteIndex index) {
+  return static_cast<Index>(sizeof(Index) == 1 ? index | index >> 24 : index);
 }
-/// What code_as() was given.
-constexpr PaletteIndex whole_code(PaletteIndex code) { return code; }
-constexpr PaletteIndex whole_code(BytePaletteIndex code) {
-  return (code & 0x7fu) | PaletteIndex{code} >> 7 << 31;
+/// What index_as() was given.
+constexpr PaletteIndex full_index(PaletteIndex index) { return index; }
+constexpr PaletteIndex full_index(BytePaletteIndex index) {
+  return (index & 0x7fu) | PaletteIndex{index} >> 7 << 31;
 }
 
 class ChunkPalette {
@@ -39,15 +39,15 @@ class ChunkPalette {
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
-  /// The code of a material of the chunk, given when it is first seen. O(1).
-  PaletteIndex number(Material material, const VisibilityTable& visibility) {
-    const PaletteIndex code = of_[material];
-    return code != kUnseen ? code : enter(material, visibility[material]);
+  /// The index of a material of the chunk, given when it is first seen. O(1).
+  PaletteIndex index_of(Material material, const VisibilityTable& visibility) {
+    const PaletteIndex index = of_[material];
+    return index != kUnseen ? index : enter(material, visibility[material]);
   }
-  /// The code of a material if it is a transparent one of the chunk, else 0.
-  PaletteIndex transparent_code(Material material) const {
-    const PaletteIndex code = of_[material];
-    return code != kUnseen && (code & kTransparentBit) != 0 ? code : 0;
+  /// The index of a material if it is a transparent one of the chunk, else 0.
+  PaletteIndex transparent_index(Material material) const {
+    const PaletteIndex index = of_[material];
+    return index != kUnseen && (index & kTransparentBit) != 0 ? index : 0;
   }
 
   std::size_t transparent_count() const { return of_class_[1].size(); }
@@ -59,35 +59,35 @@ class ChunkPalette {
 
   /// Whether all codes fit into a byte each.
   bool fit_bytes() const { return of_class_[0].size() <= 127 && of_class_[1].size() <= 128; }
-  /// The material of a code that was given, 0 apart.
-  Material material(BytePaletteIndex code) const { return of_byte_[code]; }
-  Material material(PaletteIndex code) const {
-    return (code & kTransparentBit) != 0 ? of_class_[1][code ^ kTransparentBit]
-                                         : of_class_[0][code - 1];
+  /// The material of a index that was given, 0 apart.
+  Material material(BytePaletteIndex index) const { return of_byte_[index]; }
+  Material material(PaletteIndex index) const {
+    return (index & kTransparentBit) != 0 ? of_class_[1][index ^ kTransparentBit]
+                                          : of_class_[0][index - 1];
   }
 
  private:
   static constexpr PaletteIndex kUnseen = std::numeric_limits<PaletteIndex>::max();
 
   PaletteIndex enter(Material material, Visibility visibility) {
-    PaletteIndex code = 0;
+    PaletteIndex index = 0;
     if (visibility != Visibility::empty) {
       const bool transparent = visibility == Visibility::transparent;
       std::vector<Material>& numbered = of_class_[transparent ? 1 : 0];
       const auto number = static_cast<PaletteIndex>(numbered.size());
-      code = transparent ? kTransparentBit | number : number + 1;
+      index = transparent ? kTransparentBit | number : number + 1;
       numbered.push_back(material);
-      if (fit_bytes()) of_byte_[code_as<BytePaletteIndex>(code)] = material;
+      if (fit_bytes()) of_byte_[index_as<BytePaletteIndex>(index)] = material;
     }
-    of_[material] = code;
+    of_[material] = index;
     seen_.push_back(material);
-    return code;
+    return index;
   }
 
   std::vector<PaletteIndex> of_;  // by material
   std::vector<Material> seen_;
   std::array<std::vector<Material>, 2> of_class_;  // opaque and transparent, by number
-  std::array<Material, 256> of_byte_{};            // by code, while they fit
+  std::array<Material, 256> of_byte_{};            // by index, while they fit
 };
 
 }  // namespace runstone::rdm

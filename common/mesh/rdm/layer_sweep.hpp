@@ -6,7 +6,7 @@
 //   chunk_sides-inl.hpp       the chunk's own six sides, for the meshes around it
 //   layer_sweep.cpp         the loop over the layers, faces of six sides, and which rows of them differ
 //   strip_tracer-inl.hpp    strips that end and begin in those rows (strip_lanes-inl.hpp, row_strips.hpp)
-//   quad_outlet-inl.hpp     strips as quads, in the bucket of their layer
+//   quad_emitter-inl.hpp     strips as quads, in the bucket of their layer
 #pragma once
 #include "common/mesh/rdm/sweep_input.hpp"
 #include "common/mesh/rdm/sweep_state.hpp"
@@ -19,7 +19,7 @@ void sweep_layers(const SweepInput& input, const Borders<Row64>& borders, SweepS
 void sweep_layers(const SweepInput& input, const Borders<Row128>& borders,
                   SweepState<Row128>& state);
 
-/// The same, a row and a code at a time: the plain path that the others must agree with.
+/// The same, a row and a index at a time: the plain path that the others must agree with.
 void sweep_layers_plain(const SweepInput& input, const Borders<Row64>& borders,
                         SweepState<Row64>& state);
 void sweep_layers_plain(const SweepInput& input, const Borders<Row128>& borders,

@@ -1,10 +1,10 @@
 // QuadEmitter: where the strips of one side become quads: packed when a strip opens, put into the bucket of their
 // layer when it closes. Included once per instruction set, inside no namespace.
-#if defined(RUNSTONE_MESH_RDM_QUAD_OUTLET_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
-#undef RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
+#if defined(RUNSTONE_MESH_RDM_QUAD_EMITTER_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
+#undef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
 #else
-#define RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
+#define RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
 #endif
 
 #include <hwy/highway.h>
@@ -28,31 +28,32 @@ namespace HWY_NAMESPACE {
 template <class Form>
 class QuadEmitter {
   using Row = typename Form::Row;
-  using C = typename Form::C;
-  static constexpr bool kNumbered = Form::kNumbered;
+  using Index = typename Form::Index;
+  static constexpr bool kManyMaterials = Form::kManyMaterials;
 
  public:
   /// `layer`: the codes of the strips' voxels.
-  HWY_INLINE QuadEmitter(const SweepInput& input, Side side, const C* layer)
+  HWY_INLINE QuadEmitter(const SweepInput& input, Side side, const Index* layer)
       : shape_(input.shape[at(side)]),
-        opaque_((!kNumbered && input.codes->has_transparent() ? input.transparent : input.opaque)
-                    ->of(input.direction[at(side)])),
+        opaque_(
+            (!kManyMaterials && input.palette->has_transparent() ? input.transparent : input.opaque)
+                ->of(input.direction[at(side)])),
         transparent_(input.transparent->of(input.direction[at(side)])),
         layer_(layer),
         line_size_(input.extent.f),
-        codes_(input.codes),
-        mixed_(kNumbered && input.codes->has_transparent()),
-        single_(kNumbered ? kEmpty : input.codes->single()) {}
+        palette_(input.palette),
+        mixed_(kManyMaterials && input.palette->has_transparent()),
+        single_(kManyMaterials ? kEmpty : input.palette->single()) {}
 
   /// The quad of a strip whose material is that of bit `bit` of row `line`.
   HWY_INLINE Quad open(const Strip& strip, [[maybe_unused]] std::uint32_t line,
                        [[maybe_unused]] unsigned bit) const {
-    if constexpr (!kNumbered) {
+    if constexpr (!kManyMaterials) {
       return shape_.open(strip, single_);
     } else {
-      const C code = layer_[line * line_size_ + bit];
-      Quad quad = shape_.open(strip, codes_->material(code));
-      if (mixed_ && whole_code(code) >= kTransparentBit) quad.bits ^= kTransparentQuad;
+      const Index index = layer_[line * line_size_ + bit];
+      Quad quad = shape_.open(strip, palette_->material(index));
+      if (mixed_ && full_index(index) >= kTransparentBit) quad.bits ^= kTransparentQuad;
       return quad;
     }
   }
@@ -107,7 +108,7 @@ class QuadEmitter {
   static constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;
   /// The buckets of the pass that a quad is for; it no longer says so then.
   HWY_INLINE QuadBuckets::Bucket* pass_of(Quad& quad) const {
-    if (!kNumbered || (quad.bits & kTransparentQuad) == 0) return opaque_;
+    if (!kManyMaterials || (quad.bits & kTransparentQuad) == 0) return opaque_;
     quad.bits ^= kTransparentQuad;
     return transparent_;
   }
@@ -115,9 +116,9 @@ class QuadEmitter {
   QuadShape shape_;
   QuadBuckets::Bucket* opaque_;
   QuadBuckets::Bucket* transparent_;
-  const C* layer_;
+  const Index* layer_;
   std::uint32_t line_size_;
-  const ChunkPalette* codes_;
+  const ChunkPalette* palette_;
   bool mixed_;       // whether there are transparent materials besides others
   Material single_;  // the material, if there is but one
 };

@@ -46,10 +46,10 @@ struct LayerQuads {
   std::size_t in_order;
 
   /// Puts new strips into row `row`: quads that cover the row are cut above and below it, and what repeats
-  /// exactly is joined again. `beside` is scratch. O(quads + strips * quads beside the row).
+  /// exactly is joined again. `adjacent` is scratch. O(quads + strips * quads adjacent the row).
   void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
-                   std::vector<Quad>& beside) {
-    beside.clear();
+                   std::vector<Quad>& adjacent) {
+    adjacent.clear();
     std::size_t kept = 0;
     std::size_t kept_in_order = 0;
     for (std::size_t i = 0; i < quads.size(); ++i) {
@@ -61,10 +61,10 @@ struct LayerQuads {
         kept_in_order += i < in_order ? 1 : 0;
         continue;
       }
-      if (first < row) beside.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
+      if (first < row) adjacent.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
       if (row + 1 < end) {
         const std::uint32_t below = std::max(first, row + 1);
-        beside.push_back(shape.with_rows(quad, below, end - below));
+        adjacent.push_back(shape.with_rows(quad, below, end - below));
       }
     }
     quads.resize(kept);
@@ -73,8 +73,8 @@ struct LayerQuads {
       const std::uint64_t same = shape.strip(strip);
       std::uint32_t first = row;
       std::uint32_t end = row + 1;
-      for (std::size_t i = 0; i < beside.size();) {
-        const Quad quad = beside[i];
+      for (std::size_t i = 0; i < adjacent.size();) {
+        const Quad quad = adjacent[i];
         if (shape.strip(quad) != same) {
           ++i;
           continue;
@@ -84,12 +84,12 @@ struct LayerQuads {
         } else {
           end = shape.row_end(quad);
         }
-        beside[i] = beside.back();
-        beside.pop_back();
+        adjacent[i] = adjacent.back();
+        adjacent.pop_back();
       }
       quads.push_back(shape.with_rows(strip, first, end - first));
     }
-    quads.insert(quads.end(), beside.begin(), beside.end());
+    quads.insert(quads.end(), adjacent.begin(), adjacent.end());
   }
 
   /// Puts all into the order of `place(quad)`. The others are few: each is inserted.
@@ -198,10 +198,10 @@ class Remesher {
 
   void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row,
                 const rdm::StripAxes& a, const QuadShape& shape, std::array<LayerQuads, 2>& quads) {
-    const RowRuns& own = own_row(layer, row, a);
+    const RowRuns& inside = chunk_row(layer, row, a);
     const RowRuns* beyond = &scratch_.row_beyond;
     if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
-      beyond = &own_row(is_positive(direction) ? layer + 1 : layer - 1, row, a);
+      beyond = &chunk_row(is_positive(direction) ? layer + 1 : layer - 1, row, a);
     } else if (const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)]) {
       const std::uint32_t other = is_positive(direction) ? 0 : side_of(*neighbour, a.layer) - 1;
       read(*neighbour, {a.layer, other, a.row, row}, 1, &scratch_.row_beyond);
@@ -212,9 +212,9 @@ class Remesher {
     auto& strips = scratch_.strips;
     std::array<std::size_t, 2> count{};
     std::uint32_t begin = 0;
-    for (std::uint32_t i = 0, j = 0; i < own.count; ++i) {
-      const Material material = own.stretch[i].material;
-      const std::uint32_t end = own.stretch[i].end;
+    for (std::uint32_t i = 0, j = 0; i < inside.count; ++i) {
+      const Material material = inside.stretch[i].material;
+      const std::uint32_t end = inside.stretch[i].end;
       const std::size_t pass = visibility_[material] == Visibility::transparent ? 1 : 0;
       // The part of the stretch whose faces show is cut where what lies beyond hides them.
       for (std::uint32_t at = begin; at < end;) {
@@ -236,13 +236,13 @@ class Remesher {
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       if (count[pass] == 0 && scratch_.layer[pass].empty()) continue;
       quads[pass].replace_row(shape, row, std::span(strips[pass]).first(count[pass]),
-                              scratch_.beside);
+                              scratch_.adjacent);
     }
   }
 
   /// A row of the chunk; those of one row number are kept until another is asked for. With it, the layers
-  /// beside are read: they will be asked for next.
-  const RowRuns& own_row(std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a) {
+  /// adjacent are read: they will be asked for next.
+  const RowRuns& chunk_row(std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a) {
     if (row != scratch_.row_number) {
       scratch_.row_number = row;
       scratch_.row_known.reset();
@@ -313,7 +313,7 @@ bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh) {
   Remesher remesher(chunk, neighbours, visibility, dirty, beyond, scratch.state(), mesh);
-  // A row on its own costs some times its share of a sweep, which has a row per line in each direction.
+  // A row on its inside costs some times its share of a sweep, which has a row per line in each direction.
   constexpr std::size_t kSweepRows = 8;
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   if (remesher.row_count() * kSweepRows > std::size_t{kDirectionCount} * e.m * e.s) {

@@ -48,11 +48,11 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out);
 
 /// The same mesh with the borders of neighbours that are kept, which must be those of `neighbours` as they
-/// are now: their runs are read only where transparent voxels may meet. If `own` is there, it becomes what
-/// own->read(chunk, visibility) would make it, for little, since the sweep comes by all of it.
+/// are now: their runs are read only where transparent voxels may meet. If `chunk_borders` is there, it becomes what
+/// chunk_borders->read(chunk, visibility) would make it, for little, since the sweep comes by all of it.
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
-              ChunkBorders* own = nullptr);
+              ChunkBorders* chunk_borders = nullptr);
 
 /// Meshes again what an edit touched: `mesh` is that of the chunk and its neighbours before, `dirty` the
 /// layers in which a voxel of the chunk changed since (ApplyResult::dirty), and `beyond` the same of each

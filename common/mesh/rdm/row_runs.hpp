@@ -61,7 +61,7 @@ void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, u
     stride *= side;
   }
   for (unsigned r = 0; r < count; ++r) out[r].clear();
-  if (across == 1) {  // rows beside each other in the list of runs: one walk for all
+  if (across == 1) {  // rows adjacent each other in the list of runs: one walk for all
     RunCursor cursor(runs);
     for (std::uint32_t i = 0; i < length; ++i) {
       const std::uint32_t first = voxel + i * step;

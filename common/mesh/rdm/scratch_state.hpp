@@ -37,8 +37,8 @@ struct LayerPatch {
 namespace runstone {
 
 struct RdmScratch::State {
-  rdm::ChunkPalette codes;
-  std::vector<rdm::CodedRun> runs;
+  rdm::ChunkPalette palette;
+  std::vector<rdm::PaletteRun> runs;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
   std::array<rdm::LayerPatch, 2> patch;         // opaque and transparent
@@ -47,11 +47,10 @@ struct RdmScratch::State {
   rdm::RowRuns row_beyond;                      // of the same row in a neighbour
   std::uint32_t row_number = 0;
   std::array<std::array<Quad, kSideMax>, 2> strips;  // of the row at hand, by pass
-  std::vector<Quad> beside;                          // quads above and below that row
+  std::vector<Quad> adjacent;                        // quads above and below that row
   std::array<std::vector<Quad>, 2> layer;            // quads of the layer at hand, by pass
-  std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
-  std::unique_ptr<rdm::RowScratch<rdm::Row128>>
-      wide;  // made for the first chunk with a side above 64
+  std::unique_ptr<rdm::RowScratch<Row64>> narrow;
+  std::unique_ptr<rdm::RowScratch<Row128>> wide;  // made for the first chunk with a side above 64
   bool plain = false;
 };
 

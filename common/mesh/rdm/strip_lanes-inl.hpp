@@ -26,7 +26,7 @@ struct StripLanes {
     const V f = Lanes::load(face);
     V before = Lanes::up(f);
     V behind = Lanes::down(f);
-    if constexpr (Form::kNumbered) {
+    if constexpr (Form::kManyMaterials) {
       const V c = Lanes::load(cut);
       before = Lanes::without(before, c);
       behind = Lanes::without(behind, Lanes::down(c));
@@ -39,7 +39,7 @@ struct StripLanes {
     V x = Lanes::either(Lanes::differing(now.face, before.face),
                         Lanes::either(Lanes::differing(now.start, before.start),
                                       Lanes::differing(now.end, before.end)));
-    if constexpr (Form::kNumbered) {
+    if constexpr (Form::kManyMaterials) {
       x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
     }
     return x;

@@ -16,9 +16,9 @@
 namespace runstone::rdm {
 
 /// Covers [end of the run before it, end) of the flattened chunk.
-struct CodedRun {
+struct PaletteRun {
   std::uint32_t end = 0;
-  PaletteIndex code = 0;
+  PaletteIndex index = 0;
 };
 
 /// A side of the chunk by the rank of its axis: slow, middle, fast; negative before positive.
@@ -49,13 +49,13 @@ struct Borders {
   /// Whether a side has such voxels; never in a chunk of one material.
   std::array<bool, 6> meets{};
   /// Their codes, a row behind the other; only if the chunk has more than one transparent material.
-  std::array<std::vector<PaletteIndex>, 6> codes;
+  std::array<std::vector<PaletteIndex>, 6> indices;
 };
 
 struct SweepInput {
-  std::span<const CodedRun> runs;
+  std::span<const PaletteRun> runs;
   OrderedExtent extent{};
-  const ChunkPalette* codes = nullptr;
+  const ChunkPalette* palette = nullptr;
   std::array<Direction, 6> direction{};  // by Side
   std::array<QuadShape, 6> shape;        // by Side
   QuadBuckets* opaque = nullptr;

@@ -24,12 +24,12 @@ struct alignas(64) LayerRows {
 };
 
 /// The codes of one layer, line behind line, with room before and behind for whole rows and vectors.
-template <class Row, class C>
-struct LayerCodes {
+template <class Row, class Index>
+struct LayerIndices {
   static constexpr std::size_t kRoom =
       kSideMax;  // the line before the first one is read, and a row behind
-  alignas(64) std::array<C, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
-  C* data() { return slots.data() + kRoom; }
+  alignas(64) std::array<Index, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
+  Index* data() { return slots.data() + kRoom; }
 };
 
 /// Which of the two layers in SweepState is the one at hand, and which the one before it.
@@ -40,16 +40,16 @@ struct LayerPair {
 template <class Row>
 struct SweepState {
   using Rows = LayerRows<Row>;
-  template <class C>
-  using Codes = std::array<LayerCodes<Row, C>, 2>;
+  template <class Index>
+  using Indices = std::array<LayerIndices<Row, Index>, 2>;
   static constexpr std::size_t kPlaces = std::size_t{kRowBits<Row>} * kRowBits<Row>;  // rows * bits
   static_assert(kPlaces <= 1u << 16 &&
                 kSideMax <= 1u << 8);  // places and layers as they are kept here
 
   // What LayerBuilder makes. Where there are two of a thing, they are by ring.
-  Codes<BytePaletteIndex> byte_codes;
-  std::unique_ptr<Codes<PaletteIndex>>
-      whole_codes;            // made for the first chunk whose codes do not fit bytes
+  Indices<BytePaletteIndex> byte_indices;
+  std::unique_ptr<Indices<PaletteIndex>>
+      full_indices;           // made for the first chunk whose codes do not fit bytes
   std::array<Rows, 2> solid;  // voxels with faces
   std::array<Rows, 2>
       hiding;        // voxels that hide a face, with the middle neighbours' in the slots around
@@ -75,17 +75,17 @@ struct SweepState {
 
   // What ChunkSides makes, by Side.
   std::array<std::array<Row, kRowBits<Row>>, 6>
-      chunk_sides;                      // opaque voxels, laid out as in Borders
-  std::array<bool, 6> own_transparent;  // whether there are transparent ones
+      chunk_sides;                        // opaque voxels, laid out as in Borders
+  std::array<bool, 6> sides_transparent;  // whether there are transparent ones
 
-  /// The codes in the form C. Allocates for the first chunk that needs whole ones.
-  template <class C>
-  Codes<C>& codes() {
-    if constexpr (sizeof(C) == 1) {
-      return byte_codes;
+  /// The codes in the form Index. Allocates for the first chunk that needs whole ones.
+  template <class Index>
+  Indices<Index>& indices() {
+    if constexpr (sizeof(Index) == 1) {
+      return byte_indices;
     } else {
-      if (!whole_codes) whole_codes = std::make_unique<Codes<PaletteIndex>>();
-      return *whole_codes;
+      if (!full_indices) full_indices = std::make_unique<Indices<PaletteIndex>>();
+      return *full_indices;
     }
   }
 };

@@ -3,17 +3,17 @@
 
 namespace runstone::rdm {
 
-/// LanesOf: rows as many a step (row_lanes-inl.hpp). CodeLanesOf: codes side by side (code_lanes-inl.hpp).
-/// CodeOf: the form of the codes. kManyMaterials: the chunk has more than one material, so faces are cut where
+/// LanesOf: rows as many a step (row_lanes-inl.hpp). IndexLanesOf: codes side by side (index_lanes-inl.hpp).
+/// ToIndex: the form of the codes. kManyMaterialsOf: the chunk has more than one material, so faces are cut where
 /// it changes; with one, codes say no more than solid or not.
-template <class LanesOf, class CodeLanesOf, class CodeOf, bool kManyMaterials>
+template <class LanesOf, class IndexLanesOf, class ToIndex, bool kManyMaterialsOf>
 struct SweepTraits {
   using Lanes = LanesOf;
-  using CodeLanes = CodeLanesOf;
-  using C = CodeOf;
+  using IndexLanes = IndexLanesOf;
+  using Index = ToIndex;
   using Row = typename Lanes::Row;
-  using Line = typename CodeLanes::template Line<Row, C>;
-  static constexpr bool kNumbered = kManyMaterials;
+  using Line = typename IndexLanes::template Line<Row, Index>;
+  static constexpr bool kManyMaterials = kManyMaterialsOf;
 };
 
 }  // namespace runstone::rdm
