@@ -29,8 +29,7 @@ struct Version {
 
 using AuthorId = std::uint32_t;        // row in `player`; 0: the server
 using ClientInstance = std::uint64_t;  // random, drawn once per client process
-using ClientSequence =
-    std::uint64_t;  // number of an edit of one client instance, 1 .. kSequenceMax
+using ClientSequence = std::uint64_t;  // counts the edits of a client instance, from 1
 
 /// Names one edit as its author sent it, before the world ordered it. An edit that is sent twice is
 /// applied once.

@@ -7,9 +7,8 @@ bool is_printable_utf8(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text[i]);
     if (lead < 0x20 || lead == 0x7f) return false;
     std::size_t length = 1;
-    unsigned low = 0x80,
-             // Bounds of the second byte. They exclude overlong forms and surrogates.
-        high = 0xbf;
+    // Bounds of the second byte. They exclude overlong forms and surrogates.
+    unsigned low = 0x80, high = 0xbf;
     if (lead >= 0x80) {
       if (lead >= 0xc2 && lead <= 0xdf) {
         length = 2;
