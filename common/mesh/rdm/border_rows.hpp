@@ -1,5 +1,5 @@
-// Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's orientation,
-// read straight from the neighbour's runs whatever its axis order is. Internal to rdm.
+// Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's
+// orientation. They are read from the neighbour's runs in any axis order. Internal to rdm.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace runstone::rdm {
 
-/// A layer of a chunk, and which of its two axes runs along the bits of a row.
+/// A layer of a chunk, and the one of its two axes that runs along the bits of a row.
 struct LayerPlace {
   Axis axis, bit_axis;
   std::uint32_t at;
@@ -24,14 +24,14 @@ struct LayerPlace {
   }
 };
 
-/// One layer as rows of bits, a plane per bit of the codes that `to_index(material)` gives.
-/// Row b of plane k: bit i says whether bit k of the index of the voxel at (i, b) is set.
+/// One layer as rows of bits: one plane per bit of the indices that `to_index(material)` returns.
+/// In row b of plane k, bit i is bit k of the index of the voxel at (i, b).
 template <unsigned kPlanes, class Row, class ToIndex>
 class LayerReader {
  public:
   using Rows = std::array<Row, kRowBits<Row>>;
 
-  /// All planes are replaced. Requires codes below 2^kPlanes and sides up to kRowBits<Row>.
+  /// Replaces all planes. Requires indices below 2^kPlanes and sides up to kRowBits<Row>.
   LayerReader(const RunChunk& chunk, LayerPlace place, std::array<Rows, kPlanes>& planes,
               ToIndex to_index)
       : e_(ordered(chunk.extent, chunk.order)), planes_(planes), to_index_(to_index) {
@@ -54,7 +54,8 @@ class LayerReader {
   void mark(std::uint32_t row, unsigned bit, PaletteIndex change) {
     for (unsigned k = 0; k < kPlanes; ++k) planes_[k][row] ^= Row{change >> k & 1} << bit;
   }
-  /// Marks of change become bits: along each row, and on into the next if `carried`.
+  /// Turns marks of change into bits along each row. The state at the end of a row carries into the
+  /// next one.
   void fill(std::uint32_t rows, std::uint32_t bits) {
     const Row valid = bits_below<Row>(bits);
     for (unsigned k = 0; k < kPlanes; ++k) {
@@ -88,11 +89,11 @@ class LayerReader {
 
   template <class Runs>
   void read_middle(const Runs& runs, std::uint32_t at) {
-    constexpr std::size_t kBlock =
-        8;  // a layer holds some dozens of runs: too few for a search to pay
+    // A layer has some dozens of runs: too few for a search to pay.
+    constexpr std::size_t kBlock = 8;
     const std::size_t size = runs.size();
     std::size_t i = 0;
-    PaletteIndex carried = 0;  // of the last voxel of the row before
+    PaletteIndex carried = 0;  // of the last voxel of the previous row
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       const std::uint32_t begin = s * e_.layer() + at * e_.f;
       while (i + kBlock < size && runs.end(i + kBlock - 1) <= begin) i += kBlock;
@@ -111,7 +112,8 @@ class LayerReader {
 
   template <class Runs>
   void read_fast(const Runs& runs, std::uint32_t at) {
-    // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
+    // One bit per line. A line is marked if it is the first whose voxel `at` lies behind the end of
+    // a run with another index.
     using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
     std::array<Marks, kPlanes> marks;
     for (unsigned k = 0; k < kPlanes; ++k)
@@ -124,8 +126,7 @@ class LayerReader {
     for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = index >> k & 1;
     for (std::size_t i = 0; i < last; ++i) {
       const PaletteIndex next = to_index(runs.material(i + 1));
-      if (next == index)
-        continue;  // most runs of a world lie between two materials that hide alike
+      if (next == index) continue;  // most neighbouring runs have the same index
       const std::uint32_t line = line_of(runs.end(i) + ahead);
       const PaletteIndex change = index ^ next;
       index = next;
@@ -134,7 +135,7 @@ class LayerReader {
     }
     for (unsigned k = 0; k < kPlanes; ++k) cut_rows(marks[k].data(), planes_[k]);
   }
-  /// Turns marks of change, a bit a line, into rows of e_.m bits.
+  /// Turns marks of change, one bit per line, into rows of e_.m bits.
   void cut_rows(Row64* marks, Rows& rows) const {
     Row64 carry = 0;
     for (std::uint32_t w = 0; w <= e_.m * e_.s / 64; ++w) {
@@ -159,7 +160,8 @@ class LayerReader {
   ToIndex to_index_;
 };
 
-/// Reads a layer with LayerReader; of a chunk of one material, the same without looking at it.
+/// Reads a layer with LayerReader. For a chunk of one material it writes the same rows without
+/// reading.
 template <std::size_t kPlanes, class Row, std::size_t kRows, class ToIndex>
 void read_layer_rows(const RunChunk& chunk, LayerPlace place,
                      std::array<std::array<Row, kRows>, kPlanes>& planes, ToIndex to_index) {

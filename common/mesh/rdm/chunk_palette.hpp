@@ -1,9 +1,10 @@
-// ChunkPalette: the materials of one chunk as small numbers, so that a layer of them is a few cache lines and
-// 64 voxels can be compared at once. Numbers are given in the order in which materials come: opaque and
-// transparent ones count apart, and all empty ones are 0.
+// ChunkPalette: small numbers for the materials of one chunk. With them a layer takes a few cache
+// lines, and 64 voxels are compared at once. Indices are given in the order in which materials
+// occur. Opaque and transparent materials are counted apart, and all empty ones have index 0.
 //   opaque        1, 2, ...
 //   transparent   kTransparentBit + 0, 1, ...
-// A chunk with few materials has its codes in a byte, kTransparentBit becoming the highest bit of it.
+// The indices of a chunk with few materials are also kept as bytes; then the highest bit of the
+// byte replaces kTransparentBit.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,12 +19,12 @@ using PaletteIndex = std::uint32_t;
 using BytePaletteIndex = std::uint8_t;
 inline constexpr PaletteIndex kTransparentBit = PaletteIndex{1} << 31;
 
-/// A index in the form Index. BytePaletteIndex requires ChunkPalette::fit_bytes().
+/// Returns an index in the type Index. BytePaletteIndex requires ChunkPalette::fit_bytes().
 template <class Index>
 constexpr Index index_as(PaletteIndex index) {
   return static_cast<Index>(sizeof(Index) == 1 ? index | index >> 24 : index);
 }
-/// What index_as() was given.
+/// Returns the argument that index_as() was given.
 constexpr PaletteIndex full_index(PaletteIndex index) { return index; }
 constexpr PaletteIndex full_index(BytePaletteIndex index) {
   return (index & 0x7fu) | PaletteIndex{index} >> 7 << 31;
@@ -33,18 +34,19 @@ class ChunkPalette {
  public:
   ChunkPalette() : of_(kMaterialCountMax, kUnseen) {}
 
-  /// Forgets all numbers. O(materials seen).
+  /// Forgets all indices. Cost: O(materials seen).
   void clear() {
     for (const Material material : seen_) of_[material] = kUnseen;
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
-  /// The index of a material of the chunk, given when it is first seen. O(1).
+  /// Returns the index of a material of the chunk. The first call for a material assigns it. Cost:
+  /// O(1).
   PaletteIndex index_of(Material material, const VisibilityTable& visibility) {
     const PaletteIndex index = of_[material];
     return index != kUnseen ? index : enter(material, visibility[material]);
   }
-  /// The index of a material if it is a transparent one of the chunk, else 0.
+  /// Returns the index of a material if it is a transparent one of the chunk, otherwise 0.
   PaletteIndex transparent_index(Material material) const {
     const PaletteIndex index = of_[material];
     return index != kUnseen && (index & kTransparentBit) != 0 ? index : 0;
@@ -52,14 +54,14 @@ class ChunkPalette {
 
   std::size_t transparent_count() const { return of_class_[1].size(); }
   bool has_transparent() const { return transparent_count() != 0; }
-  /// Materials that are not empty.
+  /// Returns the number of materials that are not empty.
   std::size_t solid_count() const { return of_class_[0].size() + of_class_[1].size(); }
-  /// The material, if there is but one that is not empty.
+  /// Returns the material that is not empty. Requires that there is only one.
   Material single() const { return of_class_[has_transparent() ? 1 : 0].front(); }
 
-  /// Whether all codes fit into a byte each.
+  /// Returns true if each index fits into a byte.
   bool fit_bytes() const { return of_class_[0].size() <= 127 && of_class_[1].size() <= 128; }
-  /// The material of a index that was given, 0 apart.
+  /// Returns the material of an assigned index other than 0.
   Material material(BytePaletteIndex index) const { return of_byte_[index]; }
   Material material(PaletteIndex index) const {
     return (index & kTransparentBit) != 0 ? of_class_[1][index ^ kTransparentBit]
@@ -87,7 +89,7 @@ class ChunkPalette {
   std::vector<PaletteIndex> of_;  // by material
   std::vector<Material> seen_;
   std::array<std::vector<Material>, 2> of_class_;  // opaque and transparent, by number
-  std::array<Material, 256> of_byte_{};            // by index, while they fit
+  std::array<Material, 256> of_byte_{};            // by byte index, while they fit
 };
 
 }  // namespace runstone::rdm

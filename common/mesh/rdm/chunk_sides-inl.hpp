@@ -1,5 +1,5 @@
-// ChunkSides: the six outermost layers of the chunk itself, which a sweep comes by anyway (ChunkBorders keeps them).
-// Included once per instruction set, inside no namespace.
+// ChunkSides: collects the six outermost layers of the chunk itself during a sweep, for
+// ChunkBorders. Included once per instruction set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_CHUNK_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
 #undef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
@@ -33,7 +33,8 @@ class ChunkSides {
         e_(input.extent),
         mixed_(Form::kManyMaterials && input.palette->has_transparent()) {}
 
-  /// What layer s, in slot `slot`, adds to the sides. Its hiding rows must be its opaque ones.
+  /// Adds the part of layer s, in slot `slot`, to the sides. Requires hiding rows that are its
+  /// opaque ones.
   void find(std::uint32_t s, unsigned slot) {
     const Row* const opaque = st_.hiding[slot].data();
     auto& sides = st_.chunk_sides;
@@ -55,13 +56,13 @@ class ChunkSides {
     if (s == 0) found[at(Side::slow_neg)] = any;
     if (s + 1 == e_.s) found[at(Side::slow_pos)] = any;
   }
-  /// The same for a layer s that repeats the one before it, in slot `slot`.
+  /// Does the same for a layer s that repeats the previous layer, which is in slot `slot`.
   void repeat(std::uint32_t s, unsigned slot) {
     auto& sides = st_.chunk_sides;
     for (const Side side : kLayerSides) sides[at(side)][s] = sides[at(side)][s - 1];
     if (s + 1 != e_.s) return;
     std::copy_n(st_.hiding[slot].data(), e_.m, sides[at(Side::slow_pos)].data());
-    // One material: its first line has it, if any has.
+    // The layer has one material: if any voxel is transparent, the first line is.
     st_.sides_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
   }
 
@@ -73,7 +74,7 @@ class ChunkSides {
 
   SweepState<Row>& st_;
   const OrderedExtent e_;
-  const bool mixed_;  // whether slot are transparent materials besides others
+  const bool mixed_;  // some materials are transparent and others are not
 };
 
 }  // namespace HWY_NAMESPACE

@@ -1,4 +1,4 @@
-// Codes of voxels side by side: filling a run of them, and comparing a row of them with another into bits.
+// Palette indices as vectors: fills a run with an index, and compares rows of indices into bits.
 // Included once per instruction set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_INDEX_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_INDEX_LANES_INL
@@ -21,9 +21,9 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A index at a time: the plain path.
+/// One index at a time: the plain path.
 struct PlainIndices {
-  /// Codes that fill() may write behind `stop`.
+  /// Number of indices that fill() may write behind `stop`.
   template <class Index>
   static constexpr unsigned kBehind = 0;
 
@@ -43,15 +43,15 @@ struct PlainIndices {
   class Line {
    public:
     static Line at(const Index* indices) { return Line(indices); }
-    /// Bit i: whether index i is not 0.
+    /// Returns a row in which bit i is set if index i is not 0.
     Row solid() const {
       return gather([this](unsigned i) { return indices_[i] != 0; });
     }
-    /// Bit i: whether index i is a transparent one.
+    /// Returns a row in which bit i is set if index i is a transparent one.
     Row transparent() const {
       return gather([this](unsigned i) { return indices_[i] >> (sizeof(Index) * 8 - 1) != 0; });
     }
-    /// Bit i: whether the two have another index there.
+    /// Returns a row in which bit i is set if the two indices i differ.
     friend Row differing(const Line& a, const Line& b) {
       return gather([&](unsigned i) { return a.indices_[i] != b.indices_[i]; });
     }

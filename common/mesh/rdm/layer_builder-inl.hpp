@@ -1,6 +1,7 @@
-// LayerBuilder: makes the codes of one layer after the other from the runs, and from them its rows of bits: what
-// has faces, what hides them, inside the chunk and beyond its borders, and where the material changes.
-// Included once per instruction set, inside no namespace.
+// LayerBuilder: writes the palette indices of one layer after another from the runs, and from the
+// indices the rows of bits: the voxels with faces, the voxels that hide faces (inside the chunk and
+// beyond its borders), and the places where the material changes. Included once per instruction
+// set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_LAYER_BUILDER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL
 #undef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL
@@ -45,13 +46,15 @@ class LayerBuilder {
         mixed_(kManyMaterials && input.palette->has_transparent()),
         valid_(bits_below<Row>(input.extent.f)) {}
 
-  /// Goes on to layer s, which is 0 or the one above the last. Each is gone to, built or not.
+  /// Advances to layer s. Call it once per layer, in order from 0, even for layers that are not
+  /// built.
   void advance_to(std::uint32_t s) {
     if (runs()[run_].end == s * e_.layer()) ++run_;
   }
 
-  /// Whether layer s, gone to, is of one material and so was the one before, with equal borders: nothing
-  /// begins or ends then, and the layer need not be built. Requires s != 0.
+  /// Returns true if the current layer s and the previous one are of the same single material and
+  /// have equal borders. Then no strip begins or ends, and the layer need not be built. Requires s
+  /// != 0.
   bool repeats(std::uint32_t s) const {
     const std::uint32_t begin = s * e_.layer();
     const PaletteRun& run = runs()[run_];
@@ -65,7 +68,7 @@ class LayerBuilder {
     return true;
   }
 
-  /// Makes the codes and the rows of layer s, gone to, from the runs that lie in it.
+  /// Writes the indices and the rows of the current layer s from the runs that lie in it.
   void build(std::uint32_t s, LayerPair layers) {
     decode(s, indices_[layers.current].data());
     const Index* line = indices_[layers.current].data();
@@ -104,8 +107,8 @@ class LayerBuilder {
         hide_middle(Side::mid_pos, s, indices_[layers.current].data() + (count - 1) * e_.f);
   }
 
-  /// Puts what lies beyond a slow side into the hiding rows of `ring`, as if it were a layer; `own` is the
-  /// ring of our layer there.
+  /// Writes the voxels beyond a slow side into the hiding rows of slot `slot`, as if they were a
+  /// layer. `chunk_slot` is the slot of the chunk's layer at that side.
   void hide_slow(Side side, unsigned slot, [[maybe_unused]] unsigned chunk_slot) {
     Row* const hiding = st_.hiding[slot].data();
     std::copy_n(borders_.hiding[at(side)].data(), e_.m, hiding);
@@ -117,7 +120,8 @@ class LayerBuilder {
     }
   }
 
-  /// What hides the faces of a fast side in layer s, which was built last, in ring `own`: bit m is line m.
+  /// Returns the bits that hide the faces of a fast side in layer s: bit m is line m. Layer s is
+  /// the last built layer, in slot `slot`.
   Row hide_fast(Side side, std::uint32_t s, [[maybe_unused]] unsigned slot) const {
     Row hide = borders_.hiding[at(side)][s];
     if constexpr (kManyMaterials) {
@@ -135,7 +139,7 @@ class LayerBuilder {
  private:
   const PaletteRun* runs() const { return in_.runs.data(); }
 
-  /// Writes the codes of layer s to `first`, and some behind them.
+  /// Writes the indices of layer s to `first`, and some behind them.
   void decode(std::uint32_t s, Index* first) {
     const std::uint32_t begin = s * e_.layer();
     const std::uint32_t end = begin + e_.layer();
@@ -150,7 +154,8 @@ class LayerBuilder {
     run_ = static_cast<std::size_t>(run - runs());
   }
 
-  /// What hides the faces of a middle side in layer s; `line` is ours there.
+  /// Returns the bits that hide the faces of a middle side in layer s. `line` is the chunk's line
+  /// at that side.
   Row hide_middle(Side side, std::uint32_t s, [[maybe_unused]] const Index* line) const {
     Row hide = borders_.hiding[at(side)][s];
     if constexpr (kManyMaterials) {
@@ -159,8 +164,9 @@ class LayerBuilder {
     return hide;
   }
 
-  /// Where transparent voxels of ours meet their own kind beyond a border, in its row `row` of `bits` voxels:
-  /// `ours` are the transparent ones of our row there, and `index_at(bit)` their codes.
+  /// Returns the bits at which a transparent voxel of the chunk touches its own material beyond a
+  /// border, in row `row` of `bits` voxels. `ours` marks the chunk's transparent voxels of that
+  /// row, and `index_at(bit)` returns their indices.
   template <class IndexAt>
   Row same_beyond(Side side, std::uint32_t row, std::uint32_t bits, Row ours,
                   IndexAt&& index_at) const {
@@ -174,7 +180,7 @@ class LayerBuilder {
     }
     return same;
   }
-  /// The same for a line of ours.
+  /// Does the same for a line of the chunk.
   Row same_beyond_line(Side side, std::uint32_t row, const Index* line) const {
     const Row ours = Line::at(line).transparent() & valid_;
     return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });
@@ -185,9 +191,9 @@ class LayerBuilder {
   SweepState<Row>& st_;
   typename SweepState<Row>::template Indices<Index>& indices_;
   const OrderedExtent e_;
-  const bool mixed_;     // whether there are transparent materials besides others
+  const bool mixed_;     // some materials are transparent and others are not
   const Row valid_;      // bits of a line
-  std::size_t run_ = 0;  // the first that lies in the layer at hand
+  std::size_t run_ = 0;  // the first run that lies in the current layer
 };
 
 }  // namespace HWY_NAMESPACE

@@ -7,11 +7,11 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/sweep_traits.hpp"
 
-// The rest of this file is compiled once per instruction set; Highway picks one at run time.
+// The rest of this file is compiled once per instruction set. Highway selects one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/mesh/rdm/layer_sweep.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, as Highway asks.
+// Highway requires these includes after foreach_target.h.
 #include <hwy/highway.h>
 
 #include "common/mesh/rdm/chunk_sides-inl.hpp"
@@ -65,7 +65,7 @@ class Sweep {
   /// By Side: rows in which strips may end or begin.
   using SideRows = std::array<RowSet, 6>;
 
-  /// As if a layer without faces lay before the first.
+  /// Prepares the state as if a layer without faces preceded the first one.
   void start() {
     const auto clear = [this](Rows& rows) {
       std::fill_n(rows.data(), e_.m + Rows::kBehind, Row{0});
@@ -81,19 +81,20 @@ class Sweep {
     }
   }
 
-  /// Finds the faces of layer s: those across the middle and the fastest axis, and those between this
-  /// layer and the previous one. Returns by side the rows that differ from their previous row.
+  /// Finds the faces of layer s: those across the middle and the fastest axis, and those between
+  /// this layer and the previous one. Returns by side the rows that differ from their previous row.
   SideRows find_faces(std::uint32_t s) {
     SideRows rows = compare_rows(builder_.hide_fast(Side::fast_neg, s, layers_.current),
                                  builder_.hide_fast(Side::fast_pos, s, layers_.current));
-    // Rows behind the last row of the layer have no faces. The first of them would close open strips.
+    // Rows behind the last row of the layer have no faces. The first of them would close open
+    // strips.
     const Row valid = bits_below<Row>(e_.m);
     for (RowSet& set : rows) set &= valid;
     return rows;
   }
 
-  /// Writes the faces of the current layer. `hide_neg` and `hide_pos` hide the faces of the fast sides:
-  /// bit m is row m. The result has bits for rows behind the last row, too.
+  /// Writes the faces of the current layer. `hide_neg` and `hide_pos` hide the faces of the fast
+  /// sides: bit m is row m. The result also has bits for rows behind the last row.
   HWY_INLINE SideRows compare_rows(Row hide_neg, Row hide_pos) {
     const Row* const solid = st_.solid[layers_.current].data();
     const Row* const hiding = st_.hiding[layers_.current].data();
@@ -127,7 +128,7 @@ class Sweep {
           voxels, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
       V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_previous + m));
       V f_slow_pos = Lanes::without(Lanes::load(solid_previous + m), hide);
-      // The same faces a row before, for the slow sides.
+      // The same faces of the previous row, for the slow sides.
       V g_slow_neg =
           Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_previous + m - 1));
       V g_slow_pos =
@@ -178,7 +179,7 @@ class Sweep {
   static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
     return static_cast<std::uint64_t>(set >> m);
   }
-  /// Lanes in which faces now and before differ, or are cut otherwise.
+  /// Returns the lanes in which the faces differ from the previous ones or are cut differently.
   static HWY_INLINE std::uint64_t differ(V now, V before, [[maybe_unused]] V cut) {
     V x = Lanes::differing(now, before);
     if constexpr (kManyMaterials) x = Lanes::either(x, Lanes::both(now, cut));
@@ -188,7 +189,8 @@ class Sweep {
     set |= Row{lanes} << m;
   }
 
-  /// Behind the last layer: as if one without faces followed it. The last one is in ring `there`.
+  /// Ends the sweep as if a layer without faces followed the last one, which is in the previous
+  /// slot.
   SideRows end_faces() {
     builder_.hide_slow(Side::slow_pos, layers_.current, layers_.previous);
     Row* const slow_pos = st_.face[at(Side::slow_pos)][0].data();
@@ -210,7 +212,7 @@ class Sweep {
     return rows;
   }
 
-  /// Follows the strips of layer s, or those that end behind the last one, in the rows given.
+  /// Traces in the given rows the strips of layer s, or the strips that end behind the last layer.
   void trace(const SideRows& rows, std::uint32_t s) {
     if (s != e_.s)
       tracer_.template trace_slow<Side::slow_neg>(rows[at(Side::slow_neg)], s, layers_.current);

@@ -34,7 +34,7 @@ using rdm::side_of;
 using rdm::SideAxes;
 using Scratch = RdmScratch::State;
 
-/// Numbers the materials of the chunk and lists its runs by index.
+/// Assigns palette indices to the materials of the chunk and lists its runs by index.
 void index_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
   scratch.palette.clear();
   scratch.runs.resize(chunk.runs.size());
@@ -44,13 +44,13 @@ void index_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratc
     for (std::size_t i = 0; i < size; ++i)
       out[i] = {runs.end(i), palette.index_of(runs.material(i), visibility)};
   });
-  // A single transparent material is meshed as a single opaque one would be.
+  // A single transparent material is meshed as a single opaque one.
   if (scratch.palette.solid_count() == 1 && scratch.palette.has_transparent()) {
     for (rdm::PaletteRun& run : scratch.runs) run.index = run.index != 0 ? 1 : 0;
   }
 }
 
-/// Rows of bits from those that a neighbour's holder keeps, in the chunk's chunk_borders orientation.
+/// Copies the rows of bits that a neighbour's holder keeps, in the chunk's orientation.
 template <class Rows>
 void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis,
                  Rows& out) {
@@ -76,7 +76,8 @@ void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side
   transpose(out);
 }
 
-/// The border of a chunk that has transparent materials among others, where the neighbour may have them, too.
+/// Reads a border where transparent voxels may meet: the chunk has transparent materials among
+/// others, and the neighbour may have them too.
 template <class Row>
 void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
                        const VisibilityTable& visibility, Scratch& scratch, std::size_t at,
@@ -95,7 +96,8 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
     read_layer(neighbour, place.axis, place.at, place.bit_axis, voxels);
   };
   std::array<typename rdm::Borders<Row>::Rows, 2> planes;
-  // Among many short runs, looking at each voxel of the layer costs less than at each run of the chunk.
+  // With many short runs, reading each voxel of the layer costs less than reading each run of the
+  // chunk.
   const bool dense = neighbour.runs.size() > std::size_t{4} * bits * rows;
   if (dense) {
     read_voxels();
@@ -194,8 +196,8 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
     chunk_borders->keep(chunk, rows->sweep.chunk_sides, rows->sweep.sides_transparent);
 }
 
-/// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
-/// nothing. Returns false, with nothing done, if a neighbour is of several.
+/// Meshes a chunk of one material whose neighbours are missing or of one material each: whole
+/// sides, or nothing. Returns false and does nothing if a neighbour has several materials.
 bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours,
                   const VisibilityTable& visibility, ChunkMesh& out) {
   if (!std::all_of(neighbours.begin(), neighbours.end(),
@@ -241,8 +243,8 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const Mes
   const bool single_transparent =
       state.palette.solid_count() == 1 && state.palette.has_transparent();
   if (chunk_borders != nullptr && (state.palette.solid_count() == 0 || single_transparent)) {
-    chunk_borders->read(
-        chunk, visibility);  // the sweep does not tell it from an opaque one, or does not run
+    // The sweep does not run, or does not distinguish this material from an opaque one.
+    chunk_borders->read(chunk, visibility);
     chunk_borders = nullptr;
   }
   if (state.palette.solid_count() == 0) return out.clear();

@@ -1,6 +1,6 @@
-// StripTracer: follows the strips of one side of a layer in the rows that differ from the row before: closes what
-// ends there and opens what begins; all other strips go on untouched. Included once per instruction set,
-// inside no namespace.
+// StripTracer: traces the strips of one side of a layer in the rows that differ from their previous
+// row. It closes the strips that end there and opens those that begin. All other strips continue.
+// Included once per instruction set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_STRIP_TRACER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
 #undef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
@@ -36,14 +36,14 @@ class StripTracer {
   static constexpr bool kManyMaterials = Form::kManyMaterials;
 
  public:
-  /// A bit for each row in which strips may end or begin.
+  /// One bit for each row in which strips may end or begin.
   using RowSet = Row;
 
   StripTracer(const SweepInput& input, SweepState<Row>& state)
       : in_(input), st_(state), indices_(state.template indices<Index>()), e_(input.extent) {}
 
-  /// Faces across the slowest axis, of layer `layer`, which is in ring `slot`. Strips lie along a line, and the
-  /// next row is the next line.
+  /// Traces the faces across the slowest axis of layer `layer`, which is in slot `slot`. Strips lie
+  /// along a line, and the next row is the next line.
   template <Side kSide>
   void trace_slow(RowSet rows, std::uint32_t layer, unsigned slot) {
     const Row* const face = st_.face[at(kSide)][0].data();
@@ -78,8 +78,8 @@ class StripTracer {
     out.close_strips(over.end, open, layer, count);
   }
 
-  /// Faces across the middle axis in layer s. Strips lie along a line, and the next row is the same line of the
-  /// next layer.
+  /// Traces the faces across the middle axis in layer s. Strips lie along a line, and the next row
+  /// is the same line of the next layer.
   template <Side kSide>
   void trace_middle(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
@@ -123,9 +123,10 @@ class StripTracer {
     }
   }
 
-  /// Faces across the fastest axis in layer s: every bit is a layer of its slot. Strips run along the slowest
-  /// axis, one a bit: a face that appears begins one, a face that disappears ends one. Those that end side by
-  /// side in neighbouring rows are one quad if they began together and are of one material.
+  /// Traces the faces across the fastest axis in layer s: every bit is a layer of its own. Strips
+  /// run along the slowest axis, one a bit: a face that appears begins a strip, and a face that
+  /// disappears ends one. Strips that end side by side in neighbouring rows are one quad if they
+  /// began together and are of one material.
   template <Side kSide>
   void trace_fast(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
@@ -152,7 +153,7 @@ class StripTracer {
       const std::uint32_t m = *place / kRowBits<Row>;
       const unsigned bit = *place % kRowBits<Row>;
       const std::uint32_t first = start_layer[*place];
-      // Row 0 has nothing adjacent it; it may read any byte.
+      // Row 0 has no row above it and may read any byte.
       const bool joins = (joins_previous[m] >> bit & 1) != 0 &&
                          start_layer[*place - (m == 0 ? 0 : kRowBits<Row>)] == first;
       out.close_or_join(out.open({bit, first, s - first, m}, m, bit), bit, m + 1, joins);
@@ -168,7 +169,8 @@ class StripTracer {
  private:
   static HWY_INLINE Row cut_at(const Row* cut) { return kManyMaterials ? *cut : Row{0}; }
 
-  /// Whether so many rows change that all of them at once cost less than these one by one.
+  /// Returns true if so many rows change that comparing all rows at once costs less than comparing
+  /// these one by one.
   bool most([[maybe_unused]] RowSet rows) const {
     if constexpr (Lanes::kLanes == 1) {
       return false;
@@ -177,11 +179,12 @@ class StripTracer {
     }
   }
 
-  /// Rows of strips and their cuts, the same of the rows before, and where the material differs between them.
+  /// Rows of strips and their cuts, the same of the previous rows, and the bits whose material
+  /// differs between them.
   struct Lines {
     const Row *face, *cut, *face_before, *cut_before, *differs;
   };
-  /// Finds what closes and opens, for all rows.
+  /// Finds the strips that close and open, for all rows.
   void compare_along(const Lines& in) {
     using Vectors = StripLanes<Form>;
     Row* const closing = st_.closing.data();
@@ -197,8 +200,8 @@ class StripTracer {
     });
   }
 
-  /// Places of bits are written down first and gone through afterwards, so that the loop over them has no end
-  /// in each row that a processor would have to foresee. What is written behind the last one does not count.
+  /// The places of bits are written to a list first and visited afterwards. So the loop over them
+  /// is not per row, and its end is predictable. Values written behind the last place are ignored.
   using Place = std::uint16_t;
   static HWY_INLINE Place* write_places(Row bits, std::uint32_t row, Place* to) {
     const std::uint32_t base = row * kRowBits<Row>;

@@ -1,16 +1,19 @@
-// SweepTraits: what the parts of a sweep are compiled for. Internal to rdm.
+// SweepTraits: the compile-time parameters of a sweep. Internal to rdm.
 #pragma once
 
 namespace runstone::rdm {
 
-/// LanesOf: rows as many a step (row_lanes-inl.hpp). IndexLanesOf: codes side by side (index_lanes-inl.hpp).
-/// ToIndex: the form of the codes. kManyMaterialsOf: the chunk has more than one material, so faces are cut where
-/// it changes; with one, codes say no more than solid or not.
-template <class LanesOf, class IndexLanesOf, class ToIndex, bool kManyMaterialsOf>
+/// The parameters are:
+///   - LanesOf: the rows of a step (row_lanes-inl.hpp);
+///   - IndexLanesOf: the palette indices of a step (index_lanes-inl.hpp);
+///   - IndexOf: the type of an index;
+///   - kManyMaterialsOf: true if the chunk has more than one material, so that faces are cut where
+///     the material changes. With one material, an index only says whether a voxel is solid.
+template <class LanesOf, class IndexLanesOf, class IndexOf, bool kManyMaterialsOf>
 struct SweepTraits {
   using Lanes = LanesOf;
   using IndexLanes = IndexLanesOf;
-  using Index = ToIndex;
+  using Index = IndexOf;
   using Row = typename Lanes::Row;
   using Line = typename IndexLanes::template Line<Row, Index>;
   static constexpr bool kManyMaterials = kManyMaterialsOf;
