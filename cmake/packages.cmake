@@ -1,4 +1,9 @@
 # Every dependency is a Debian 12 package; scripts/packages lists them by name.
+find_package(hwy REQUIRED CONFIG)
+if(RUNSTONE_LIBRARY_ONLY)
+  return()
+endif()
+enable_language(C)  # the OpenGL loader
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(FlatBuffers 2.0.8 REQUIRED CONFIG)
@@ -9,7 +14,6 @@ find_package(zstd REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
-find_package(hwy REQUIRED CONFIG)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 

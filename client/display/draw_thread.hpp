@@ -22,6 +22,7 @@
 
 #include "client/display/screen.hpp"
 #include "common/core/ids.hpp"
+#include "common/materials/material_table.hpp"
 
 namespace runstone {
 

@@ -17,6 +17,7 @@
 #include "client/schedule/latency_recorder.hpp"
 #include "client/schedule/mesh_planner.hpp"
 #include "client/schedule/mesh_pool.hpp"
+#include "common/materials/material_table.hpp"
 
 namespace runstone {
 

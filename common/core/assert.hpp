@@ -1,6 +1,6 @@
-// Assertions for bugs (never for bad input, which returns a Result).
-//   RUNSTONE_ASSERT  stays on in every build: work done once per message, edit or tick.
-//   RUNSTONE_DASSERT is for inner loops and vanishes in optimised builds.
+// Assertions for bugs. Bad input is no bug: it returns a Result.
+//   - RUNSTONE_ASSERT stays on in every build. It serves work done once per message, edit or tick.
+//   - RUNSTONE_DASSERT serves inner loops. Optimised builds leave it out.
 #pragma once
 
 namespace runstone {

@@ -1,6 +1,6 @@
-// Little-endian byte reader and writer with the one varint of this project.
-// Varint: 7 bits a byte, low bits first, the high bit says "more"; only the shortest spelling is accepted,
-// so equal values have equal bytes. Signed values are zigzag-coded first.
+// Little-endian byte reader and writer, with the one varint of this project. A varint has 7 bits a
+// byte, low bits first; the high bit is set if another byte follows. Only the shortest encoding is
+// accepted, so equal values have equal bytes. Signed values are zigzag-coded first.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -43,8 +43,9 @@ class ByteWriter {
   Bytes& out_;
 };
 
-/// Reads forward through a view and checks every bound. After the first failure every read fails, so a
-/// caller may read a whole record and ask ok() once; error() names the offset of the first failure.
+/// Reads forward through a view and checks every bound. After the first failure every read fails,
+/// so a caller can read a whole record and check ok() once. error() holds the offset of the first
+/// failure.
 class ByteReader {
  public:
   explicit ByteReader(ByteView in) : in_(in) {}
@@ -61,14 +62,14 @@ class ByteReader {
   std::uint64_t u64() { return little_endian(8); }
   std::uint64_t varint();
   std::int64_t svarint() { return unzigzag(varint()); }
-  /// Varint that must not exceed `max`.
+  /// Reads a varint. Fails if it exceeds `max`.
   std::uint64_t varint_max(std::uint64_t max, const char* what);
-  /// Signed varint that must lie in [low, high].
+  /// Reads a signed varint. Fails if it lies outside [low, high].
   std::int64_t svarint_in(std::int64_t low, std::int64_t high, const char* what);
   ByteView bytes(std::size_t count);
-  /// Marks the input as bad from outside (a value that decodes but may not be).
+  /// Marks the input as bad: for a value that decodes but is not allowed.
   void reject(ErrorCode code, const char* what);
-  /// The value if everything was read well and nothing is left over.
+  /// Returns success if every read succeeded and no byte is left over.
   Result<void> finish();
 
  private:

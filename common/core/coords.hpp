@@ -1,5 +1,6 @@
-// Where things are. y is up, the system is right-handed; a voxel covers [x, x+1) x [y, y+1) x [z, z+1).
-// Three kinds of position are three types, so that they cannot be mixed. Boxes are half-open.
+// Positions, boxes and directions. y is up and the system is right-handed. A voxel covers [x, x+1)
+// x [y, y+1) x [z, z+1). The three kinds of position are three types, so that they cannot be mixed.
+// Boxes are half-open.
 #pragma once
 #include <algorithm>
 #include <compare>
@@ -9,7 +10,8 @@ namespace runstone {
 
 enum class Axis : std::uint8_t { x = 0, y = 1, z = 2 };
 
-/// World coordinates reach [-kWorldLimit, kWorldLimit), so that a sum or difference of two of them fits i32.
+/// World coordinates lie in [-kWorldLimit, kWorldLimit), so the sum or difference of two of them
+/// fits i32.
 inline constexpr std::int32_t kWorldLimit = 1 << 29;
 
 struct VoxelPos {
@@ -17,7 +19,7 @@ struct VoxelPos {
   friend auto operator<=>(const VoxelPos&, const VoxelPos&) = default;
 };
 
-/// Position inside one chunk, 0 .. side - 1.
+/// Position inside one chunk, 0 .. side - 1 along each axis.
 struct LocalPos {
   std::uint8_t x = 0, y = 0, z = 0;
   friend auto operator<=>(const LocalPos&, const LocalPos&) = default;
@@ -29,14 +31,14 @@ struct ChunkCoord {
   friend auto operator<=>(const ChunkCoord&, const ChunkCoord&) = default;
 };
 
-/// Names a chunk everywhere: in memory, log, wire and store. lod 0 is full detail.
+/// Names a chunk in memory, log, wire and store. lod 0 is full detail.
 struct ChunkKey {
   std::uint8_t lod = 0;
   ChunkCoord at;
   friend auto operator<=>(const ChunkKey&, const ChunkKey&) = default;
 };
 
-/// Half-open box of voxels. Empty if any side is.
+/// Half-open box of voxels. It is empty if any side is empty.
 struct VoxelBox {
   VoxelPos min, max;
   friend auto operator<=>(const VoxelBox&, const VoxelBox&) = default;
@@ -56,12 +58,12 @@ constexpr VoxelBox intersect(const VoxelBox& a, const VoxelBox& b) {
           {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y), std::min(a.max.z, b.max.z)}};
 }
 
-/// Chunk that holds a voxel, for cubic world chunks of `edge` voxels a side.
+/// Returns the chunk that holds a voxel. World chunks are cubes of `edge` voxels a side.
 constexpr ChunkCoord chunk_of(VoxelPos p, std::int32_t edge) {
   return {floor_div(p.x, edge), floor_div(p.y, edge), floor_div(p.z, edge)};
 }
 
-/// First voxel of a chunk.
+/// Returns the first voxel of a chunk.
 constexpr VoxelPos origin_of(ChunkCoord c, std::int32_t edge) {
   return {c.x * edge, c.y * edge, c.z * edge};
 }
@@ -77,7 +79,8 @@ constexpr LocalPos local_of(VoxelPos p, std::int32_t edge) {
           static_cast<std::uint8_t>(p.z - o.z)};
 }
 
-/// The six directions in which a face can look. Values are frozen: quads and the mesh tables carry them.
+/// The six directions that a face can have. The values are frozen: quads and the mesh tables hold
+/// them.
 enum class Direction : std::uint8_t {
   neg_x = 0,
   pos_x = 1,

@@ -13,7 +13,7 @@ constexpr std::uint64_t kAxisSalt = 0x52756e73746f6e65ULL;  // "Runstone"
 constexpr std::uint64_t kMaterialSalt = 0x4d6174657269616cULL;
 constexpr std::uint64_t kWorldSalt = 0x576f726c64466f6cULL;
 
-// A residue that is never 0: a zero factor would hide every voxel it multiplies.
+// Returns a residue that is never 0: a zero factor would hide every voxel that it multiplies.
 constexpr std::uint64_t nonzero_residue(std::uint64_t seed) {
   return 1 + mix64(seed) % (m61::kPrime - 1);
 }
@@ -78,8 +78,8 @@ Digest digest_of_box(Material material, std::array<unsigned, 3> min, std::array<
 }
 
 Digest world_digest_term(const ChunkKey& key, const Digest& chunk) {
-  // A linear fold (factor per key) would let equal errors in two chunks cancel too easily, so the chunk's
-  // residue is mixed before it is added.
+  // A linear fold, one factor per key, would let equal errors in two chunks cancel too easily. So
+  // the chunk's residue is mixed before it is added.
   if (chunk == Digest{}) return {};
   Digest out;
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
@@ -95,7 +95,8 @@ Digest world_digest_term(const ChunkKey& key, const Digest& chunk) {
 }
 
 std::string to_hex(const Digest& digest) {
-  std::array<std::uint8_t, 8 * kDigestLanes> bytes{};  // highest byte of a lane first
+  // The highest byte of a lane comes first.
+  std::array<std::uint8_t, 8 * kDigestLanes> bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     bytes[i] = static_cast<std::uint8_t>(digest.lane[i / 8] >> (56 - 8 * (i % 8)));
   }

@@ -1,10 +1,11 @@
-// Fixed integer mixing. Never std::hash: results reach logs, worlds and digests.
+// Fixed integer mixing. std::hash is never used, because results reach logs, worlds and digests.
 #pragma once
 #include <cstdint>
 
 namespace runstone {
 
-/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64-bit words with good avalanche.
+/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64-bit words with good
+/// avalanche.
 constexpr std::uint64_t mix64(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -12,7 +13,8 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Seeded stream of 64-bit words (SplitMix64). Same numbers everywhere; not for secrets.
+/// Seeded stream of 64-bit words (SplitMix64). It gives the same numbers on every platform. Not for
+/// secrets.
 class SplitMix64 {
  public:
   explicit constexpr SplitMix64(std::uint64_t seed) : state_(seed) {}
@@ -21,11 +23,12 @@ class SplitMix64 {
     state_ += 0x9e3779b97f4a7c15ULL;
     return out;
   }
-  /// Uniform in [0, bound) up to a bias below bound / 2^32 (multiply-shift). Requires 0 < bound.
+  /// Returns a number uniform in [0, bound) up to a bias below bound / 2^32 (multiply-shift).
+  /// Requires 0 < bound.
   constexpr std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>(((next() >> 32) * bound) >> 32);
   }
-  /// Uniform in [low, high], both included. Requires low <= high.
+  /// Returns a number uniform in [low, high], both included. Requires low <= high.
   constexpr std::int32_t between(std::int32_t low, std::int32_t high) {
     const auto span = static_cast<std::uint32_t>(static_cast<std::int64_t>(high) - low + 1);
     return static_cast<std::int32_t>(low + static_cast<std::int64_t>(below(span)));

@@ -1,35 +1,38 @@
-// Identities and order: who made an edit, and where it stands in the one log.
+// Identities and order: the author of an edit, and its place in the log.
 #pragma once
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 namespace runstone {
 
 using Material = std::uint16_t;  // index into the material table
 inline constexpr Material kEmpty = 0;
+inline constexpr std::size_t kMaterialCountMax = 65536;
 
-using TimeUs = std::int64_t;  // microseconds; each use says of which clock
+using TimeUs = std::int64_t;  // microseconds; each use names its clock
 
 using LogId = std::uint32_t;     // 0 today; one per shard later
-using Epoch = std::uint32_t;     // raised by each server start; 0 means "before the first start"
-using Sequence = std::uint64_t;  // place in the log, from 1, without gaps; 0 means "base"
-/// Largest sequence and client sequence. Databases have signed integers: beyond it, a mark would be the
-/// smallest number instead of the largest.
+using Epoch = std::uint32_t;     // raised by each server start; 0: before the first start
+using Sequence = std::uint64_t;  // place in the log, from 1, without gaps; 0: the base
+/// Largest sequence and client sequence. Databases store signed integers: a larger value would be
+/// read back as the smallest number.
 inline constexpr Sequence kSequenceMax = 0x7fff'ffff'ffff'ffff;
 
-/// Version of a chunk: the last edit that touched it by geometry, even if no voxel changed.
-/// (0, 0) is the base (imported or generated, never edited). Compared lexicographically.
+/// Version of a chunk: the last edit that touched it by geometry, even if no voxel changed. (0, 0)
+/// is the base: imported or generated, never edited. Versions are compared lexicographically.
 struct Version {
   Epoch epoch = 0;
   Sequence seq = 0;
   friend auto operator<=>(const Version&, const Version&) = default;
 };
 
-using AuthorId = std::uint32_t;        // row in `player`; 0 is the server itself
+using AuthorId = std::uint32_t;        // row in `player`; 0: the server
 using ClientInstance = std::uint64_t;  // random, drawn once per client process
-using ClientSequence = std::uint64_t;  // counts a client instance's edits, 1 .. kSequenceMax
+using ClientSequence = std::uint64_t;  // counts the edits of a client instance, from 1
 
-/// Names one edit as its author sent it, before the world ordered it: an edit offered twice is applied once.
+/// Names one edit as its author sent it, before the world ordered it. An edit that is sent twice is
+/// applied once.
 struct OperationId {
   AuthorId author = 0;
   ClientInstance instance = 0;
@@ -38,10 +41,11 @@ struct OperationId {
 };
 
 using TraceId = std::uint64_t;
-/// Ties log lines of one edit together on every machine. Derived, never random, so replays trace alike.
+/// Returns a number that connects the log lines of one edit on every machine. It is derived, never
+/// random, so a replay logs the same number.
 TraceId trace_id(const OperationId& op);
 
-/// Why an edit is in the log. Values are frozen: they are stored.
+/// The reason why an edit is in the log. Values are frozen: they are stored.
 enum class Cause : std::uint8_t {
   player = 0,
   console = 1,

@@ -1,4 +1,4 @@
-// Positions, chunk keys and versions as log lines, error messages and reports spell them.
+// Positions, chunk keys and versions as text for log lines, error messages and reports.
 #pragma once
 #include <string>
 
@@ -7,11 +7,11 @@
 
 namespace runstone {
 
-/// "1 0 -3", as commands and scripts take it.
+/// Returns text such as "1 0 -3", the form that commands and scripts read.
 std::string text_of(const VoxelPos& at);
-/// "1,0,-3", and "1,0,-3 lod=2" for chunks of less detail.
+/// Returns text such as "1,0,-3", or "1,0,-3 lod=2" if lod is not 0.
 std::string text_of(const ChunkKey& key);
-/// Epoch and sequence, "2:9120".
+/// Returns epoch and sequence, such as "2:9120".
 std::string text_of(const Version& version);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// Arithmetic modulo the Mersenne prime 2^61 - 1, the field in which digests live: a product of two residues
-// reduces with shifts and adds, and sums may be taken in any order.
+// Arithmetic modulo the Mersenne prime 2^61 - 1, the field of the digests. A product of two
+// residues is reduced with shifts and adds, and sums may be taken in any order.
 #pragma once
 #include <cstdint>
 
@@ -7,12 +7,13 @@ namespace runstone::m61 {
 
 inline constexpr std::uint64_t kPrime = (1ULL << 61) - 1;
 
-/// Any 64-bit value to its residue in [0, kPrime).
+/// Returns the residue of any 64-bit value, in [0, kPrime).
 constexpr std::uint64_t reduce(std::uint64_t v) {
   v = (v & kPrime) + (v >> 61);
   return v >= kPrime ? v - kPrime : v;
 }
-/// Requires both arguments below kPrime; so is the result. The same holds for sub and mul.
+/// Requires both arguments below kPrime. The result is below kPrime too. The same holds for sub and
+/// mul.
 constexpr std::uint64_t add(std::uint64_t a, std::uint64_t b) {
   const std::uint64_t s = a + b;
   return s >= kPrime ? s - kPrime : s;

@@ -1,6 +1,7 @@
-// Result<T>: a value or an error, for input that may be bad. C++20 lacks std::expected and g++ 12 has it
-// only in C++23 mode; the member names are std::expected's, so that this can become an alias later.
-// Error never allocates: an enum, a static string and the byte offset at which the input went wrong.
+// Result<T>: a value or an error, for input that may be bad. C++20 lacks std::expected, and g++ 12
+// has it only in C++23 mode. The member names are those of std::expected, so that Result can become
+// an alias later. An Error never allocates: it holds an enum, a static string and the byte offset
+// of the fault.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -15,21 +16,21 @@ namespace runstone {
 enum class ErrorCode : std::uint16_t {
   truncated,         // the input ended early
   trailing_bytes,    // bytes left over after a complete value
-  not_canonical,     // decodes, but another spelling is the only accepted one
+  not_canonical,     // decodes, but is not the one accepted encoding
   bad_value,         // a field is outside its documented range
   bad_version,       // made by an unknown format version
   limit_exceeded,    // larger than a documented limit
   bad_checksum,      // bytes were damaged
   broken_invariant,  // a structural rule of runs, layers or frames does not hold
   unknown_kind,      // a tag, message type or encoding that this build does not know
-  not_found,         // a named thing does not exist
+  not_found,         // a named object does not exist
   io_failed,         // the disk or the network failed
 };
 
 struct Error {
   ErrorCode code{};
   const char* what = "";     // static string; names the field and the rule
-  std::uint64_t offset = 0;  // byte offset, run index or row, whichever the callee documents
+  std::uint64_t offset = 0;  // byte offset, run index or row, as the callee documents
   friend bool operator==(const Error& a, const Error& b) {
     return a.code == b.code && a.offset == b.offset;
   }

@@ -7,12 +7,12 @@ bool is_printable_utf8(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text[i]);
     if (lead < 0x20 || lead == 0x7f) return false;
     std::size_t length = 1;
-    unsigned low = 0x80,
-             high = 0xbf;  // bounds of the second byte: shut out overlong forms and surrogates
+    // Bounds of the second byte. They exclude overlong forms and surrogates.
+    unsigned low = 0x80, high = 0xbf;
     if (lead >= 0x80) {
       if (lead >= 0xc2 && lead <= 0xdf) {
         length = 2;
-        if (lead == 0xc2) low = 0xa0;  // below lie the C1 controls
+        if (lead == 0xc2) low = 0xa0;  // the C1 controls lie below
       } else if (lead >= 0xe0 && lead <= 0xef) {
         length = 3;
         if (lead == 0xe0) low = 0xa0;

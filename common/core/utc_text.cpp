@@ -14,8 +14,8 @@ constexpr std::int64_t floor_to(std::int64_t a, std::int64_t b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }
 
-/// Days since 1970-01-01 of a date of the Gregorian calendar. Source: H. Hinnant, "chrono-compatible low-level
-/// date algorithms": years that begin in March, in eras of 400.
+/// Returns the days from 1970-01-01 to a date of the Gregorian calendar. Source: H. Hinnant,
+/// "chrono-compatible low-level date algorithms"; years begin in March and eras have 400 years.
 constexpr std::int64_t days_of(std::int64_t year, std::int64_t month, std::int64_t day) {
   year -= month <= 2 ? 1 : 0;
   const std::int64_t era = floor_to(year, 400);
@@ -33,7 +33,7 @@ constexpr Date date_of(std::int64_t days) {
   const std::int64_t day = days - era * 146'097;
   const std::int64_t year = (day - day / 1460 + day / 36'524 - day / 146'096) / 365;
   const std::int64_t of_year = day - (365 * year + year / 4 - year / 100);
-  const std::int64_t month = (5 * of_year + 2) / 153;  // from March
+  const std::int64_t month = (5 * of_year + 2) / 153;  // counted from March
   const std::int64_t civil = month < 10 ? month + 3 : month - 9;
   return {year + era * 400 + (civil <= 2 ? 1 : 0), civil, of_year - (153 * month + 2) / 5 + 1};
 }
@@ -43,7 +43,8 @@ std::string padded(std::int64_t number, std::size_t digits) {
   return text.size() < digits ? std::string(digits - text.size(), '0') + text : text;
 }
 
-/// Takes exactly `digits` digits off the front; -1 if they are not there.
+/// Removes exactly `digits` digits from the front and returns their number, or -1 if they are not
+/// there.
 std::int64_t take_number(std::string_view& text, std::size_t digits) {
   if (text.size() < digits) return -1;
   std::int64_t number = 0;
@@ -55,12 +56,13 @@ std::int64_t take_number(std::string_view& text, std::size_t digits) {
   return number;
 }
 
-/// How many digits the text begins with.
+/// Returns the number of digits that the text begins with.
 std::size_t digits_of(std::string_view text) {
   return std::min(text.find_first_not_of("0123456789"), text.size());
 }
 
-/// Takes one to six decimals of a second off the front, as microseconds; -1 if they are not there.
+/// Removes one to six decimals of a second from the front and returns them as microseconds, or -1
+/// if they are not there.
 std::int64_t take_decimals(std::string_view& text) {
   const std::size_t digits = digits_of(text);
   if (digits == 0 || digits > kDigitsMax) return -1;
@@ -119,7 +121,8 @@ std::optional<TimeUs> parse_duration(std::string_view text) {
   constexpr std::string_view kUnits = "wdhms";
   constexpr std::int64_t kSeconds[] = {7 * kDaySeconds, kDaySeconds, 3600, 60, 1};
   std::int64_t seconds = 0;
-  std::size_t next = 0;  // units that may still come: each once, the longest first
+  // Units that may still follow: each once, the longest first.
+  std::size_t next = 0;
   do {
     const std::size_t digits = digits_of(text);
     if (digits == 0 || digits > kDigitsMax) return std::nullopt;

@@ -1,4 +1,5 @@
-// Moments as people read and type them: UTC, by the calendar. No clock and no locale in it.
+// Points in time as people read and type them: UTC, by the calendar. No clock is read and no locale
+// is used.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,15 +9,17 @@
 
 namespace runstone {
 
-/// "2026-11-21T23:57:42Z", to the second (rounded down).
+/// Returns text such as "2026-11-21T23:57:42Z", rounded down to the second.
 std::string utc_text(TimeUs utc_us);
 
-/// Microseconds since 1970 of "2026-11-21T23:57:42.25Z"; the Z may be missing, and the decimals (six at most), the seconds and the
-/// time of day. Years 1970 .. 9999. Nothing if it is no such moment.
+/// Parses text such as "2026-11-21T23:57:42.25Z" to microseconds since 1970. Optional are the Z,
+/// the decimals (six at most), the seconds and the time of day. Years are 1970 .. 9999. Returns
+/// nullopt on any other text.
 std::optional<TimeUs> parse_utc(std::string_view text);
 
-/// Microseconds of "90s", "15m", "2h30m", "1w2d": numbers of at most six digits, each with its unit w, d, h, m or s; each unit
-/// at most once, the longest first. Nothing otherwise.
+/// Parses a duration such as "90s", "15m", "2h30m" or "1w2d" to microseconds. Each number has at
+/// most six digits and is followed by its unit w, d, h, m or s. Each unit occurs at most once, the
+/// longest first. Returns nullopt on any other text.
 std::optional<TimeUs> parse_duration(std::string_view text);
 
 }  // namespace runstone

@@ -58,4 +58,11 @@ Result<Material> MaterialTable::add(MaterialInfo info) {
   return id;
 }
 
+std::vector<Visibility> visibilities(const MaterialTable& table) {
+  std::vector<Visibility> out;
+  out.reserve(table.size());
+  for (const MaterialInfo& row : table.rows()) out.push_back(row.visibility);
+  return out;
+}
+
 }  // namespace runstone

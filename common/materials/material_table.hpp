@@ -14,12 +14,9 @@
 #include "common/core/bytes.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
+#include "common/core/visibility.hpp"
 
 namespace runstone {
-
-/// empty: never drawn, hides nothing. opaque: hides the faces behind it. transparent: drawn in the blended
-/// pass; equal transparent materials hide the faces between them, different ones do not.
-enum class Visibility : std::uint8_t { empty = 0, opaque = 1, transparent = 2 };
 
 /// How a generator turns this material into a layer of terrain (thesis 7.4 and figure 7.21).
 /// Units are voxels; frequency is cycles per voxel. The thesis' z is up, ours is y. The surface of a column
@@ -56,7 +53,6 @@ struct TextError {
   std::string message() const;  // "file:line: key: what"
 };
 
-inline constexpr std::size_t kMaterialCountMax = 65536;
 inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
 class MaterialTable {
@@ -82,6 +78,9 @@ class MaterialTable {
   std::vector<MaterialInfo> rows_;
   std::map<std::string, Material, std::less<>> ids_;  // row by name
 };
+
+/// Returns the visibility of each material by id, as the mesher's VisibilityTable takes it.
+std::vector<Visibility> visibilities(const MaterialTable& table);
 
 /// Reads `[[material]]` tables in id order, air first; `file` is only for messages. Unknown keys are errors.
 /// See docs/materials.md for the keys.

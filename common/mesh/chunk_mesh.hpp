@@ -1,5 +1,5 @@
-// ChunkMesh: the quads of one chunk, in two draw passes, kept per direction and layer, so that an edit
-// replaces the layers it touched and keeps the rest (design: "dirty layers").
+// ChunkMesh: the quads of one chunk in two draw passes, kept per direction and layer. An edit
+// replaces only the layers that it touched ("dirty layers" in the design).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace runstone {
 
-/// Quads of one pass ordered by direction, then layer; deterministic within a layer.
+/// Quads of one pass, ordered by direction, then layer. The order within a layer is deterministic.
 struct QuadLayers {
   std::vector<Quad> quads;
-  /// First quad of each (direction, layer): layer l of direction d starts at first[d * kSideMax + l]; the
-  /// last entry is quads.size(). Empty layers repeat their successor's start.
+  /// The first quad of each (direction, layer): layer l of direction d starts at first[d * kSideMax
+  /// + l]. The last entry is quads.size(). An empty layer has the start of the next layer.
   std::array<std::uint32_t, kDirectionCount * kSideMax + 1> first{};
 
   std::span<const Quad> layer(Direction d, unsigned l) const {
@@ -26,7 +26,7 @@ struct QuadLayers {
   }
   void clear() {
     quads.clear();
-    if (first.back() != 0) first.fill(0);  // it ascends
+    if (first.back() != 0) first.fill(0);  // the entries ascend
   }
 };
 

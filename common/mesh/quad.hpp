@@ -1,12 +1,13 @@
-// Quad: one rectangle of equal faces, 8 bytes, drawn by the GPU without unpacking on the CPU.
-//   bits 0..6 x, 7..13 y, 14..20 z   voxel of the corner with the smallest coordinates (local, 0..127)
-//   bits 21..27 width - 1            faces along u    (u, v) per axis: x: (y, z), y: (z, x), z: (x, y)
+// Quad: one rectangle of equal faces in 8 bytes, which the GPU draws without unpacking on the CPU.
+//   bits 0..6 x, 7..13 y, 14..20 z   voxel of the corner with the smallest coordinates (0..127)
+//   bits 21..27 width - 1            faces along u
 //   bits 28..34 height - 1           faces along v
 //   bits 35..37 direction            core/coords.hpp
 //   bits 38..53 material             u16
-//   bits 54..63 zero (reserved: light, occlusion)
-// u x v points along +axis (right-handed), so a positive face winds counter-clockwise over u, v seen from
-// outside.
+//   bits 54..63 zero                 reserved: light, occlusion
+// (u, v) per axis are x: (y, z), y: (z, x), z: (x, y). u x v points along +axis (right-handed), so
+// a positive face winds counter-clockwise over u, v seen from outside. Coordinates are local to the
+// chunk.
 #pragma once
 #include <compare>
 #include <cstdint>

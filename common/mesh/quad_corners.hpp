@@ -1,5 +1,5 @@
-// The four corners of a quad in drawing order: what the renderer's vertex shader computes from the packed
-// bits, written once on the CPU so that both can be held to the same winding.
+// The four corners of a quad in drawing order. The renderer's vertex shader computes the same from
+// the packed bits. This copy on the CPU lets tests compare the winding of both.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,9 +11,10 @@ namespace runstone {
 /// A corner on the voxel lattice, 0 .. 128 on each axis, by Axis.
 using Corner = std::array<int, 3>;
 
-/// Corners in counter-clockwise order seen from outside (from the side the direction points to), starting at
-/// the corner with the smallest coordinates: (corner 1 - corner 0) x (corner 2 - corner 1) points along the
-/// direction. Triangles are (0, 1, 2) and (0, 2, 3).
+/// Returns the corners in counter-clockwise order seen from outside, that is, from the side to
+/// which the direction points. The first is the corner with the smallest coordinates. (corner 1 -
+/// corner 0) x (corner 2 - corner 1) points along the direction. Triangles are (0, 1, 2) and (0, 2,
+/// 3).
 constexpr std::array<Corner, 4> quad_corners(Quad quad) {
   const QuadFields q = unpack(quad);
   const Axis axis = axis_of(q.direction);

@@ -1,6 +1,7 @@
-// AxisOrder: which axis runs fastest, middle and slowest when a chunk is flattened. It decides how many runs
-// a chunk needs (hills: 17,779 or 2,314) and is private to each holder: never in log, commit or digest.
-// The thesis' index y + z*n + x*n^2 (its z is up) is our zyx.
+// AxisOrder: the order of the axes in which a chunk is flattened, fastest axis first. It decides
+// how many runs a chunk needs (hills: 17,779 or 2,314). Each holder of a chunk chooses its own
+// order: no log, commit or digest contains it. The index y + z*n + x*n^2 of the thesis, whose z is
+// up, is zyx here.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,13 +11,13 @@
 
 namespace runstone {
 
-/// Named fastest axis first. The numbers are the order numbers that break ties, and go on wire and disk.
+/// Named fastest axis first. The numbers break ties and are written to wire and disk.
 enum class AxisOrder : std::uint8_t { xyz = 0, xzy = 1, yxz = 2, yzx = 3, zxy = 4, zyx = 5 };
 inline constexpr int kAxisOrderCount = 6;
 inline constexpr std::array<AxisOrder, kAxisOrderCount> kAxisOrders = {
     AxisOrder::xyz, AxisOrder::xzy, AxisOrder::yxz, AxisOrder::yzx, AxisOrder::zxy, AxisOrder::zyx};
 
-/// The axes of an order: [0] fastest, [1] middle, [2] slowest.
+/// Returns the axes of an order: [0] fastest, [1] middle, [2] slowest.
 constexpr std::array<Axis, 3> axes_of(AxisOrder order) {
   constexpr std::array<std::array<Axis, 3>, kAxisOrderCount> kTable = {{
       {Axis::x, Axis::y, Axis::z},
@@ -29,8 +30,8 @@ constexpr std::array<Axis, 3> axes_of(AxisOrder order) {
   return kTable[static_cast<std::size_t>(order)];
 }
 
-/// A chunk's shape seen in its own order: f is fastest, m middle, s slowest.
-/// A line is f voxels; a layer of the slowest axis is f * m voxels.
+/// The extent of a chunk in its own order: f is fastest, m middle, s slowest. A line is f voxels; a
+/// layer of the slowest axis is f * m voxels.
 struct OrderedExtent {
   std::uint32_t f, m, s;
   constexpr std::uint32_t layer() const { return f * m; }
@@ -44,7 +45,7 @@ constexpr OrderedExtent ordered(Extent extent, AxisOrder order) {
           sides[static_cast<std::size_t>(axes[2])]};
 }
 
-/// Coordinates along fastest, middle and slowest axis.
+/// Coordinates along the fastest, middle and slowest axis.
 struct OrderedPos {
   std::uint32_t f, m, s;
 };

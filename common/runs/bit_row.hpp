@@ -1,12 +1,12 @@
-// Bit rows: one line of a layer as bits, in the narrowest integer that holds it. Sides up to 64 need a Row64,
-// longer ones a Row128; code that works on rows is a template over the two.
+// Bit rows: one line of a layer as bits, in the narrowest integer that holds it. Sides up to 64
+// need a Row64, longer sides a Row128. Code that works on rows is a template over the two.
 #pragma once
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
-namespace runstone::rdm {
+namespace runstone {
 
 using Row64 = std::uint64_t;
 __extension__ using Row128 = unsigned __int128;
@@ -14,13 +14,13 @@ __extension__ using Row128 = unsigned __int128;
 template <class Row>
 inline constexpr unsigned kRowBits = sizeof(Row) * 8;
 
-/// Bits [0, count) set. Requires count <= kRowBits.
+/// Returns a row with bits [0, count) set. Requires count <= kRowBits.
 template <class Row>
 constexpr Row bits_below(unsigned count) {
   return count == kRowBits<Row> ? ~Row{0} : (Row{1} << count) - 1;
 }
 
-/// Place of the lowest set bit; kRowBits<Row> if there is none.
+/// Returns the place of the lowest set bit, or kRowBits<Row> if there is none.
 constexpr unsigned lowest_bit(Row64 row) { return static_cast<unsigned>(std::countr_zero(row)); }
 constexpr unsigned lowest_bit(Row128 row) {
   const auto low = static_cast<Row64>(row);
@@ -32,7 +32,7 @@ constexpr unsigned bit_count(Row128 row) {
   return bit_count(static_cast<Row64>(row)) + bit_count(static_cast<Row64>(row >> 64));
 }
 
-/// Place of the highest set bit. Requires row != 0.
+/// Returns the place of the highest set bit. Requires row != 0.
 constexpr unsigned highest_bit(Row64 row) {
   return 63u - static_cast<unsigned>(std::countl_zero(row));
 }
@@ -41,14 +41,15 @@ constexpr unsigned highest_bit(Row128 row) {
   return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<Row64>(row));
 }
 
-/// Bit i of the result is the parity of bits [0, i] of `row`: bits that mark changes become the state itself.
+/// Bit i of the result is the parity of bits [0, i] of `row`: marks of changes become states.
 template <class Row>
 constexpr Row prefix_xor(Row row) {
   for (unsigned shift = 1; shift < kRowBits<Row>; shift *= 2) row ^= row << shift;
   return row;
 }
 
-/// Swaps rows and bits of a square of kRowBits rows. Source: recursive block swap (Hacker's Delight, 7-3).
+/// Transposes a square of kRowBits rows of bits. Source: recursive block swap (Hacker's Delight,
+/// 7-3).
 template <class Row>
 void transpose(std::array<Row, kRowBits<Row>>& rows) {
   Row mask = bits_below<Row>(kRowBits<Row> / 2);
@@ -61,4 +62,4 @@ void transpose(std::array<Row, kRowBits<Row>>& rows) {
   }
 }
 
-}  // namespace runstone::rdm
+}  // namespace runstone

@@ -1,5 +1,5 @@
-// Chunk: voxels with the version they stand at. Published once as std::shared_ptr<const Chunk>: readers never
-// lock, a write makes a new one.
+// Chunk: voxels and their version. It is published once as std::shared_ptr<const Chunk>: readers
+// never lock, and a write makes a new chunk.
 #pragma once
 #include <memory>
 
@@ -11,7 +11,7 @@ namespace runstone {
 struct Chunk {
   RunChunk voxels;
   Version version;
-  Digest digest;  // of voxels; kept in step with them, and recomputed by audits
+  Digest digest;  // of voxels; updated with each edit, recomputed by audits
   friend bool operator==(const Chunk&, const Chunk&) = default;
 };
 

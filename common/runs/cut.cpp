@@ -19,7 +19,7 @@ void append_forward(RunCursor<Runs>& cursor, VoxelIndex first, VoxelIndex last, 
   }
 }
 
-// The cursor stands at the run of voxel last - 1.
+// Requires `run` to be the run of voxel last - 1.
 template <class Runs>
 void append_backward(const Runs& runs, std::size_t run, VoxelIndex first, VoxelIndex last,
                      RunBuilder& out) {
@@ -45,7 +45,7 @@ RunChunk cut(const RunChunk& chunk, LocalPos first, Extent extent, std::uint8_t 
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   const OrderedExtent part = ordered(extent, chunk.order);
   const OrderedPos from = to_ordered(first, chunk.order);
-  // Whole lines that follow each other are one stretch, and so are whole layers.
+  // Consecutive whole lines are one stretch, and so are consecutive whole layers.
   std::uint32_t stretch = part.f, lines = part.m, layers = part.s;
   if (part.f == e.f && !turn_f && !turn_m) {
     stretch *= std::exchange(lines, 1U);

@@ -1,5 +1,5 @@
-// Dense expansion: the form Runstone exists to avoid. For oracles, tools and reference meshers only.
-// Every call is counted; the counter is zero on the server's and the client's main path (invariant 1).
+// Dense expansion, for oracles, tools and reference meshers only. Every expansion is counted. The
+// counter stays zero on the main path of server and client (invariant 1 of the design).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,16 +9,18 @@
 
 namespace runstone {
 
-/// Number of dense buffers made in this process so far. Any thread.
+/// Returns the number of dense buffers made in this process so far. Thread: any.
 std::uint64_t dense_expansions();
-/// For code that keeps dense voxels of its own (reference meshers, a foreign format's block).
+/// Counts one expansion, for code that makes dense voxels itself (reference meshers, blocks of
+/// another format).
 void count_dense_expansion();
 
-/// One material per voxel in the chunk's own index order. Counted. O(volume).
+/// Returns one material per voxel in the chunk's own index order. The expansion is counted. Cost:
+/// O(volume).
 std::vector<Material> to_dense(const RunChunk& chunk);
 
-/// Runs of a dense buffer in index order `order`. Requires voxels.size() == volume. Not counted: the caller's
-/// buffer was, if it is one. O(volume).
+/// Returns the runs of a dense buffer in index order `order`. Requires voxels.size() == volume. It
+/// is not counted, because the caller already counted its buffer. Cost: O(volume).
 RunChunk from_dense(Extent extent, AxisOrder order, std::span<const Material> voxels);
 
 }  // namespace runstone

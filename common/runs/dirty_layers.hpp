@@ -8,9 +8,9 @@
 
 namespace runstone {
 
-/// Layers in which a voxel changed, per axis x, y, z: bit i is the layer with that coordinate = i. The faces
-/// to mesh again lie in these layers and, per axis, one layer to either side (in the neighbour chunk at the
-/// border).
+/// The layers in which a voxel changed, per axis x, y, z: bit i is the layer with that coordinate =
+/// i. The faces to mesh again lie in these layers and, per axis, one layer to either side (in the
+/// neighbour chunk at the border).
 struct DirtyLayers {
   std::array<std::bitset<kSideMax>, 3> layer;
   bool any() const { return layer[0].any(); }

@@ -1,4 +1,5 @@
-// Extent: the sides of a cuboid of voxels. World chunks are cubes; other cuboids live in the library only.
+// Extent: the sides of a cuboid of voxels. World chunks are cubes; the library also takes other
+// cuboids.
 #pragma once
 #include <array>
 #include <compare>
@@ -9,7 +10,7 @@ namespace runstone {
 inline constexpr unsigned kSideMin = 8;
 inline constexpr unsigned kSideMax = 128;
 
-/// Place of a voxel in its flattened chunk, in the chunk's own axis order.
+/// Index of a voxel in its flattened chunk, in the chunk's own axis order.
 using VoxelIndex = std::uint32_t;
 
 struct Extent {
@@ -21,9 +22,10 @@ struct Extent {
            static_cast<std::uint32_t>(z);
   }
   constexpr std::array<std::uint8_t, 3> sides() const { return {x, y, z}; }
-  /// Of a chunk.
+  /// Returns true if a chunk may have this extent.
   constexpr bool valid() const { return sides_from(kSideMin); }
-  /// Of a cuboid that is no chunk of its own: a part of one, a clipboard. Sides 1 .. kSideMax.
+  /// Returns true if a cuboid that is no chunk may have this extent, such as a part of a chunk or a
+  /// clipboard: sides 1 .. kSideMax.
   constexpr bool valid_part() const { return sides_from(1); }
   static constexpr Extent cube(unsigned edge) {
     const auto side = static_cast<std::uint8_t>(edge);

@@ -9,13 +9,14 @@ namespace {
 
 using Bits = std::bitset<kSideMax>;
 
-/// Bits first .. last, both included.
+/// Returns bits first .. last, both included.
 Bits bit_range(std::uint32_t first, std::uint32_t last) {
   return (~Bits{} >> (kSideMax - 1 - (last - first))) << first;
 }
 
-/// Places that a stretch touches which begins at place `first` of a turn of `size` places and ends at `last`
-/// of the same or the next turn. `full_turn`: it is a turn long or longer.
+/// Returns the places that a stretch touches on a ring of `size` places. The stretch begins at
+/// place `first` and ends at place `last`, on the same or the next round. `full_turn`: the stretch
+/// has at least `size` places.
 Bits ring_range(std::uint32_t first, std::uint32_t last, std::uint32_t size, bool same_turn,
                 bool full_turn) {
   if (full_turn) return bit_range(0, size - 1);
@@ -58,7 +59,8 @@ void walk(const A& a, const B& b, SpanMarker& marker) {
   std::size_t i = 0;
   std::size_t j = 0;
   std::uint32_t at = 0;
-  std::uint32_t open = 0;  // start of the differing stretch [open, at) not yet marked
+  // Start of the differing stretch [open, at) that is not yet marked.
+  std::uint32_t open = 0;
   while (i < a.size() && j < b.size()) {
     const std::uint32_t end = std::min(a.end(i), b.end(j));
     if (a.material(i) == b.material(j)) {

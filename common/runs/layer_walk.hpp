@@ -1,5 +1,5 @@
-// Walks one layer of a chunk stretch by stretch, whatever the layer's axis, with one forward cursor.
-// An axis is named by its rank in the chunk's order: 0 fastest, 1 middle, 2 slowest.
+// Walks one layer of a chunk stretch by stretch with one forward cursor, for each axis of the
+// layer. An axis is named by its rank in the chunk's order: 0 fastest, 1 middle, 2 slowest.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace runstone {
 
-/// Calls stretch(slow, first, last, material) for stretches of one material that tile the layer in index
-/// order. Of the two other axes, `slow` is the coordinate along the slower one and [first, last) lies along
-/// the faster one. Requires at < side(rank). O(rows + runs that touch the layer), plus a galloping seek a row
-/// for ranks 0 and 1.
+/// Calls stretch(slow, first, last, material) for stretches of one material that tile the layer in
+/// index order. Of the two other axes, `slow` is the coordinate along the slower one, and [first,
+/// last) lies along the faster one. Requires at < side(rank). Cost: O(rows + runs that touch the
+/// layer), plus a galloping seek per row for ranks 0 and 1.
 template <class Runs, class F>
 void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stretch) {
   RunCursor<Runs> cursor(runs);
-  if (rank == 2) {  // contiguous
+  if (rank == 2) {  // the layer is contiguous
     cursor.seek(at * e.layer());
     for (std::uint32_t m = 0; m < e.m; ++m) {
       const std::uint32_t line = at * e.layer() + m * e.f;
@@ -43,7 +43,8 @@ void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stre
     return;
   }
   for (std::uint32_t s = 0; s < e.s;
-       ++s) {  // one voxel of every line; a long run covers many lines at once
+       // One voxel of every line. A long run covers many lines at once.
+       ++s) {
     const std::uint32_t base = s * e.layer() + at;
     for (std::uint32_t m = 0; m < e.m;) {
       const std::uint32_t voxel = base + m * e.f;
@@ -56,7 +57,7 @@ void walk_layer(Runs runs, OrderedExtent e, int rank, std::uint32_t at, F&& stre
   }
 }
 
-/// Rank of an axis in an order.
+/// Returns the rank of an axis in an order.
 constexpr int rank_of(Axis axis, AxisOrder order) {
   const auto axes = axes_of(order);
   return axes[0] == axis ? 0 : axes[1] == axis ? 1 : 2;

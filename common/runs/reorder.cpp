@@ -11,14 +11,16 @@
 namespace runstone {
 namespace {
 
-/// A pair of cursors over the same runs that compares voxels with those `behind` before them.
+/// Two cursors over the same runs, which compare each voxel with the voxel `behind` places before
+/// it.
 template <class Runs>
 class Lookback {
  public:
   Lookback(Runs runs, std::uint32_t behind) : lead_(runs), lag_(runs), behind_(behind) {}
 
-  /// Calls differs(i, j, material) for the stretches [i, j) of [from, to) whose material is not the one
-  /// `behind` earlier. Requires behind <= from and calls in ascending order.
+  /// Calls differs(i, j, material) for the stretches [i, j) of [from, to) whose material differs
+  /// from the material `behind` places earlier. Requires behind <= from, and calls in ascending
+  /// order.
   template <class F>
   void compare(std::uint32_t from, std::uint32_t to, F&& differs) {
     if (from >= to) return;
@@ -41,9 +43,9 @@ class Lookback {
   std::uint32_t behind_;
 };
 
-/// Calls start(line, f0, f1, material) for all voxels that have no predecessor along the axis of `rank`, or
-/// one of another material: stretches [f0, f1) of line `line` (= m + s * e.m), in index order. So the starts
-/// that lie on one line of the axis of `rank` come in ascending order.
+/// Calls start(line, f0, f1, material) for all voxels without a predecessor along the axis of
+/// `rank`, or with a predecessor of another material. They come as stretches [f0, f1) of line
+/// `line` (= m + s * e.m), in index order. So the starts on one line of the axis of `rank` ascend.
 template <class Runs, class F>
 void for_each_start(Runs runs, OrderedExtent e, int rank, F&& start) {
   if (rank == 0) {
@@ -67,8 +69,8 @@ void for_each_start(Runs runs, OrderedExtent e, int rank, F&& start) {
     }
   };
   const std::uint32_t behind = rank == 1 ? e.f : e.layer();
-  const std::uint32_t block =
-      rank == 1 ? e.layer() : e.volume();  // predecessors never cross a block
+  // Predecessors never cross a block.
+  const std::uint32_t block = rank == 1 ? e.layer() : e.volume();
   RunCursor<Runs> first(runs);
   Lookback<Runs> rest(runs, behind);
   for (std::uint32_t base = 0; base < e.volume(); base += block) {
@@ -97,11 +99,13 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
   };
   const std::uint32_t side = sides[rank(0)];
   const std::uint32_t lines = volume / side;
-  std::array<std::uint32_t, 3> step{};  // in line numbers of the new order, by old rank
+  // Step in line numbers of the new order, by old rank.
+  std::array<std::uint32_t, 3> step{};
   step[rank(1)] = 1;
   step[rank(2)] = sides[rank(1)];
 
-  // A counting sort of the starts by new line. They arrive ascending within each, so two sweeps suffice.
+  // A counting sort of the starts by new line. The starts of each line arrive in ascending order,
+  // so two sweeps suffice.
   std::vector<std::uint32_t> place(lines + 1, 0);
   for_each_start(runs, e, ranks[0],
                  [&](std::uint32_t line, std::uint32_t f0, std::uint32_t f1, Material) {
@@ -126,11 +130,13 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
   for (std::size_t i = 1; i < starts.size(); ++i)
     count += starts[i].material != starts[i - 1].material;
   RunList out(volume);
-  out.reserve(count);  // exact: chunks are made once and kept long
+  // The count is exact: chunks are made once and kept long.
+  out.reserve(count);
   Material open = starts[0].material;
   std::size_t i = 0;
   for (std::uint32_t line = 0; line < lines; ++line) {
-    for (; i < place[line]; ++i) {  // filled up, place[line] has become the end of its line
+    // After the sort, place[line] is the end of its line.
+    for (; i < place[line]; ++i) {
       if (starts[i].material == open) continue;
       out.push_back({line * side + starts[i].at, open});
       open = starts[i].material;
@@ -140,13 +146,15 @@ RunList reordered(Runs runs, OrderedExtent e, std::array<int, 3> ranks, std::uin
   return out;
 }
 
-/// Places where two lines of an axis that follow each other in an order meet with different materials.
+/// The number of places where two lines that are consecutive in an order meet with different
+/// materials.
 struct Seams {
-  std::uint32_t faster_next = 0;  // the faster other axis is the middle one of the order
+  // For the orders in which the faster of the other two axes is the middle one, and for the others.
+  std::uint32_t faster_next = 0;
   std::uint32_t slower_next = 0;
 };
 
-/// The layer where lines of `rank` begin is held, the one where they end is walked.
+/// Keeps the layer where the lines of `rank` begin, and walks the layer where they end.
 template <class Runs>
 Seams seams(Runs runs, OrderedExtent e, int rank, std::span<Material> begins) {
   const std::uint32_t n = rank == 0 ? e.m : e.f;  // along the faster of the other axes
@@ -159,13 +167,13 @@ Seams seams(Runs runs, OrderedExtent e, int rank, std::span<Material> begins) {
   Seams out;
   walk_layer(runs, e, rank, side - 1,
              [&](std::uint32_t slow, std::uint32_t a, std::uint32_t b, Material ending) {
-               // Line (slow, v) is followed by (slow, v + 1), or at the end of the row by (slow + 1, 0): the
-               // next slot.
+               // Line (slow, v) is followed by (slow, v + 1), or at the end of the row by (slow +
+               // 1, 0): by the next slot.
                const std::uint32_t row = slow * n;
                const std::uint32_t stop = std::min(row + b + 1, n * k);
                for (std::uint32_t i = row + a + 1; i < stop; ++i)
                  out.faster_next += begins[i] != ending;
-               // In the other order by (slow + 1, v), or from the last row by (0, v + 1).
+               // The other order continues at (slow + 1, v), or from the last row at (0, v + 1).
                if (slow + 1 < k) {
                  for (std::uint32_t v = a; v < b; ++v)
                    out.slower_next += begins[row + n + v] != ending;
@@ -177,7 +185,7 @@ Seams seams(Runs runs, OrderedExtent e, int rank, std::span<Material> begins) {
   return out;
 }
 
-/// Pairs of neighbours along the axis of `rank` that differ.
+/// Returns the number of pairs of neighbours along the axis of `rank` that differ.
 template <class Runs>
 std::uint32_t differences(Runs runs, OrderedExtent e, int rank) {
   std::uint32_t sum = 0;

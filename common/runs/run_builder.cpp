@@ -24,7 +24,8 @@ RunChunk RunBuilder::finish() {
   flush();
   filled_ = 0;
   RunChunk out = std::move(chunk_);
-  chunk_.runs.clear();  // moved from, but still of the form that the volume asks for
+  // The list was moved from but keeps the form that the volume requires.
+  chunk_.runs.clear();
   return out;
 }
 

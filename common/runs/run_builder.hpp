@@ -1,5 +1,5 @@
-// RunBuilder: appends stretches in index order and merges equal neighbours, so the result is canonical.
-// The one way in which generators, decoders and the edit sweep make chunks.
+// RunBuilder: appends stretches in index order and merges equal neighbours, so the result is
+// canonical. Generators, decoders and the edit sweep make all their chunks with it.
 #pragma once
 #include <cstdint>
 
@@ -11,21 +11,22 @@ class RunBuilder {
  public:
   RunBuilder(Extent extent, AxisOrder order);
 
-  /// Voxels appended so far.
+  /// Returns the number of voxels appended so far.
   std::uint32_t filled() const { return filled_; }
-  /// Appends `count` voxels (0 is allowed and does nothing). Requires filled() + count <= volume. O(1)
-  /// amortised.
+  /// Appends `count` voxels; 0 is allowed and does nothing. Requires filled() + count <= volume.
+  /// Cost: O(1) amortised.
   void append(std::uint32_t count, Material material);
   /// Appends voxels up to index `end`. Requires filled() <= end <= volume.
   void append_to(std::uint32_t end, Material material) { append(end - filled_, material); }
-  /// Requires filled() == volume. The builder is empty afterwards.
+  /// Returns the chunk and leaves the builder empty. Requires filled() == volume.
   RunChunk finish();
 
  private:
   void flush();
   RunChunk chunk_;
   std::uint32_t filled_ = 0;
-  Material open_ = kEmpty;  // material of the run still growing; meaningful while filled_ > 0
+  // Material of the run that still grows. Meaningful while filled_ > 0.
+  Material open_ = kEmpty;
 };
 
 }  // namespace runstone

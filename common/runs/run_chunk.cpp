@@ -15,11 +15,13 @@ RunChunk uniform_chunk(Extent extent, Material material, AxisOrder order) {
 
 namespace {
 
-/// First run from `low` on that ends behind `voxel`. Requires low < size and that no run before `low` does.
+/// Returns the first run from `low` on that ends behind `voxel`. Requires low < size, and that no
+/// run before `low` ends behind `voxel`.
 template <class Runs>
 std::size_t find_run_in(const Runs& runs, VoxelIndex voxel, std::size_t low = 0) {
   std::size_t count = runs.size() - low;
-  // Halving without a branch on the comparison: where an edit lands is unpredictable.
+  // The search halves the range without a branch on the comparison, because the place of an edit is
+  // unpredictable.
   while (count > 1) {
     const std::size_t half = count / 2;
     low += runs.end(low + half - 1) <= voxel ? half : 0;
@@ -28,7 +30,7 @@ std::size_t find_run_in(const Runs& runs, VoxelIndex voxel, std::size_t low = 0)
   return low;
 }
 
-/// What a fill replaces, and by what.
+/// The runs that a fill replaces, and their replacement.
 struct FillPlan {
   std::size_t from = 0, before = 0;  // edit index and edit area
   std::array<Run, 3> with{};
@@ -42,7 +44,7 @@ FillPlan plan_fill(const Runs& runs, VoxelIndex first, VoxelIndex last, Material
   if (from == to && runs.material(from) == material) return {};
   const auto begin = [&](std::size_t i) { return i == 0 ? 0 : runs.end(i - 1); };
 
-  // Neighbours of the same material melt into the new run, so that the list stays canonical.
+  // Neighbours of the same material merge with the new run, so that the list stays canonical.
   if (first == begin(from) && from > 0 && runs.material(from - 1) == material) --from;
   if (last == runs.end(to) && to + 1 < runs.size() && runs.material(to + 1) == material) ++to;
   const std::uint32_t area_begin = begin(from);
@@ -115,9 +117,9 @@ Result<void> validate_runs(const RunChunk& chunk) {
 
 namespace {
 
-/// Sum of A[x] * B[y] * C[z] over the first i voxels of the flattened chunk. They are whole layers, whole
-/// lines of one layer and part of one line: three boxes, two of which stay while the walk stays on one line.
-/// A span is the difference of two such sums.
+/// Sum of A[x] * B[y] * C[z] over the first i voxels of the flattened chunk. These voxels are whole
+/// layers, whole lines of one layer and part of one line: three boxes. Two of the boxes stay the
+/// same while i stays on one line. The sum over a span is the difference of two such sums.
 class PrefixDigest {
  public:
   PrefixDigest(Extent extent, AxisOrder order) : e_(ordered(extent, order)) {
@@ -146,14 +148,15 @@ class PrefixDigest {
  private:
   struct Lane {
     const std::uint64_t *f, *m, *s;  // prefix sums by rank
-    std::uint64_t layer;             // all of f times all of m
+    std::uint64_t layer;             // sum of f times sum of m
     std::uint64_t before;            // whole layers and lines before the current line
-    std::uint64_t factor;            // what a voxel of the current line is multiplied with
+    std::uint64_t factor;            // the factor of each voxel of the current line
   };
 
   void move_to(std::uint32_t line) {
     line_ = line;
-    const std::uint32_t s = line / e_.m;  // one past the last layer at the very end of the chunk
+    // At the very end of the chunk, this is one past the last layer.
+    const std::uint32_t s = line / e_.m;
     const std::uint32_t m = line - s * e_.m;
     for (Lane& lane : lanes_) {
       const std::uint64_t of_s = m61::sub(lane.s[s + 1], lane.s[s]);

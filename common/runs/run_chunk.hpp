@@ -1,10 +1,14 @@
-// RunChunk: the voxels of one chunk, kept as runs in index order. The one form for disk, memory, wire and
-// mesh. Invariants (validate() checks them; the codec, the edits and the mesher rely on them):
-//   - the extent is valid, the run list has the form its volume asks for, and there is at least one run;
+// RunChunk: the voxels of one chunk, kept as runs in index order. Disk, memory, wire and mesher
+// share this form. Invariants (validate() checks them; the codec, the edits and the mesher rely on
+// them):
+//   - the extent is valid, the run list has the form its volume asks for, and there is at least one
+//     run;
 //   - run ends ascend strictly and the last one is the volume, so the runs tile the chunk exactly;
-//   - neighbouring runs differ in material, so equal voxels in equal axis order have equal runs (canonical).
-// Threads: const access from anywhere; a mutable RunChunk belongs to one thread.
-// Source: thesis 7.3 (runs over the flattened grid, crossing lines and layers).
+//   - neighbouring runs differ in material, so equal voxels in equal axis order have equal runs
+//     (canonical).
+//
+// Thread: const access from any thread; a mutable RunChunk belongs to one thread. Source: thesis
+// 7.3 (runs over the flattened grid, crossing lines and layers).
 #pragma once
 #include <cstdint>
 
@@ -27,39 +31,43 @@ struct RunChunk {
   friend bool operator==(const RunChunk&, const RunChunk&) = default;
 };
 
-/// Chunk of one material: a single run.
+/// Returns a chunk of one material: a single run.
 RunChunk uniform_chunk(Extent extent, Material material, AxisOrder order = AxisOrder::xyz);
 
-/// Index of the run that covers `voxel`. Requires voxel < volume. O(log runs).
+/// Returns the index of the run that covers `voxel`. Requires voxel < volume. Cost: O(log runs).
 std::size_t find_run(const RunChunk& chunk, VoxelIndex voxel);
 
-/// Material at a local position inside the extent. O(log runs).
+/// Returns the material at a local position. Requires a position inside the extent. Cost: O(log
+/// runs).
 Material material_at(const RunChunk& chunk, LocalPos at);
 
-/// What fill() did to the run list: runs [first, first + before) became runs [first, first + after).
-/// `first` is the edit index of the thesis, the runs replaced its edit area (7.3.3).
+/// The change that fill() made to the run list: runs [first, first + before) became runs [first,
+/// first + after). `first` is the edit index of the thesis, and the replaced runs are its edit area
+/// (7.3.3).
 struct EditArea {
   std::uint32_t first = 0, before = 0, after = 0;
   friend bool operator==(const EditArea&, const EditArea&) = default;
 };
 
-/// Sets voxels [first, first + count) of the flattened chunk to `material`, splitting and merging runs.
-/// Returns whether any voxel changed; then `area`, if given, says which runs were replaced.
-/// Requires 0 < count and first + count <= volume. O(log runs + runs moved).
+/// Sets voxels [first, first + count) of the flattened chunk to `material`, splitting and merging
+/// runs. Returns true if any voxel changed; then `area`, if given, names the replaced runs.
+/// Requires 0 < count and first + count <= volume. Cost: O(log runs + runs moved).
 bool fill(RunChunk& chunk, VoxelIndex first, std::uint32_t count, Material material,
           EditArea* area = nullptr);
 
-/// Names the first broken invariant; the offset is the run index. Bytes from outside pass here before use.
+/// Fails with the first broken invariant; the offset of the error is the run index. Bytes from
+/// outside pass this check before use.
 Result<void> validate(const RunChunk& chunk);
-/// The same but for the extent, which may be that of a part: for runs that are no chunk (a clipboard's cells).
+/// Checks the same except the extent, which may be that of a part: for runs that are no chunk, such
+/// as the cells of a clipboard.
 Result<void> validate_runs(const RunChunk& chunk);
 
-/// Digest from scratch. A run is at most five boxes, or the difference of two prefix sums over whole layers,
-/// whole lines and part of a line, as it is computed here: O(runs).
+/// Returns the digest, computed from scratch. A run is at most five boxes. Here each run is the
+/// difference of two prefix sums over whole layers, whole lines and part of a line. Cost: O(runs).
 Digest digest_of(const RunChunk& chunk);
 
-/// Digest of voxels [first, last) of the flattened chunk as if all were `material`. O(1).
-/// Lets a digest follow an edit: new = old - span(old material) + span(new material).
+/// Returns the digest of voxels [first, last) of the flattened chunk as if all were `material`. A
+/// digest follows an edit with it: new = old - span(old material) + span(new material). Cost: O(1).
 Digest digest_of_span(const RunChunk& shape, VoxelIndex first, VoxelIndex last, Material material);
 
 }  // namespace runstone

@@ -1,4 +1,5 @@
-// RunCursor: walks a chunk's runs forward. Reading voxel by voxel or stretch by stretch costs O(1) amortised.
+// RunCursor: walks a chunk's runs forward. Reading voxel by voxel or stretch by stretch costs O(1)
+// amortised.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -19,13 +20,13 @@ class RunCursor {
   Material material() const { return runs_.material(run_); }
   std::uint32_t end() const { return runs_.end(run_); }
   bool last() const { return run_ + 1 == runs_.size(); }
-  /// Steps to the next run. Requires !last().
+  /// Advances to the next run. Requires !last().
   void next() {
     RUNSTONE_DASSERT(!last());
     ++run_;
   }
-  /// Moves forward to the run that covers `voxel`. Requires voxel not before the current run and below the
-  /// volume. Gallops, then bisects: O(log distance).
+  /// Moves forward to the run that covers `voxel`. Requires a voxel that is not before the current
+  /// run and lies below the volume. Gallops, then bisects. Cost: O(log distance).
   void seek(std::uint32_t voxel) {
     std::size_t step = 1;
     std::size_t low = run_;
@@ -33,7 +34,8 @@ class RunCursor {
       low += step;
       step *= 2;
     }
-    // Either run low + step - 1 ends behind the voxel, or the search left the list and the last run does.
+    // Either run low + step - 1 ends behind the voxel, or the search reached the end of the list
+    // and the last run does.
     std::size_t high = std::min(low + step, runs_.size()) - 1;
     while (low < high) {
       const std::size_t mid = low + (high - low) / 2;
@@ -46,8 +48,9 @@ class RunCursor {
     run_ = low;
   }
 
-  /// Moves to the run that covers `voxel`, wherever the cursor is. Requires voxel below the volume. Bisects
-  /// without a branch to foresee: O(log runs), and cheaper than seek() where the way is long.
+  /// Moves forward or back to the run that covers `voxel`. Requires voxel below the volume. It
+  /// bisects without an unpredictable branch and is cheaper than seek() over long distances. Cost:
+  /// O(log runs).
   void jump(std::uint32_t voxel) {
     std::size_t low = 0;
     for (std::size_t count = runs_.size(); count > 1;) {

@@ -59,7 +59,8 @@ void RunList::push_back(Run run) {
 
 namespace {
 
-// Overwrites what both have, then inserts or erases the difference: one move of the tail.
+// Overwrites the part that both ranges have, then inserts or erases the difference: the tail moves
+// once.
 template <class Vector, class Get>
 void splice_vector(Vector& v, std::size_t first, std::size_t count, std::span<const Run> with,
                    Get get) {

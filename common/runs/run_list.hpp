@@ -1,8 +1,8 @@
 // RunList: the runs of one chunk in the narrowest form that holds its ends.
 //   volume <= 65,535: one vector of PackedRun (u16 end, u16 material), 4 bytes a run
 //   larger:           two vectors (u32 ends, u16 materials), 6 bytes a run
-// Both forms are also the bytes of the `raw` wire encoding, so a snapshot is read in place.
-// A RunList does not check that its runs are canonical; RunChunk's validate() and RunBuilder do.
+// Both forms are also the bytes of the `raw` wire encoding, so a snapshot is read in place. A
+// RunList does not check that its runs are canonical; RunChunk's validate() and RunBuilder do.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace runstone {
 
-/// A run by value: it covers [end of the run before it, end).
+/// A run by value: it covers [end of the previous run, end).
 struct Run {
   std::uint32_t end = 0;
   Material material = kEmpty;
@@ -33,8 +33,8 @@ static_assert(sizeof(PackedRun) == 4);
 
 inline constexpr std::uint32_t kNarrowVolumeMax = 65535;
 
-/// Read-only views with one shape, so that hot code is a template over the form and branches outside its
-/// loop.
+/// Read-only views with one interface. Hot code is a template over the view, so the branch on the
+/// form is outside its loop.
 class NarrowRuns {
  public:
   explicit NarrowRuns(std::span<const PackedRun> runs) : runs_(runs) {}
@@ -64,9 +64,9 @@ class WideRuns {
 
 class RunList {
  public:
-  /// Empty list in the form that `volume` asks for.
+  /// Makes an empty list in the form that `volume` requires.
   explicit RunList(std::uint32_t volume = 0);
-  /// Takes vectors that a decoder filled. As everywhere here, nothing is checked: validate() the chunk.
+  /// Takes vectors that a decoder filled. They are not checked: validate() the chunk.
   static RunList of_narrow(std::vector<PackedRun> runs);
   /// Requires as many ends as materials.
   static RunList of_wide(std::vector<std::uint32_t> ends, std::vector<Material> materials);
@@ -76,17 +76,17 @@ class RunList {
   std::uint32_t end(std::size_t i) const;
   Material material(std::size_t i) const;
   Run operator[](std::size_t i) const { return {end(i), material(i)}; }
-  /// First voxel of run i.
+  /// Returns the first voxel of run i.
   std::uint32_t begin(std::size_t i) const { return i == 0 ? 0 : end(i - 1); }
 
   void clear();
   void reserve(std::size_t runs);
   /// Requires run.end to fit the form. Does not merge.
   void push_back(Run run);
-  /// Replaces runs [first, first + count) by `with`. O(runs behind them).
+  /// Replaces runs [first, first + count) by `with`. Cost: O(runs behind them).
   void splice(std::size_t first, std::size_t count, std::span<const Run> with);
 
-  /// Calls f with NarrowRuns or WideRuns; the view dies with the call.
+  /// Calls f with NarrowRuns or WideRuns. The view is invalid after the call.
   template <class F>
   decltype(auto) visit(F&& f) const {
     if (const auto* narrow = std::get_if<Narrow>(&form_))
@@ -95,9 +95,9 @@ class RunList {
     return std::forward<F>(f)(WideRuns{wide.ends, wide.materials});
   }
 
-  /// Bytes of run storage in use (4 or 6 a run), without spare capacity.
+  /// Returns the bytes of run storage in use (4 or 6 a run), without spare capacity.
   std::size_t byte_size() const { return size() * (is_narrow() ? 4 : 6); }
-  /// Bytes of run storage held, spare capacity included.
+  /// Returns the bytes of run storage allocated, spare capacity included.
   std::size_t byte_capacity() const;
   void shrink_to_fit();
 

@@ -1,5 +1,6 @@
-// Span boxes: a stretch of a flattened chunk as boxes. It is part of a line, whole lines, whole layers, whole
-// lines and part of a line, so at most five (thesis 7.3); fewer where it begins or ends with a line or layer.
+// Span boxes: a stretch of a flattened chunk as boxes, in order: part of a line, whole lines, whole
+// layers, whole lines, part of a line. So there are at most five (thesis 7.3), and fewer if the
+// stretch begins or ends with a line or layer.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,20 +10,20 @@
 
 namespace runstone {
 
-/// Along fastest, middle and slowest axis; half-open, not empty.
+/// A half-open, non-empty box along the fastest, middle and slowest axis.
 struct OrderedBox {
   std::array<std::uint32_t, 3> first{}, last{};
 };
 
-/// Calls f(box) for the boxes of voxels [first, last), in index order. O(1).
+/// Calls f(box) for the boxes of voxels [first, last), in index order. Cost: O(1).
 template <class F>
 void for_each_box(OrderedExtent e, VoxelIndex first, VoxelIndex last, F&& f) {
   while (first < last) {
     const std::uint32_t line = first / e.f;
     const std::uint32_t at = first - line * e.f;
     const std::uint32_t m = line % e.m, s = line / e.m;
-    const std::uint32_t lines =
-        (last - first) / e.f;  // whole ones, if the stretch begins with a line
+    // Whole lines, if the stretch begins with a line.
+    const std::uint32_t lines = (last - first) / e.f;
     VoxelIndex end = 0;
     if (at != 0 || lines == 0) {
       end = std::min(last, first - at + e.f);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/record_checksum.hpp"
 
 namespace runstone {
 

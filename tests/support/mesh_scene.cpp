@@ -41,12 +41,12 @@ const MaterialTable& many_materials() {
 }
 
 const VisibilityTable& mesh_visibility() {
-  static const VisibilityTable table(mesh_materials());
+  static const VisibilityTable table(visibilities(mesh_materials()));
   return table;
 }
 
 const VisibilityTable& many_visibility() {
-  static const VisibilityTable table(many_materials());
+  static const VisibilityTable table(visibilities(many_materials()));
   return table;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
+#include "common/materials/material_table.hpp"
 #include "common/mesh/chunk_mesh.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/run_chunk.hpp"

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/materials/material_table.hpp"
 #include "tests/reference/monotone_mesher.hpp"
 #include "tests/reference/poly2tri_mesher.hpp"
 #include "tests/support/mesh_scene.hpp"

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdlib>
 #include <set>
+#include <span>
 
 #include "common/generate/columns_world.hpp"
 #include "common/generate/scenarios/scenario_world.hpp"
@@ -40,7 +41,8 @@ std::unique_ptr<Generator> scenario_generator(unsigned number, unsigned edge) {
 }
 
 const VisibilityTable& scenario_visibility() {
-  static const VisibilityTable table{MaterialTable()};  // ids beyond a table are opaque
+  // Every id is opaque: the table has no entry.
+  static const VisibilityTable table(std::span<const Visibility>{});
   return table;
 }
 

@@ -1,6 +1,6 @@
-// ApplyScratch: what apply_stack() keeps between calls, so that a steady state allocates nothing (but for a
-// paste, whose part in the chunk is cut out anew). Callers
-// make one per thread and hand it in; what lies in it concerns common/edits alone.
+// ApplyScratch: the buffers that apply_stack() keeps between calls. With them a steady state
+// allocates nothing, except for a paste, whose part in the chunk is cut out in each call. Callers
+// make one per thread and pass it in; its contents concern common/edits alone.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,22 +15,25 @@
 
 namespace runstone {
 
-/// One edit of a stack, one segment of a stroke or one box of a paste, clipped to the chunk at hand.
+/// One edit of a stack, one segment of a stroke or one box of a paste, clipped to the current
+/// chunk.
 struct StackedEdit {
   OrderedShape shape;
   Mask mask;
   Material material = kEmpty;
 };
 
-/// Voxels [first, last) of the flattened chunk become `material`; none of them was that before.
+/// Voxels [first, last) of the flattened chunk become `material`. None of them had that material
+/// before.
 struct Change {
   VoxelIndex first = 0, last = 0;
   Material material = kEmpty;
   friend bool operator==(const Change&, const Change&) = default;
 };
 
-/// g(material) of both digest lanes, remembered for the materials met lately (direct-mapped by the low bits).
-/// All zero is a valid start: slot 0 then holds g(kEmpty) = 0, and no other slot is asked for material 0.
+/// Caches g(material) of both digest lanes for recent materials, direct-mapped by the low bits. All
+/// zero is a valid start: slot 0 then holds g(kEmpty) = 0, and no other slot is asked for material
+/// 0.
 class MaterialFactors {
  public:
   using Lanes = std::array<std::uint64_t, kDigestLanes>;
@@ -54,8 +57,8 @@ class MaterialFactors {
   std::array<Slot, kSlots> slots_{};
 };
 
-/// Voxels [first, last) of one line that edit `edit` of the stack covers; `next` chains the entries of a line
-/// from the bottom of the stack to its top.
+/// Voxels [first, last) of one line that edit `edit` of the stack covers. `next` chains the entries
+/// of a line from the bottom of the stack to its top.
 struct LineEntry {
   std::uint32_t next = 0;  // entry number + 1; 0 ends the chain
   std::uint32_t edit = 0;
@@ -63,16 +66,16 @@ struct LineEntry {
 };
 
 struct ApplyScratch {
-  std::vector<StackedEdit> stack;       // the edits that may touch the chunk, bottom first
-  std::vector<IndexSpan> spans;         // of a single edit
-  std::vector<Change> changes;          // ascending, disjoint
-  std::vector<Run> runs;                // new runs of all edit areas, one after another
-  std::vector<Run> whole;               // the same with the kept runs between them
-  std::vector<EditArea> areas;          // of write_changes(); apply_stack() has its result's
-  std::vector<std::uint64_t> active;    // the active set: bit i is edit i of `stack`
+  std::vector<StackedEdit> stack;     // the edits that may touch the chunk, bottom first
+  std::vector<IndexSpan> spans;       // of a single edit
+  std::vector<Change> changes;        // ascending, disjoint
+  std::vector<Run> runs;              // new runs of all edit areas, one after another
+  std::vector<Run> whole;             // the same, with the kept runs between them
+  std::vector<EditArea> areas;        // of write_changes(); apply_stack() uses those of its result
+  std::vector<std::uint64_t> active;  // the active set: bit i is edit i of `stack`
   std::vector<std::uint32_t> starting;  // chains of edits by the layer where they begin
-  std::vector<std::uint32_t> ending;    // ... and end
-  std::vector<LineEntry> entries;       // of the layer at hand
+  std::vector<std::uint32_t> ending;    // chains of edits by the layer where they end
+  std::vector<LineEntry> entries;       // of the current layer
   LayerPlan plan;                       // of the layer painter
   LayerCanvas canvas;
   std::vector<std::uint32_t> program;  // edits to be evaluated over a stretch, bottom first

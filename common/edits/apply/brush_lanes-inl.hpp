@@ -1,5 +1,5 @@
-// Brush: one edit's mask and material as vectors, drawn over stretches of a line without a branch that depends
-// on either. Included once per instruction set, inside no namespace.
+// Brush: the mask and the material of one edit as vectors. It draws over stretches of a line
+// without a branch on mask or material. Included once per instruction set, inside no namespace.
 #if defined(RUNSTONE_EDITS_BRUSH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_EDITS_BRUSH_LANES_INL
 #undef RUNSTONE_EDITS_BRUSH_LANES_INL
@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// As many voxels as a vector holds, at most those of a canvas block.
+/// As many voxels as a vector holds, at most the voxels of a canvas block.
 using Voxels = hn::CappedTag<Material, LayerCanvas::kBlock>;
 
 class Brush {
@@ -34,13 +34,13 @@ class Brush {
 
   static std::int32_t lanes() { return static_cast<std::int32_t>(hn::Lanes(Voxels())); }
 
-  /// Draws voxels [first, last) of a line of the canvas; nothing if last <= first. Reads and writes whole
-  /// vectors around them.
+  /// Draws voxels [first, last) of a line of the canvas, and nothing if last <= first. Reads and
+  /// writes whole vectors around them.
   HWY_INLINE void stroke(Material* line, std::int32_t first, std::int32_t last) const {
     for (std::int32_t at = first & -lanes(); at < last; at += lanes())
       stroke_at(at, line, first, last);
   }
-  /// The same where a line has at most lanes() voxels.
+  /// Draws the same for a line of at most lanes() voxels.
   HWY_INLINE void stroke_short(Material* line, std::int32_t first, std::int32_t last) const {
     stroke_at(0, line, first, last);
   }
@@ -63,11 +63,13 @@ class Brush {
     hn::Store(hn::IfThenElse(written, hn::Set(voxels, material_), present), voxels, line + at);
   }
 
-  // A voxel is written if (present & looked_at) == wanted, or where refused is 1, if not.
+  // A voxel is written if (present & looked_at) == wanted. If refused is 1, it is written if they
+  // differ.
   Material material_, looked_at_, wanted_, refused_;
 };
 
-/// Sets [from, stop), and up to a vector behind: runs are unpacked in ascending order, so the next one mends it.
+/// Sets [from, stop) and up to a vector behind. Runs are unpacked in ascending order, so the next
+/// run overwrites the excess.
 inline void fill_ahead(Material* from, const Material* stop, Material material) {
   const auto v = hn::Set(Voxels(), material);
   for (; from < stop; from += Brush::lanes()) hn::StoreU(v, Voxels(), from);

@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-// The digest's axis sums from 0 up to each coordinate. Asked for once: the tally needs two per changed
-// stretch.
+// The digest's axis sums from 0 up to each coordinate. They are computed once, because the tally
+// needs two per changed stretch.
 struct AxisSums {
   using PrefixSums = std::array<std::uint64_t, kSideMax + 1>;
   std::array<std::array<PrefixSums, 3>, kDigestLanes> sums;
@@ -44,12 +44,12 @@ constexpr std::uint64_t reduce_wide(Wide v) {
   return m61::add(m61::reduce(low), m61::reduce(static_cast<std::uint64_t>(once >> 61)));
 }
 
-// A term is below 2^122, so this many fit 128 bits beside a reduced sum.
+// A term is below 2^122, so this many terms and a reduced sum fit in 128 bits.
 constexpr std::uint32_t kTermsPerReduction = 32;
-// The same for factors below 2^62.
+// The same bound for factors below 2^62.
 constexpr std::uint32_t kOpenTermsPerReduction = 8;
 
-// Layers first .. last - 1 of `count`, where a `last` beyond the count goes on from 0.
+// Returns layers first .. last - 1 of `count`. A `last` beyond the count continues from 0.
 LineBits layers_around(std::uint32_t first, std::uint32_t last, std::uint32_t count) {
   if (last - first >= count) return bits_below(count);
   if (last <= count) return bits_between(first, last);
@@ -75,7 +75,7 @@ void ChangeTally::open_line(VoxelIndex first) {
   line_end_ = line_begin_ + extent_.f;
 }
 
-// All stretches of a line share two of the three factors, which are multiplied in once, here.
+// All stretches of a line share two of the three factors. They are multiplied in here, once.
 void ChangeTally::close_line() {
   if (line_terms_ == 0) return;
   const std::uint32_t line = line_begin_ / extent_.f;
@@ -95,7 +95,7 @@ void ChangeTally::close_line() {
 
 void ChangeTally::in_line(std::uint32_t first, std::uint32_t last, Material before,
                           Material after) {
-  const MaterialFactors::Lanes was = factors_.of(before);  // by value: both may share a slot
+  const MaterialFactors::Lanes was = factors_.of(before);  // a copy: both may share a slot
   const MaterialFactors::Lanes& is = factors_.of(after);
   for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
     line_sum_[lane] += static_cast<Wide>(sums_.between(lane, axes_[0], first, last)) *
@@ -130,8 +130,7 @@ void ChangeTally::line(std::uint32_t m, std::uint32_t s, LineBits changed, LineB
     changed = changed & ~bits_below(last);
     voxels_ += last - first;
     note(begin + first, begin + last, after[first]);
-    const MaterialFactors::Lanes was =
-        factors_.of(before[first]);  // by value: both may share a slot
+    const MaterialFactors::Lanes was = factors_.of(before[first]);  // a copy: both may share a slot
     const MaterialFactors::Lanes& is = factors_.of(after[first]);
     for (std::size_t lane = 0; lane < kDigestLanes; ++lane) {
       // Two differences below 2^62, not reduced.

@@ -1,6 +1,10 @@
-// ChangeTally: what follows from the changed stretches of a chunk: the list of changes, the digest's
-// difference, the layers to mesh again and the number of voxels. Each stretch costs O(1), however many lines
-// it crosses. Internal to edits.
+// ChangeTally: collects what follows from the changed stretches of a chunk:
+//   - the list of changes;
+//   - the difference of the digest;
+//   - the layers to mesh again;
+//   - the number of voxels.
+//
+// Each stretch costs O(1), even if it crosses many lines. Internal to edits.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,10 +22,11 @@ struct AxisSums;
 
 class ChangeTally {
  public:
-  /// `shape` gives extent and order only. Appends to `changes`, which must be empty.
+  /// `shape` gives extent and order only. Appends to `changes`. Requires empty `changes`.
   ChangeTally(const RunChunk& shape, std::vector<Change>& changes, MaterialFactors& factors);
 
-  /// Voxels [first, last), all `before`, become `after`. Requires ascending, disjoint stretches that differ.
+  /// Voxels [first, last), all `before`, become `after`. Requires ascending, disjoint stretches
+  /// that differ.
   void stretch(VoxelIndex first, VoxelIndex last, Material before, Material after) {
     voxels_ += last - first;
     note(first, last, after);
@@ -33,12 +38,13 @@ class ChangeTally {
     }
   }
 
-  /// The same for what differs in line m of layer s, told at once: changed voxels, and where a stretch of them must
-  /// end since before or after differ from the voxel in front. Requires lines ascending. O(stretches).
+  /// Adds all changes of line m of layer s. `changed` marks the changed voxels. `cuts` marks the
+  /// voxels where a stretch must end, because `before` or `after` differs from the previous voxel.
+  /// Requires ascending lines. Cost: O(stretches).
   void line(std::uint32_t m, std::uint32_t s, LineBits changed, LineBits cuts,
             const Material* before, const Material* after);
 
-  /// Call once, after the last stretch.
+  /// Call it once, after the last stretch.
   void finish();
   Digest digest_difference() const { return digest_; }  // modulo the digest's prime
   DirtyLayers dirty() const;
@@ -65,10 +71,10 @@ class ChangeTally {
   const std::array<Axis, 3> axes_;
   std::vector<Change>& changes_;
   MaterialFactors& factors_;
-  VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line that the last stretch began in
+  VoxelIndex line_begin_ = 0, line_end_ = 0;  // the line in which the last stretch began
   std::array<Wide, kDigestLanes> line_sum_{};
   std::uint32_t line_terms_ = 0;
-  std::uint32_t layer_ = 0;  // that line() was told of last
+  std::uint32_t layer_ = 0;  // of the last call of line()
   std::array<std::uint64_t, kDigestLanes> layer_sum_{};
   std::array<LineBits, 3> dirty_{};  // by f, m, s
   Digest digest_;

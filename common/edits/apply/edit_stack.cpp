@@ -12,7 +12,8 @@
 namespace runstone {
 namespace {
 
-// Returns how many of the edits may touch the chunk; each stands in the stack as all its parts.
+// Fills the stack with all parts of the edits that may touch the chunk. Returns the number of these
+// edits.
 std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const EditDescriptor> edits,
                      std::vector<StackedEdit>& stack) {
   stack.clear();
@@ -29,7 +30,8 @@ std::size_t stack_up(const RunChunk& chunk, VoxelPos origin, std::span<const Edi
   return count;
 }
 
-// A layer that edits cover whole costs the sweep a look at its runs, however many voxels it has.
+// For a layer that edits cover completely, the sweep looks only at runs, even if the layer has many
+// voxels.
 ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
                             std::span<const StackedEdit> stack) {
   if (edits == 1) return ChangeSearch::walk;
@@ -40,7 +42,7 @@ ChangeSearch cheaper_search(std::size_t edits, const RunChunk& chunk,
   return whole ? ChangeSearch::sweep : ChangeSearch::paint;
 }
 
-// Fills the result and the patch in scratch.runs; the chunk itself stays as it is.
+// Fills the result, and the patch in scratch.runs. The chunk does not change.
 void search_changes(ChangeSearch search, const RunChunk& chunk, Digest& digest,
                     ApplyScratch& scratch, ApplyResult& result) {
   scratch.changes.clear();

@@ -1,15 +1,20 @@
-// The ways apply_stack() can take, for tests and benchmarks: all give the same chunk, digest and result.
+// The strategies of apply_stack(), for tests and benchmarks. All give the same chunk, digest and
+// result.
 #pragma once
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/edits/apply/run_patch.hpp"
 
 namespace runstone {
 
-/// How the changes are found.
+/// The ways to find the changes.
 enum class ChangeSearch : std::uint8_t {
-  walk,  // span by span; for stacks of which at most one edit touches the chunk, and taken for those
-  sweep,  // any stack; taken for several edits of which some cover whole layers
-  paint,  // any stack; taken for all others
+  // Span by span. It requires that at most one edit of the stack touches the chunk, and is used for
+  // all such stacks.
+  walk,
+  // Any stack. Used for several edits if some of them cover whole layers.
+  sweep,
+  // Any stack. Used for all others.
+  paint,
 };
 
 struct ApplyStrategy {
@@ -17,8 +22,8 @@ struct ApplyStrategy {
   PatchWrite write = PatchWrite::whole;
 };
 
-/// apply_stack() by a given strategy. Requires at most one edit that touches the chunk for
-/// ChangeSearch::walk.
+/// Calls apply_stack() with a given strategy. ChangeSearch::walk requires at most one edit that
+/// touches the chunk.
 ApplyResult apply_stack_by(ApplyStrategy strategy, RunChunk& chunk, Digest& digest, VoxelPos origin,
                            std::span<const EditDescriptor> edits, ApplyScratch& scratch);
 

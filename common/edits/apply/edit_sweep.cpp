@@ -23,8 +23,8 @@ struct LineBuffer {
   Material* line() { return voxels.data() + kBefore; }
 };
 
-// Sets [first, last) and up to 7 voxels behind: runs are unpacked in ascending order, so the next one mends
-// them.
+// Sets [first, last) and up to 7 voxels behind. Runs are unpacked in ascending order, so the next
+// run overwrites the excess.
 void fill_loosely(Material* line, std::uint32_t first, std::uint32_t last, Material material) {
   const std::uint64_t four = material * 0x0001000100010001ULL;
   for (std::uint32_t i = first; i < last; i += 8) {
@@ -79,8 +79,8 @@ class Sweep {
   }
 
  private:
-  // Chains every edit to the layers where it begins and ends: heads first, then one link per edit. The links
-  // are numbers + 1, so link of edit i stands at extent_.s + i + 1.
+  // Chains every edit to the layers where it begins and ends: heads first, then one link per edit.
+  // The links are numbers + 1, so the link of edit i is at extent_.s + i + 1.
   void chain_by_layer() {
     const std::size_t size = extent_.s + 1 + stack_.size();
     scratch_.starting.assign(size, 0);
@@ -104,7 +104,8 @@ class Sweep {
     --active_count_;
   }
 
-  // Calls visit(edit number) for the active set from the top of the stack downward while it returns true.
+  // Calls visit(edit number) for the active set from the top of the stack downward, while it
+  // returns true.
   template <class F>
   void from_top(F&& visit) const {
     for (std::size_t word = scratch_.active.size(); word-- > 0;) {
@@ -125,7 +126,8 @@ class Sweep {
     }
   }
 
-  // Whether all edits that matter in this layer cover it whole; they are the program then.
+  // Returns true if all edits that matter in this layer cover it completely. They are the program
+  // then.
   bool whole_layer_program() {
     scratch_.program.clear();
     bool whole = true;
@@ -138,9 +140,9 @@ class Sweep {
     return whole;
   }
 
-  // Puts the rows of the layer into the chains of their lines, from the top of the stack downward, so that
-  // each chain ends up bottom first. Rows that are covered from above without a mask cannot matter, whatever
-  // their own mask.
+  // Puts the rows of the layer into the chains of their lines, from the top of the stack downward,
+  // so each chain is bottom first. A row that edits without a mask cover from above cannot matter
+  // and is left out.
   void enter_rows(std::uint32_t s) {
     std::fill_n(lines_.begin(), extent_.m, 0u);
     std::fill_n(covered_.begin(), extent_.m, LineBits{});
@@ -218,7 +220,7 @@ class Sweep {
     }
   }
 
-  // Returns where runs begin in the line.
+  // Returns the places where runs begin in the line.
   LineBits unpack(VoxelIndex begin, Material* out) {
     LineBits starts;
     cursor_.seek(begin);
@@ -240,13 +242,14 @@ class Sweep {
   ChangeTally& tally_;
   RunCursor<Runs> cursor_;
   std::uint32_t active_count_ = 0;
-  std::array<std::uint32_t, kSideMax>
-      lines_{};  // heads of the chains of the layer at hand, entry number + 1
-  std::array<LineBits, kSideMax> covered_{};  // voxels of the layer that unmasked edits overwrite
+  // Heads of the chains of the current layer: entry number + 1.
+  std::array<std::uint32_t, kSideMax> lines_{};
+  // Voxels of the layer that edits without a mask overwrite.
+  std::array<LineBits, kSideMax> covered_{};
   LineBuffer before_, after_;
 };
 
-// The spans become what `edit` makes of them. Requires ascending spans, none before the cursor.
+// Applies `edit` to the spans. Requires ascending spans, none before the cursor.
 template <class Runs>
 void walk_spans(RunCursor<Runs>& cursor, const StackedEdit& edit, std::span<const IndexSpan> spans,
                 ChangeTally& tally) {
@@ -279,13 +282,13 @@ void walk_changes(const RunChunk& chunk, ApplyScratch& scratch, ChangeTally& tal
   chunk.runs.visit([&]<class Runs>(Runs runs) {
     RunCursor<Runs> cursor(runs);
     if (scratch.stack.front().shape.form == OrderedShape::Form::capsule) {
-      // The segments of a stroke overlap, and differ in shape alone.
+      // The segments of a stroke overlap and differ only in shape.
       for (const StackedEdit& part : scratch.stack) append_spans(part.shape, extent, scratch.spans);
       if (scratch.stack.size() > 1) unite_spans(scratch.spans, 0);
       walk_spans(cursor, scratch.stack.front(), scratch.spans, tally);
       return;
     }
-    // The boxes of a paste come in index order, none overlapping, each with its material.
+    // The boxes of a paste come in index order. They do not overlap, and each has its material.
     for (const StackedEdit& part : scratch.stack) {
       scratch.spans.clear();
       append_spans(part.shape, extent, scratch.spans);

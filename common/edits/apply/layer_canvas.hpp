@@ -1,5 +1,6 @@
-// LayerCanvas: the voxels of one layer while a stack of edits is drawn on it, a line after another, never more
-// than the layer at hand (so no dense expansion). Scratch of the layer painter. Internal to edits.
+// LayerCanvas: the voxels of one layer, line by line, on which a stack of edits is drawn. It never
+// holds more than the current layer, so it is no dense expansion. Scratch of the layer painter.
+// Internal to edits.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,17 +11,18 @@
 
 namespace runstone {
 
-/// Lines begin on cache lines and are padded to whole ones, so that vectors may load and store beyond their end.
+/// Lines begin on cache lines and are padded to whole ones, so that vectors may load and store
+/// beyond their end.
 class LayerCanvas {
  public:
-  /// Voxels from one line to the next are a multiple of this.
+  /// The distance from one line to the next is a multiple of this number of voxels.
   static constexpr std::uint32_t kBlock = 32;
 
-  /// Makes room for a layer of this shape; what lies in it is unspecified.
+  /// Makes room for a layer of this shape. Its contents are unspecified.
   void fit(OrderedExtent e) {
     line_blocks_ = (e.f + kBlock - 1) / kBlock;
-    const std::size_t blocks =
-        std::size_t{2} + line_blocks_ * e.m;  // one to either side is touched as well
+    // One block to either side is touched as well.
+    const std::size_t blocks = std::size_t{2} + line_blocks_ * e.m;
     if (blocks_.size() < blocks) blocks_.resize(blocks);
   }
   Material* line(std::uint32_t m) { return blocks_[1 + m * line_blocks_].voxels.data(); }

@@ -11,11 +11,11 @@
 #include "common/edits/apply/line_bits.hpp"
 #include "common/runs/run_cursor.hpp"
 
-// The rest of this file is compiled once per instruction set; Highway picks one at run time.
+// The rest of this file is compiled once per instruction set. Highway selects one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/edits/apply/layer_painter.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, as Highway asks.
+// Highway requires these includes after foreach_target.h.
 #include <hwy/highway.h>
 
 #include "common/edits/apply/brush_lanes-inl.hpp"
@@ -50,8 +50,8 @@ class Painter {
 
  private:
   void make_plan() {
-    std::array<std::uint32_t, LayerPlan::kBand + 1>
-        parts{};  // how many more begin than end, by layer
+    // By layer: the number of parts that begin minus the number of parts that end.
+    std::array<std::uint32_t, LayerPlan::kBand + 1> parts{};
     for (const StackedEdit& part : stack_) {
       const auto [first, last] = layers_of(part.shape);
       if (first >= last) continue;
@@ -69,7 +69,7 @@ class Painter {
     for (std::uint32_t i = 0; i < stack_.size(); ++i) enter(i);
   }
 
-  // Those in the band.
+  // Returns the layers of the shape that lie in the band.
   std::pair<std::uint32_t, std::uint32_t> layers_of(const OrderedShape& shape) const {
     return {std::max(shape.first[2], band_first_), std::min(shape.last[2], band_last_)};
   }
@@ -93,12 +93,12 @@ class Painter {
                            static_cast<std::uint8_t>(shape.last[1])};
     const bool hides = part.mask.kind == MaskKind::everything && shape.covers_layers(extent_);
     for (std::uint32_t s = first - band_first_; s < last - band_first_; ++s) {
-      if (hides) plan_.end[s] = plan_.begin[s];  // what lies below does not matter
+      if (hides) plan_.end[s] = plan_.begin[s];  // the pieces below are overwritten
       plan_.pieces[plan_.end[s]++] = piece;
     }
   }
 
-  // For the rows up to row_count_, from `first` on.
+  // Makes room for the rows up to row_count_. Returns the place of row `first`.
   Ends room_for_rows(std::uint32_t first) {
     const std::size_t size = row_count_ + Ends::kBehind;
     if (plan_.row_first.size() < size) {
@@ -156,7 +156,7 @@ class Painter {
     }
   }
 
-  // Hands out what differs from the runs in a line.
+  // Passes the differences between the canvas and the runs of a line to the tally.
   void compare(std::uint32_t m, std::uint32_t s) {
     Material* const before = before_.data();
     Material* const after = canvas_.line(m);
@@ -166,7 +166,7 @@ class Painter {
     tally_.line(m, s, changed, cuts | differing(after, after - 1, extent_.f), before, after);
   }
 
-  // Returns where runs begin in the line.
+  // Returns the places where runs begin in the line.
   LineBits unpack(RunCursor<Runs>& cursor, VoxelIndex begin, Material* out) const {
     LineBits starts;
     cursor.seek(begin);

@@ -1,5 +1,5 @@
-// LayerPlan: what a stack of edits draws in each layer of a band of layers. Scratch of the layer painter. Internal to
-// edits.
+// LayerPlan: the pieces that a stack of edits draws in each layer of a band of layers. Scratch of
+// the layer painter. Internal to edits.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace runstone {
 
-/// What part number `part` of the stack has in one layer: rows in the lines [m_first, m_last). A box's are those of
-/// its shape; those of others stand in the plan from place `rows` on, one for each line.
+/// The piece of part `part` of the stack in one layer: rows in the lines [m_first, m_last). The
+/// rows of a box are those of its shape. The rows of other shapes are in the plan from place `rows`
+/// on, one for each line.
 struct LayerPiece {
   std::uint32_t part = 0;
   std::uint32_t rows = 0;
@@ -18,15 +19,16 @@ struct LayerPiece {
 };
 
 struct LayerPlan {
-  /// Layers planned at once: the rows of a part are found together, and take 8 KB at most.
+  /// Number of layers planned at once. The rows of a part are found together and take 8 KB at most.
   static constexpr std::uint32_t kBand = 32;
 
-  std::vector<LayerPiece>
-      pieces;  // layer by layer, in each from the bottom of the stack to its top
-  std::array<std::uint32_t, kBand> begin{};  // those of the band's layer i are [begin[i], end[i])
+  // Layer by layer; in each layer from the bottom of the stack to its top.
+  std::vector<LayerPiece> pieces;
+  // The pieces of layer i of the band are [begin[i], end[i]).
+  std::array<std::uint32_t, kBand> begin{};
   std::array<std::uint32_t, kBand> end{};
-  std::vector<std::uint8_t> row_first,
-      row_last;  // voxels [first, last) of a line; none if last <= first
+  // Voxels [first, last) of a line. The row is empty if last <= first.
+  std::vector<std::uint8_t> row_first, row_last;
 };
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// LineBits: one bit per voxel of a line, which has at most 128. Scratch of the edit sweep. Internal to edits.
+// LineBits: one bit per voxel of a line, which has at most 128 voxels. Internal to edits.
 #pragma once
 #include <array>
 #include <bit>
@@ -26,7 +26,7 @@ struct LineBits {
   }
   constexpr LineBits operator~() const { return {~low, ~high}; }
   constexpr bool any() const { return (low | high) != 0; }
-  /// Position of the lowest bit; 128 if there is none.
+  /// Returns the place of the lowest set bit, or 128 if there is none.
   constexpr unsigned lowest() const {
     return static_cast<unsigned>(low != 0 ? std::countr_zero(low) : 64 + std::countr_zero(high));
   }
@@ -48,14 +48,15 @@ constexpr std::array<LineBits, kSideMax + 1> make_bits_below() {
 inline constexpr auto kBitsBelow = make_bits_below();
 }  // namespace detail
 
-/// Bits 0 .. n - 1. n <= 128.
+/// Returns bits 0 .. n - 1. Requires n <= 128.
 constexpr LineBits bits_below(std::uint32_t n) { return detail::kBitsBelow[n]; }
-/// Bits first .. last - 1.
+/// Returns bits first .. last - 1.
 constexpr LineBits bits_between(std::uint32_t first, std::uint32_t last) {
   return bits_below(last) & ~bits_below(first);
 }
 
-/// Bit i says that a[i] != b[i], i < count <= 128. The plain form; the reference of the next one.
+/// Returns bits i < count for which a[i] != b[i]. Requires count <= 128. This is the plain form and
+/// the reference for differing().
 inline LineBits differing_plain(const Material* a, const Material* b, std::uint32_t count) {
   LineBits out;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -64,8 +65,8 @@ inline LineBits differing_plain(const Material* a, const Material* b, std::uint3
   return out;
 }
 
-/// The same, 16 voxels a step where the CPU has SSE2. Both arrays must be readable up to the next multiple
-/// of 16.
+/// Returns the same, 16 voxels a step where the CPU has SSE2. Requires both arrays to be readable
+/// up to the next multiple of 16.
 inline LineBits differing(const Material* a, const Material* b, std::uint32_t count) {
 #ifdef __SSE2__
   std::array<std::uint64_t, 2> word{};

@@ -1,5 +1,5 @@
-// ReplayedChunk: a chunk that follows the log. Edits pile up on its stack, and each full stack is applied in one
-// sweep: whoever replays a stretch of the log looks at the voxels now and then, not after every edit.
+// ReplayedChunk: a chunk that follows the log. Edits collect on its stack, and each full stack is
+// applied in one sweep. A replay looks at the voxels seldom, not after every edit.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,30 +12,33 @@
 
 namespace runstone {
 
-/// Edits gathered for one sweep: bounds memory, and a sweep over more gains little (docs/performance.md).
+/// Maximum number of edits in one sweep. It bounds memory; a larger stack gains little
+/// (docs/performance.md).
 inline constexpr std::size_t kFollowedEditsMax = 64;
 
-/// What all followed chunks of a thread share: buffers, and counts since it was made.
+/// The state that all replayed chunks of a thread share: buffers, and counts since it was made.
 struct FollowScratch {
   ApplyScratch apply;
   ApplyResult result;
   StackDepths depths;
-  std::uint64_t voxels_changed =
-      0;  // summed over sweeps: what an edit of one sweep sets and a later one resets is not in it
+  // Summed over sweeps. A voxel that an edit of one sweep changes and a later edit of the same
+  // sweep restores is not counted.
+  std::uint64_t voxels_changed = 0;
 };
 
 class ReplayedChunk {
  public:
-  /// `origin`: its first voxel in the world.
+  /// `origin`: the first voxel of the chunk in the world.
   ReplayedChunk(Chunk chunk, VoxelPos origin) : chunk_(std::move(chunk)), origin_(origin) {}
 
-  /// The next edit in the order of the log that touches the chunk, at its version. Amortised cost: as apply_stack().
+  /// Adds the next edit of the log that touches the chunk. The chunk takes `version`. Cost: that of
+  /// apply_stack(), amortised.
   void add(const EditDescriptor& edit, Version version, FollowScratch& scratch) {
     stack_.push_back(edit);
     chunk_.version = version;
     if (stack_.size() == kFollowedEditsMax) settle(scratch);
   }
-  /// Applies what waits.
+  /// Applies the edits on the stack.
   void settle(FollowScratch& scratch) {
     if (stack_.empty()) return;
     apply_stack(chunk_.voxels, chunk_.digest, origin_, stack_, scratch.apply, scratch.result);
@@ -44,10 +47,11 @@ class ReplayedChunk {
     has_changed_ = has_changed_ || scratch.result.changed;
     stack_.clear();
   }
-  /// Whether any voxel changed since this was last asked. Settle first.
+  /// Returns true if any voxel changed since the last call. Requires an empty stack: call settle()
+  /// first.
   bool take_changed() { return std::exchange(has_changed_, false); }
 
-  /// Its version counts edits that still wait; its voxels and digest do not.
+  /// The version includes edits that are still on the stack; voxels and digest do not.
   const Chunk& chunk() const { return chunk_; }
   Chunk& chunk() { return chunk_; }
 

@@ -16,7 +16,7 @@ class Planner {
   void change(const Change& c) {
     cursor_.seek(c.first);
     const std::size_t from = cursor_.run();
-    // A kept neighbour of the new material would melt into the change, so it belongs to the area.
+    // A kept neighbour of the new material would merge with the change, so it belongs to the area.
     const bool melts =
         from > 0 && old_.end(from - 1) == c.first && old_.material(from - 1) == c.material;
     const std::size_t low = melts ? from - 1 : from;
@@ -53,7 +53,7 @@ class Planner {
   }
 
  private:
-  // Old voxels from at_ up to `end` stay; copied_ is the old run that covers at_.
+  // Copies the old voxels from at_ up to `end`. copied_ is the old run that covers at_.
   void copy_to(VoxelIndex end) {
     while (at_ < end) {
       const VoxelIndex run_end = old_.end(copied_);
@@ -96,8 +96,8 @@ void plan_patch(const RunChunk& chunk, std::span<const Change> changes,
 }
 
 PatchWrite cheaper_write(const RunChunk& chunk, std::span<const EditArea> areas) {
-  // A moved run costs a small part of a copied one (memmove against a loop), and a splice has a price of its
-  // own.
+  // A moved run costs a small part of a copied run (memmove against a loop), and a splice has a
+  // fixed cost.
   constexpr std::size_t kMovedPerCopied = 16;
   constexpr std::size_t kSpliceCopies = 16;
   if (areas.size() < 2) return PatchWrite::pieces;
@@ -119,8 +119,8 @@ void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<con
     return;
   }
   scratch.clear();
-  const std::size_t first =
-      areas.front().first;  // the first area has the same index before and after
+  // The first area has the same index before and after.
+  const std::size_t first = areas.front().first;
   std::size_t old = first;
   chunk.runs.visit([&](const auto& from) {
     for (const EditArea& area : areas) {

@@ -1,7 +1,7 @@
-// Run patch: a list of changes turned into edit areas (thesis 7.3.3): which runs go and which come in their
-// place. An area is a maximal group of neighbouring runs that the edit replaces; every other run is kept as
-// it is. So the areas follow from the chunk before and after alone, whoever found the changes. Internal to
-// edits.
+// Run patch: a list of changes as edit areas (thesis 7.3.3): the runs to remove and the runs that
+// replace them. An area is a maximal group of neighbouring runs that the edit replaces; every other
+// run is kept. So the areas depend only on the chunk before and after, not on the way in which the
+// changes were found. Internal to edits.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,21 +12,21 @@
 
 namespace runstone {
 
-/// Appends the areas of `changes` (ascending, disjoint, not empty) to `areas`, and the runs that come in,
-/// area by area, to `runs`. `first` of an area counts in the new run list. O(changes * log(runs between) +
-/// runs replaced).
+/// Appends the areas of `changes` to `areas`, and their new runs, area by area, to `runs`. Requires
+/// ascending, disjoint, non-empty changes. `first` of an area counts in the new run list. Cost:
+/// O(changes * log(runs between) + runs replaced).
 void plan_patch(const RunChunk& chunk, std::span<const Change> changes,
                 std::vector<EditArea>& areas, std::vector<Run>& runs);
 
-/// Two ways to write a patch. Same result; the run counts decide which is cheaper.
+/// Two ways to write a patch, with the same result. The run counts decide which is cheaper.
 enum class PatchWrite : std::uint8_t {
-  pieces,  // splice area by area: each moves the runs behind it
+  pieces,  // splice area by area: each splice moves the runs behind it
   whole,   // copy the kept runs between the areas and splice once
 };
 
 PatchWrite cheaper_write(const RunChunk& chunk, std::span<const EditArea> areas);
 
-/// Replaces the areas of the chunk by `runs`. `scratch` is used by PatchWrite::whole.
+/// Replaces the areas of the chunk by `runs`. PatchWrite::whole uses `scratch`.
 void write_patch(RunChunk& chunk, std::span<const EditArea> areas, std::span<const Run> runs,
                  PatchWrite how, std::vector<Run>& scratch);
 

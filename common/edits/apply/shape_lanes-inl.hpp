@@ -1,14 +1,18 @@
-// Where a shape lies in many lines or layers at once, one to a lane of a vector: the same rows as
-// for_each_row() (ordered_shape.hpp), in floating point that cannot differ from the integers.
-// Included once per instruction set, inside no namespace.
+// The rows of a shape in many lines or layers at once, one to a lane of a vector. They are the same
+// rows as those of for_each_row() (ordered_shape.hpp), computed in floating point without rounding
+// errors. Included once per instruction set, inside no namespace.
 //
-// Why it is exact. Every number is whole and below 2^53, so sums and products are exact as doubles.
-//   Roots: for a whole v < 2^52 the rounded square root has the right whole part, since just below a square k^2
-//   the true root is k - 1/(2k) or less, and doubles below k <= 2^26 lie closer than that. Floats likewise for
-//   v < 2^22; spheres ask for v <= r * r + r < 2^18.01.
-//   Quotients: floor(x / a) is taken as floor((x + 1/2) * (1 / a)). That stays 1/(2a) away from whole numbers,
-//   and two roundings move it by less than |x| / a * 2^-51, for |x| < 2^33 far less.
-// v = length * e is the only number that may exceed 2^52 (capsule_row.hpp); fits_doubles() asks beforehand.
+// Why it is exact: every number is an integer below 2^53, so sums and products are exact as
+// doubles.
+//   - Roots: for an integer v < 2^52 the rounded square root has the right integer part. Just below
+//     a square k^2 the true root is at most k - 1/(2k), and doubles below k <= 2^26 lie closer
+//     together than that. The same holds for floats if v < 2^22; spheres need v <= r * r + r <
+//     2^18.01.
+//   - Quotients: floor(x / a) is computed as floor((x + 1/2) * (1 / a)). This value is at least
+//     1/(2a) away from any integer. Two roundings move it by less than |x| / a * 2^-51, which is
+//     far less for |x| < 2^33.
+//
+// Only v = length * e may exceed 2^52 (capsule_row.hpp); fits_doubles() checks it beforehand.
 #if defined(RUNSTONE_EDITS_SHAPE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_EDITS_SHAPE_LANES_INL
 #undef RUNSTONE_EDITS_SHAPE_LANES_INL
@@ -33,20 +37,20 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Where what is found is written: half-open stretches, one for each line or layer asked for, empty where last <=
-/// first. A vector more than asked for may be written.
+/// The place where results are written: half-open stretches, one for each line or layer of Places,
+/// empty where last <= first. Up to a vector more than requested may be written.
 struct Ends {
   static constexpr std::size_t kBehind = 8;
   std::uint8_t* first;
   std::uint8_t* last;
 };
 
-/// The lines or layers asked for, q_first .. q_first + count - 1.
+/// The requested lines or layers, q_first .. q_first + count - 1.
 struct Places {
   std::int32_t q_first = 0, count = 0;
 };
 
-/// What is found is clipped to low .. high; centre lies along the lines, centre_q across them.
+/// Results are clipped to low .. high. `centre` lies along the lines, `centre_q` across them.
 struct SliceFrame {
   std::int32_t centre = 0, centre_q = 0, low = 0, high = 0;
 };
@@ -88,13 +92,13 @@ class RoundLanes {
   SliceFrame frame_;
 };
 
-/// Of a capsule, in the words of capsule_row.hpp; with offset p = q - centre_q, c = p * dq + c0 and
-/// n = p^2 + n0.
+/// A slice of a capsule, in the terms of capsule_row.hpp. With offset p = q - centre_q, c = p * dq
+/// + c0 and n = p^2 + n0.
 struct CapsuleSlice {
   std::int64_t df = 0, across = 0, dq = 0, reach = 0;
 };
 
-/// Rows of a capsule, a line after another.
+/// Rows of a capsule, one line after another.
 class CapsuleLines {
  public:
   CapsuleLines(const CapsuleSlice& slice, const SliceFrame& frame) : slice_(slice), frame_(frame) {}
@@ -119,14 +123,14 @@ class CapsuleLines {
 };
 
 #if HWY_HAVE_FLOAT64 && !HWY_HAVE_SCALABLE
-/// The same for all lines at once; needs fits_doubles().
+/// Rows of a capsule for a vector of lines at a time. Requires fits_doubles().
 class CapsuleLanes {
   using D = hn::CappedTag<double, Ends::kBehind>;
   using V = hn::Vec<D>;
   static HWY_INLINE V set(double v) { return hn::Set(D(), v); }
   static HWY_INLINE V whole(std::int64_t v) { return hn::Set(D(), static_cast<double>(v)); }
   static HWY_INLINE V whole_root(V v) { return hn::Floor(hn::Sqrt(hn::Max(v, hn::Zero(D())))); }
-  /// floor(x / a) from 1 / a.
+  /// Returns floor(x / a), given 1 / a.
   static HWY_INLINE V floor_of(V x, V inverse) {
     return hn::Floor(hn::Mul(hn::Add(x, set(0.5)), inverse));
   }
@@ -167,7 +171,7 @@ class CapsuleLanes {
   }
 
  private:
-  /// The steps of capsule_row() without its early ways out, which change nothing.
+  /// The steps of capsule_row() without its early returns, which do not change the result.
   HWY_INLINE void row(V p, V c0, V n0, V& first, V& last) const {
     const V zero = hn::Zero(D()), df = whole(df_), across = whole(across_);
     const V c = hn::Add(hn::Mul(p, dq_), c0);
@@ -251,7 +255,7 @@ HWY_INLINE void find_capsule_rows(const OrderedShape& shape, std::uint32_t s_fir
   const auto bound = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
   const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
   LayerLines lines;
-  // The lines that the capsule meets at all are the row of its shadow on the plane across them.
+  // The lines that the capsule meets are the row of its projection onto the plane across them.
   Lanes({dm, ds * ds, ds, shape.reach},
         {shape.centre[1], shape.centre[2], bound(shape.first[1]), bound(shape.last[1])})
       .find(0, 0, {bound(s_first), bound(s_last - s_first)}, lines.ends());
@@ -263,8 +267,9 @@ HWY_INLINE void find_capsule_rows(const OrderedShape& shape, std::uint32_t s_fir
   });
 }
 
-/// Finds the rows of a shape, which is no box, in layers [s_first, s_last), at most a band of the plan. For every
-/// layer that has lines, room(s, m_first, m_last) says where those of its lines are to be written.
+/// Finds the rows of a shape in layers [s_first, s_last). Requires a shape that is no box, and at
+/// most a band of layers. For every layer that has lines, room(s, m_first, m_last) returns the
+/// place to write their rows.
 template <class F>
 void find_rows(const OrderedShape& shape, std::uint32_t s_first, std::uint32_t s_last, F&& room) {
   if (shape.form == OrderedShape::Form::sphere) {

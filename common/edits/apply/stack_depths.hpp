@@ -1,5 +1,5 @@
-// StackDepths: how deep the edit stacks were that were applied: a histogram by powers of two. Deep stacks are what the
-// single sweep is for; this says how often they occur.
+// StackDepths: a histogram of the depths of applied edit stacks, by powers of two. It shows how
+// often deep stacks occur, for which the single sweep is made.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,10 +12,10 @@ namespace runstone {
 
 class StackDepths {
  public:
-  /// Of depths 1, 2, 3..4, 5..8, ..., 1,025..2,048, and more.
+  /// Buckets for the depths 1, 2, 3..4, 5..8, ..., 1,025..2,048, and more.
   static constexpr std::size_t kBuckets = 13;
 
-  /// A stack of this many edits was applied; empty stacks do not count. O(1).
+  /// Counts a stack of this many edits. Empty stacks do not count. Cost: O(1).
   void add(std::size_t depth) {
     if (depth != 0) ++counts_[std::min<std::size_t>(std::bit_width(depth - 1), kBuckets - 1)];
   }
@@ -24,9 +24,10 @@ class StackDepths {
     return *this;
   }
   std::uint64_t count(std::size_t bucket) const { return counts_[bucket]; }
-  /// Largest depth of a bucket; of the last one there is none.
+  /// Returns the largest depth of a bucket. The last bucket has none.
   static constexpr std::size_t depth_max(std::size_t bucket) { return std::size_t{1} << bucket; }
-  /// "1:812 2:40 4:7": largest depth and count of the buckets that are not empty, "2049+:3" the last one's; "none".
+  /// Returns text such as "1:812 2:40 4:7": largest depth and count of each bucket that is not
+  /// empty. The last bucket reads "2049+:3". Returns "none" if all are empty.
   std::string text() const {
     std::string out;
     for (std::size_t i = 0; i < kBuckets; ++i) {

@@ -11,10 +11,11 @@
 namespace runstone {
 namespace {
 
-// Cell numbers have the 16 bits of a material; a full palette would not fit the bytes by far.
+// Cell numbers have the 16 bits of a material. A full palette would exceed the byte limit by far.
 constexpr std::size_t kPaletteMax = kClipboardBytesMax;
 
-// Neighbouring runs differ, so a number is told among those that the run before does not have.
+// Neighbouring runs differ, so a number is encoded among the numbers that the previous run does not
+// have.
 std::uint64_t told_number(std::uint16_t number, std::uint16_t before) {
   return number > before ? number - 1U : number;
 }
@@ -31,7 +32,7 @@ Result<void> check_palette(const std::vector<Material>& palette) {
   return {};
 }
 
-// Number of touched cells.
+// Returns the number of touched cells.
 Result<std::uint32_t> check_cells(const RunChunk& cells, std::size_t palette_size) {
   if (!cells.extent.valid_part())
     return fail(ErrorCode::bad_value, "clipboard side outside 1..128");
@@ -147,7 +148,7 @@ std::shared_ptr<const Clipboard> read_clipboard(ByteReader& r) {
   }
   RunChunk cells{{sides[0], sides[1], sides[2]}, static_cast<AxisOrder>(order), RunList{}};
   const std::uint32_t volume = cells.volume();
-  cells.runs = RunList(volume);  // in the form that the volume asks for
+  cells.runs = RunList(volume);  // in the form that the volume requires
   std::uint32_t filled = 0;
   std::uint16_t before = 0;
   while (r.ok() && filled < volume) {

@@ -1,12 +1,15 @@
-// Clipboard: what a paste puts into the world: a cuboid of cells, each of them a material (empty included) or
-// untouched, which leaves what is there. Kept as runs, like a chunk, beside the list of its materials.
-// Invariants (Clipboard::of() checks them; bytes from outside pass through it too):
-//   - sides 1 .. kSideMax, the runs are canonical, and at least one cell is touched;
-//   - the palette ascends strictly and each entry is used: a cell number is 0 (untouched) or palette index + 1;
+// Clipboard: the content of a paste. It is a cuboid of cells; each cell is a material (empty
+// included) or untouched, which keeps the present voxel. It is kept as runs, like a chunk, with a
+// list of its materials. Invariants (Clipboard::of() checks them; bytes from outside pass through
+// it too):
+//   - sides are 1 .. kSideMax, the runs are canonical, and at least one cell is touched;
+//   - the palette ascends strictly and each entry is used: a cell number is 0 (untouched) or
+//     palette index + 1;
 //   - the encoding has at most kClipboardBytesMax bytes.
-// The axis order is part of a clipboard: the same cells in another order are another clipboard, since runs
-// and bytes differ. Builders choose the order with the fewest runs.
-// Threads: immutable, so shared freely.
+//
+// The axis order is part of a clipboard: the same cells in another order are another clipboard,
+// because runs and bytes differ. Builders choose the order with the fewest runs. Thread: immutable,
+// so any thread may read it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,10 +24,11 @@
 
 namespace runstone {
 
-/// Answers an edit request that would fill the memory of everybody in view: a byte is at most one run.
+/// Bounds the memory that one edit request can take at every client in view: a byte is at most one
+/// run.
 inline constexpr std::size_t kClipboardBytesMax = 48 * 1024;
 
-/// Cells of a clipboard.
+/// A box of cells of a clipboard.
 struct CellBox {
   LocalPos first;
   Extent extent;
@@ -33,21 +37,22 @@ struct CellBox {
 
 class Clipboard {
  public:
-  /// `cells` holds cell numbers in place of materials. bad_value, not_canonical, broken_invariant or
-  /// limit_exceeded name the first broken invariant. O(runs + palette).
+  /// `cells` holds cell numbers in place of materials. Fails with bad_value, not_canonical,
+  /// broken_invariant or limit_exceeded for the first broken invariant. Cost: O(runs + palette).
   static Result<std::shared_ptr<const Clipboard>> of(std::vector<Material> palette, RunChunk cells);
 
   Extent extent() const { return cells_.extent; }
   const RunChunk& cells() const { return cells_; }
   const std::vector<Material>& palette() const { return palette_; }
-  /// Material of a cell number above 0.
+  /// Returns the material of a cell number. Requires number > 0.
   Material material(std::uint16_t number) const { return palette_[number - 1U]; }
-  /// Number of cells that are not untouched, at least 1.
+  /// Returns the number of touched cells, at least 1.
   std::uint32_t touched() const { return touched_; }
-  /// Smallest box that holds these.
+  /// Returns the smallest box that holds the touched cells.
   const CellBox& touched_box() const { return touched_box_; }
   std::size_t byte_size() const { return byte_size_; }  // of the encoding
-  /// Nothing where untouched. Requires a place inside the extent. O(log runs).
+  /// Returns the material of a cell, or nullopt if it is untouched. Requires a place inside the
+  /// extent. Cost: O(log runs).
   std::optional<Material> at(LocalPos place) const;
 
   friend bool operator==(const Clipboard& a, const Clipboard& b) {
@@ -67,8 +72,8 @@ class Clipboard {
 /// Appends the canonical bytes (docs/edit-log.md).
 void write_clipboard(ByteWriter& w, const Clipboard& clipboard);
 
-/// Reads all that is left. Only canonical bytes pass; null after a rejection. Allocates no more than the bytes
-/// at hand ask for.
+/// Reads all remaining bytes. Only canonical bytes pass. Returns null after a rejection. The memory
+/// it allocates is proportional to the bytes present.
 std::shared_ptr<const Clipboard> read_clipboard(ByteReader& r);
 
 }  // namespace runstone

@@ -34,7 +34,8 @@ Result<std::shared_ptr<const Clipboard>> ClipboardBuilder::finish() {
   std::sort(palette.begin(), palette.end());
   palette.erase(std::unique(palette.begin(), palette.end()), palette.end());
   if (palette.empty()) return fail(ErrorCode::bad_value, "clipboard has no material");
-  // A material costs a byte at least, and more of them than that would not be numbered.
+  // A material takes at least one byte, so a larger palette cannot fit, and its entries could not
+  // be numbered.
   if (palette.size() > kClipboardBytesMax) {
     return fail(ErrorCode::limit_exceeded, "clipboard has too many materials");
   }

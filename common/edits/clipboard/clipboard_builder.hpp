@@ -11,17 +11,17 @@ namespace runstone {
 
 class ClipboardBuilder {
  public:
-  /// Requires extent.valid_part(). Cells will come in the index order of `order`.
+  /// The cells are appended in the index order of `order`. Requires extent.valid_part().
   explicit ClipboardBuilder(Extent extent, AxisOrder order = AxisOrder::xyz);
 
-  /// Cells appended so far.
+  /// Returns the number of cells appended so far.
   std::uint32_t filled() const { return filled_; }
-  /// Appends `count` cells (0 is allowed and does nothing); nothing is untouched. Requires filled() + count <=
-  /// volume. O(1) amortised.
+  /// Appends `count` cells; 0 is allowed and does nothing. nullopt is an untouched cell. Requires
+  /// filled() + count <= volume. Cost: O(1) amortised.
   void append(std::uint32_t count, std::optional<Material> cell);
-  /// The cells in the axis order with the fewest runs. Requires filled() == volume. bad_value if nothing is
-  /// touched, limit_exceeded if it would take more than kClipboardBytesMax. The builder is used up. O(runs log
-  /// runs + lines).
+  /// Returns the cells in the axis order with the fewest runs. Requires filled() == volume. Fails
+  /// with bad_value if no cell is touched, and with limit_exceeded if the encoding would exceed
+  /// kClipboardBytesMax. The builder is empty afterwards. Cost: O(runs log runs + lines).
   Result<std::shared_ptr<const Clipboard>> finish();
 
  private:

@@ -1,21 +1,25 @@
-// CapsuleRow: where a line of voxels meets a capsule, that is, all points within a distance of a segment: in
-// closed form and exact. Works in two dimensions as in three: then "across" has one axis less. Internal to
-// edits. Integers only: distances to the segment are compared by cross-multiplication, and the two divisions
-// are those of whole bounds, rounded inwards.
+// CapsuleRow: the voxels of a line that lie in a capsule, that is, within a distance of a segment.
+// The form is closed and exact. It works in two dimensions as in three; then "across" has one axis
+// less. Integers only: distances to the segment are compared by cross-multiplication, and the two
+// divisions are those of integer bounds, rounded inwards. Internal to edits.
 //
-// A line runs along one axis, u from the segment's first point a. With the segment d = (df, across axes) and
-// the line's offset q across: A = |d across|^2, c = q . d across, n = |q|^2, L = |d|^2 = df^2 + A. A voxel's
-// place along the segment is t = u * df + c, 0 .. L. It is inside when one of these holds:
+// A line runs along one axis; u counts from the segment's first point a. With the segment d = (df,
+// across axes) and the line's offset q across: A = |d across|^2, c = q . d across, n = |q|^2, L =
+// |d|^2 = df^2 + A. A voxel's place along the segment is t = u * df + c, 0 .. L. It is inside when
+// one of these holds:
 //   the ball at a:    u^2 <= R - n
 //   the ball at b:    (u - df)^2 <= R - n + 2c - A
-//   between them:     0 <= t <= L and (u^2 + n) * L - t^2 <= R * L, that is, A u^2 - 2 df c u + .. <= 0,
-//                     with the roots (df c +- sqrt(L * E)) / A, E = c^2 + A * (R - n)
-// A capsule is convex, so the three rows of a line, each the whole numbers of an interval, join gapless.
+//   between them:     0 <= t <= L and (u^2 + n) * L - t^2 <= R * L,
+//                     that is, A u^2 - 2 df c u + .. <= 0, with the roots (df c +- sqrt(L * E)) / A, E = c^2 + A * (R - n)
+// A capsule is convex. So the three rows of a line, each the integers of an interval, join without
+// a gap.
 //
-// No overflow: segments reach at most S = 1,024 along an axis and R = r * r + r with r <= 512; callers ask
-// for lines within r of the segment's bounding box only. So |q| per axis <= S + r = 1,536 and
+// No overflow: segments reach at most S = 1,024 along an axis and R = r * r + r with r <= 512.
+// Callers pass only lines within r of the segment's bounding box. So |q| per axis <= S + r = 1,536
+// and
 //   A <= 2 S^2 = 2^21, L <= 3 S^2 < 2^21.6, R < 2^18.01, n <= 2 * 1,536^2 < 2^22.2, |c| < 2^21.6;
-//   |E| <= c^2 + A * max(R, n) < 2^44.2, and where E >= 0 counts, E <= A * R < 2^39.1 since c^2 <= A * n;
+//   |E| <= c^2 + A * max(R, n) < 2^44.2, and where E >= 0 counts, E <= A * R < 2^39.1 since
+//   c^2 <= A * n;
 //   L * E < 2^60.7 and |df * c| < 2^31.6: all fit i64.
 #pragma once
 #include <algorithm>
@@ -24,15 +28,16 @@
 
 namespace runstone {
 
-/// Whole numbers first .. last, both included; empty if last < first.
+/// Integers first .. last, both included. Empty if last < first.
 struct CapsuleRow {
   std::int64_t first = 0, last = -1;
   constexpr bool empty() const { return last < first; }
   friend bool operator==(const CapsuleRow&, const CapsuleRow&) = default;
 };
 
-/// Largest w with w * w <= v. Requires 0 <= v < 2^62. The processor's square root, which IEEE 754 defines to the
-/// last bit, is off by one at most there; what is returned is checked in integers.
+/// Returns the largest w with w * w <= v. Requires 0 <= v < 2^62. The processor's square root,
+/// which IEEE 754 defines to the last bit, is off by at most one in this range; the result is
+/// checked in integers.
 inline std::int64_t isqrt_wide(std::int64_t v) {
   auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(v)));
   root -= root * root > v ? 1 : 0;
@@ -42,7 +47,7 @@ inline std::int64_t isqrt_wide(std::int64_t v) {
 
 namespace detail {
 
-constexpr std::int64_t floor_of(std::int64_t a, std::int64_t b) {  // b > 0
+constexpr std::int64_t floor_of(std::int64_t a, std::int64_t b) {  // requires b > 0
   return a / b - static_cast<std::int64_t>(a % b < 0);
 }
 constexpr std::int64_t ceil_of(std::int64_t a, std::int64_t b) { return -floor_of(-a, b); }
@@ -55,7 +60,8 @@ constexpr void join(CapsuleRow& row, std::int64_t first, std::int64_t last) {
 
 }  // namespace detail
 
-/// The row of the line with these numbers (file comment), counted from the segment's first point. O(1).
+/// Returns the row of the line with these numbers (comment of this file), counted from the
+/// segment's first point. Cost: O(1).
 inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t c, std::int64_t n,
                               std::int64_t reach) {
   if (df < 0) {
@@ -73,8 +79,8 @@ inline CapsuleRow capsule_row(std::int64_t df, std::int64_t across, std::int64_t
   if (e < 0) return {};
   const std::int64_t root = isqrt_wide(length * e);
   CapsuleRow body{detail::ceil_of(df * c - root, across), detail::floor_of(df * c + root, across)};
-  if (body.empty())
-    return {};  // no voxel within reach of the endless line, and so none of the segment
+  // No voxel is within reach of the infinite line, so none is within reach of the segment.
+  if (body.empty()) return {};
   if (body.first * df + c >= 0 && body.last * df + c <= length) return body;
   if (df == 0) {
     if (c < 0 || c > length) body = {};

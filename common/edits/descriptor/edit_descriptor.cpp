@@ -72,7 +72,7 @@ Result<void> validate_shape(const FillStroke& shape) {
 Result<void> validate_shape(const Paste& shape) {
   if (shape.clipboard == nullptr) return fail(ErrorCode::bad_value, "paste without a clipboard");
   if (!shape.orientation.valid()) return fail(ErrorCode::bad_value, "unknown orientation");
-  // First where it lies, so that what reaches from there can be added up.
+  // The position is checked first, so that the sums that follow cannot overflow.
   if (!validate_shape(SetVoxel{shape.at}))
     return fail(ErrorCode::bad_value, "paste lies outside the world");
   const VoxelBox box = box_of(shape);
@@ -268,7 +268,8 @@ Result<EditDescriptor> decode_descriptor(ByteView in) {
   if (!is_kind(tag)) {
     r.reject(ErrorCode::unknown_kind, "unknown edit kind");
   }
-  // The kind's bound; a record has room for more. Before anything else of it is read.
+  // This is the bound of the kind; a record has room for more. It is checked before the rest is
+  // read.
   if (r.ok() && in.size() > descriptor_bytes_max(static_cast<EditKind>(tag)))
     r.reject(ErrorCode::limit_exceeded, "descriptor too long");
   const std::uint8_t mask = r.u8();

@@ -1,7 +1,7 @@
-// EditDescriptor: what an edit does, as geometry, a mask and a material. One record for a whole brush stroke
-// or pasted clipboard. Its effect on a chunk depends only on the descriptor and that chunk's voxels.
-// The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire, in the log and in exports.
-// A kind's meaning is frozen; a change is a new kind.
+// EditDescriptor: the effect of an edit as geometry, a mask and a material. A whole brush stroke or
+// pasted clipboard is one record. The effect on a chunk depends only on the descriptor and that
+// chunk's voxels. The canonical bytes (tag + varints, docs/edit-log.md) are the same on the wire,
+// in the log and in exports. The meaning of a kind is frozen; a change is a new kind.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,7 +17,8 @@
 
 namespace runstone {
 
-/// Tags, stored. 5 is unused: to replace a material in a box is fill_box with the mask only_material.
+/// Tags; they are stored. 5 is unused: fill_box with the mask only_material replaces a material in
+/// a box.
 enum class EditKind : std::uint8_t {
   set_voxel = 1,
   fill_box = 2,
@@ -26,7 +27,7 @@ enum class EditKind : std::uint8_t {
   paste = 6
 };
 
-/// Which voxels of the geometry an edit may write. Stored.
+/// The voxels of the geometry that an edit may write. Stored.
 enum class MaskKind : std::uint8_t {
   everything = 0,
   only_empty = 1,
@@ -70,18 +71,18 @@ struct FillSphere {
   friend bool operator==(const FillSphere&, const FillSphere&) = default;
 };
 
-/// Voxels whose squared distance to some segment of the polyline through `points` is at most r^2 + r: a
-/// sphere drawn along it. A single point is a sphere, not a stroke; radius 0 would leave gaps.
+/// Voxels whose squared distance to some segment of the polyline through `points` is at most r^2 +
+/// r: a sphere drawn along it. A single point is a sphere, not a stroke. Radius 0 would leave gaps.
 struct FillStroke {
-  std::vector<VoxelPos> points;  // 2 .. kStrokePointsMax, no two equal ones in a row
+  std::vector<VoxelPos> points;  // 2 .. kStrokePointsMax; consecutive points differ
   std::uint16_t radius = 1;      // 1 .. kEditRadiusMax
   friend bool operator==(const FillStroke&, const FillStroke&) = default;
 };
 
 /// The touched cells of a clipboard, each with its own material.
 struct Paste {
-  VoxelPos
-      at;  // smallest corner in the world of the whole clipboard as it is turned, touched there or not
+  // Smallest corner in the world of the whole rotated clipboard, untouched cells included.
+  VoxelPos at;
   std::shared_ptr<const Clipboard> clipboard;
   Orientation orientation;
   friend bool operator==(const Paste& a, const Paste& b) {
@@ -92,17 +93,18 @@ struct Paste {
   }
 };
 
-using EditShape =
-    std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;  // order follows EditKind
+// The order is that of EditKind.
+using EditShape = std::variant<SetVoxel, FillBox, FillSphere, FillStroke, Paste>;
 
 struct EditDescriptor {
   EditShape shape;
   Mask mask;
-  Material material = kEmpty;  // kEmpty removes; kEmpty for a paste, whose cells have theirs
+  // kEmpty removes voxels. It is kEmpty for a paste, whose cells have their own materials.
+  Material material = kEmpty;
   friend bool operator==(const EditDescriptor&, const EditDescriptor&) = default;
 };
 
-/// What the encoding can say at all. Servers allow less (protocol/limits.hpp, server configuration).
+/// Limits of the encoding. Servers allow less (protocol/limits.hpp, server configuration).
 inline constexpr std::int32_t kEditBoxSideMax = 4096;
 inline constexpr std::uint16_t kEditRadiusMax = 512;
 inline constexpr std::size_t kStrokePointsMax = 256;
@@ -110,26 +112,29 @@ inline constexpr std::int32_t kStrokeStepMax = 1024;  // from point to point, al
 
 EditKind kind_of(const EditDescriptor& edit);
 
-/// Bytes that a descriptor of this kind may have.
+/// Returns the maximum number of bytes of a descriptor of this kind.
 constexpr std::size_t descriptor_bytes_max(EditKind kind) {
   if (kind == EditKind::paste) return 64 + kClipboardBytesMax;
   return kind == EditKind::fill_stroke ? 1600 : 64;
 }
-inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);  // of all
+// Maximum over all kinds.
+inline constexpr std::size_t kDescriptorBytesMax = descriptor_bytes_max(EditKind::paste);
 
-/// Names the first field outside its range (position beyond the world, empty or oversized box, radius, a
-/// stroke's points, a paste without a clipboard). A clipboard is valid in itself. O(1); stroke: O(points).
+/// Fails with the first field outside its range: a position beyond the world, an empty or oversized
+/// box, a radius, the points of a stroke, a paste without a clipboard. A clipboard is always valid.
+/// Cost: O(1); stroke: O(points).
 Result<void> validate(const EditDescriptor& edit);
 
-/// Largest id among the materials that the edit writes and asks for in its mask: a table that knows it knows
-/// all of them. Requires a valid descriptor. O(1).
+/// Returns the largest id among the materials that the edit writes or has in its mask. A table that
+/// knows it knows all of them. Requires a valid descriptor. Cost: O(1).
 Material material_max(const EditDescriptor& edit);
 
 /// Appends the canonical bytes. Requires a valid descriptor.
 void encode(const EditDescriptor& edit, Bytes& out);
 Bytes encode(const EditDescriptor& edit);
 
-/// Exactly one descriptor and nothing else; only canonical bytes pass. The result is valid.
+/// Decodes exactly one descriptor. Fails if bytes are left over or are not canonical. The result is
+/// valid.
 Result<EditDescriptor> decode_descriptor(ByteView in);
 
 }  // namespace runstone

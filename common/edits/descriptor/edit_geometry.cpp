@@ -38,10 +38,11 @@ std::uint64_t volume_of(const VoxelBox& b) {
          static_cast<std::uint64_t>(b.max.z - b.min.z);
 }
 
-// Never fewer than the segment's capsule has. Across the longest axis of the segment, each of its n + w
-// layers (w = 2r + 1) is a part of an ellipse of area at most sqrt(3) pi (r^2 + r) and outline at most 2
-// sqrt(2) pi sqrt(r^2 + r); a convex figure holds at most area + outline / 2 + 1 points of the grid
-// (Nosarzewska 1948), here fewer than 1.361 w^2 + 2.222 w + 1 <= 2 w^2 for w >= 5, and 18 = 2 w^2 for w = 3.
+// Returns an upper bound for the voxels of the segment's capsule. Across the longest axis of the
+// segment, each of its n + w layers (w = 2r + 1) is a part of an ellipse of area at most sqrt(3) pi
+// (r^2 + r) and outline at most 2 sqrt(2) pi sqrt(r^2 + r). A convex figure holds at most area +
+// outline / 2 + 1 points of the grid (Nosarzewska 1948). Here this is fewer than 1.361 w^2 + 2.222
+// w + 1 <= 2 w^2 for w >= 5, and 18 = 2 w^2 for w = 3.
 std::uint64_t counted_segment(const FillStroke& stroke, std::size_t i) {
   const VoxelPos &a = stroke.points[i], &b = stroke.points[i + 1];
   const auto width = 2 * std::uint64_t{stroke.radius} + 1;
@@ -50,7 +51,7 @@ std::uint64_t counted_segment(const FillStroke& stroke, std::size_t i) {
                   2 * width * width * (static_cast<std::uint64_t>(reach) + width));
 }
 
-// The axis of the segment's longest side runs fastest: the fewest lines to look at.
+// The axis of the segment's longest side runs fastest: this gives the fewest lines.
 AxisOrder order_along(const FillStroke& stroke, std::size_t i) {
   const VoxelPos &a = stroke.points[i], &b = stroke.points[i + 1];
   const auto x = std::abs(b.x - a.x), y = std::abs(b.y - a.y), z = std::abs(b.z - a.z);
@@ -58,14 +59,15 @@ AxisOrder order_along(const FillStroke& stroke, std::size_t i) {
 }
 
 bool touches_segment(const FillStroke& stroke, std::size_t i, const VoxelBox& box) {
-  // Relative to the part of the box that is near, so that coordinates stay small.
+  // Coordinates are relative to the near part of the box, so that they stay small.
   const VoxelBox near = intersect(segment_box(stroke, i), box);
   if (near.empty()) return false;
   const auto capsule = clip_segment(stroke, i, near, order_along(stroke, i));
   return capsule && has_voxel(*capsule);
 }
 
-// Voxels of a sphere: the rows of one quarter of its (x, y) disc, times the mirrors they have.
+// Returns the voxels of a sphere: the rows of one quarter of its (x, y) disc, times the number of
+// their mirror images.
 std::uint64_t sphere_voxels(std::int64_t r) {
   const std::int64_t reach = r * r + r;
   std::uint64_t count = 0;
@@ -95,7 +97,7 @@ std::uint64_t chunks_of(const ChunkRange& range) {
          static_cast<std::uint64_t>(range.last.z - range.first.z + 1);
 }
 
-// Appends the chunks of the range that pass, ascending.
+// Appends the chunks of the range for which passes() returns true, in ascending order.
 template <class F>
 void append_chunks(const ChunkRange& range, std::vector<ChunkCoord>& out, F&& passes) {
   const auto& [first, last] = range;
@@ -146,7 +148,8 @@ bool touches(const EditDescriptor& edit, const VoxelBox& box) {
   if (const auto* paste = std::get_if<Paste>(&edit.shape)) return touches(*paste, box);
   const auto* sphere = std::get_if<FillSphere>(&edit.shape);
   if (sphere == nullptr) return !intersect(bounding_box(edit), box).empty();
-  // The voxel of the box nearest to the centre decides: distances are taken between voxel positions.
+  // The voxel of the box nearest to the centre decides. Distances are taken between voxel
+  // positions.
   const std::int64_t r = sphere->radius;
   const std::array<std::array<std::int64_t, 3>, 3> axes = {
       {{sphere->centre.x, box.min.x, box.max.x},
@@ -169,7 +172,7 @@ std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t 
 
 void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out) {
   out.clear();
-  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {  // the most frequent kind by far
+  if (const auto* voxel = std::get_if<SetVoxel>(&edit.shape)) {  // by far the most frequent kind
     out.push_back(chunk_of(voxel->at, edge));
     return;
   }
@@ -197,8 +200,8 @@ std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge
     for (std::size_t i = 0; i < segment_count(*stroke); ++i) {
       count += chunks_of(chunk_range(segment_box(*stroke, i), edge));
     }
-    return std::min(count,
-                    chunks_of(chunk_range(bounding_box(edit), edge)));  // segments share chunks
+    // Segments share chunks.
+    return std::min(count, chunks_of(chunk_range(bounding_box(edit), edge)));
   }
   return chunks_of(chunk_range(bounding_box(edit), edge));
 }

@@ -1,5 +1,5 @@
-// Geometry of edits: which voxels, which chunks, and which stretches of a chunk's index order they cover.
-// Nobody visits voxels one by one. All integers.
+// Geometry of edits: the voxels, the chunks and the stretches of a chunk's index order that they
+// cover. No function visits voxels one by one. All numbers are integers.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,30 +10,33 @@
 
 namespace runstone {
 
-/// Smallest box that holds the geometry (mask ignored). O(1); stroke: O(points).
+/// Returns the smallest box that holds the geometry, mask ignored. Cost: O(1); stroke: O(points).
 VoxelBox bounding_box(const EditDescriptor& edit);
 
-/// Smallest box that holds the capsule from point `i` of the stroke to the next one.
+/// Returns the smallest box that holds the capsule from point `i` of the stroke to the next one.
 VoxelBox segment_box(const FillStroke& stroke, std::size_t i);
 
-/// Voxels that the geometry counts for where edits are limited, mask ignored: never fewer than it has. Exact
-/// but for strokes, whose segments are counted each for itself, from above (docs/edit-log.md), so that the
-/// count bounds their work too. Of a paste the touched cells. Sphere: O(r^2). Stroke: O(points).
+/// Returns the number of voxels that limits count for the geometry, mask ignored. It is never below
+/// the true number. It is exact except for strokes: their segments are counted one by one, from
+/// above (docs/edit-log.md), so the count also bounds their work. For a paste it is the number of
+/// touched cells. Cost: O(1); sphere: O(r^2); stroke: O(points).
 std::uint64_t counted_voxels(const EditDescriptor& edit);
 
-/// Whether the geometry has a voxel in this box. Exact. O(1); stroke: O(points), and O(lines of the box that
-/// a segment meets) where one comes close; paste: O(lines of the clipboard in the box * log runs).
+/// Returns true if the geometry has a voxel in this box. Exact. Cost: O(1); stroke: O(points), and
+/// O(lines of the box that a segment meets) where one is close; paste: O(lines of the clipboard in
+/// the box * log runs).
 bool touches(const EditDescriptor& edit, const VoxelBox& box);
 
-/// Chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z. This order is part of
-/// the protocol: a commit lists one previous version per touched chunk in it. `edge`: 16, 32, 64 or 128.
+/// Returns the chunks (lod 0) in which the geometry has a voxel, ascending by x, then y, then z.
+/// This order is part of the protocol: a commit lists one previous version per touched chunk in it.
+/// `edge`: 16, 32, 64 or 128.
 std::vector<ChunkCoord> touched_chunks(const EditDescriptor& edit, std::int32_t edge);
-/// The same into `out`, whose room is used again.
+/// Writes the same to `out` and reuses its memory.
 void touched_chunks(const EditDescriptor& edit, std::int32_t edge, std::vector<ChunkCoord>& out);
 
-/// Number of chunks touched_chunks() would list, counted by the bounding box, for a stroke by the bounding
-/// boxes of its segments added up: an upper bound for limits, and for the work of listing them. O(1); stroke:
-/// O(points).
+/// Returns an upper bound for the number of touched_chunks(): the chunks of the bounding box; for a
+/// stroke, of the bounding boxes of its segments added up. It serves limits and bounds the work of
+/// listing the chunks. Cost: O(1); stroke: O(points).
 std::uint64_t touched_chunks_bound(const EditDescriptor& edit, std::int32_t edge);
 
 /// Half-open stretch of a flattened chunk.
@@ -42,9 +45,9 @@ struct IndexSpan {
   friend bool operator==(const IndexSpan&, const IndexSpan&) = default;
 };
 
-/// Appends the stretches of the chunk at `origin` that the geometry covers: ascending, disjoint, not adjacent
-/// (whole lines and layers join into one). O(lines covered); stroke and paste: O(n log n) of the rows of their
-/// parts.
+/// Appends the stretches of the chunk at `origin` that the geometry covers. They ascend, are
+/// disjoint and not adjacent (whole lines and layers join into one). Cost: O(lines covered); stroke
+/// and paste: O(n log n) of the rows of their parts.
 void append_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order,
                   std::vector<IndexSpan>& out);
 

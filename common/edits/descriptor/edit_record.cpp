@@ -1,7 +1,5 @@
 #include "common/edits/descriptor/edit_record.hpp"
 
-#include <xxhash.h>
-
 #include <limits>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
@@ -71,7 +69,7 @@ Result<EditRecord> decode_record(ByteView in) {
     return static_cast<std::int32_t>(
         r.svarint_in(-kWorldLimit, kWorldLimit - 1, "box outside the world"));
   };
-  // How long a side may be belongs to the kind. Below, the box must be the descriptor's.
+  // The kind bounds the length of a side. The box is compared with the descriptor's below.
   const auto side = [&r] {
     return static_cast<std::int32_t>(
         r.varint_max(2 * std::uint64_t{kWorldLimit}, "box larger than the world"));
@@ -94,11 +92,6 @@ Result<EditRecord> decode_record(ByteView in) {
     return fail(ErrorCode::bad_value, "bounding box is not the descriptor's", at);
   }
   return record;
-}
-
-std::uint64_t record_checksum(const EditRecord& record) {
-  const Bytes bytes = encode_record(record);
-  return XXH3_64bits(bytes.data(), bytes.size());
 }
 
 }  // namespace runstone

@@ -1,4 +1,5 @@
-// EditRecord: one entry of the edit log: who, when, where, why and what. docs/edit-log.md gives its bytes.
+// EditRecord: one entry of the edit log: author, time, place, cause and descriptor.
+// docs/edit-log.md specifies its bytes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,27 +18,26 @@ struct EditRecord {
   TimeUs time_us = 0;  // UTC, never decreasing along the log
   Cause cause = Cause::player;
   EditDescriptor edit;
-  Sequence subject = 0;  // the edit this one answers (rollback, undo, redo), < version.seq; 0: none
-  LogId log = 0;         // version.seq and subject count in this log
+  // The edit that this one reverts or restores (rollback, undo, redo); below version.seq. 0: none.
+  Sequence subject = 0;
+  LogId log = 0;  // version.seq and subject count in this log
   friend bool operator==(const EditRecord&, const EditRecord&) = default;
 };
 
 inline constexpr std::uint8_t kEditRecordVersion = 1;
-/// What a record can carry: room for kinds yet to come, such as a pasted clipboard. Each kind's own bound is
-/// decode_descriptor()'s.
+/// Bounds the descriptor in a record, with room for future kinds. decode_descriptor() checks the
+/// bound of each kind.
 inline constexpr std::size_t kRecordDescriptorBytesMax = std::size_t{1} << 20;
 
-/// Names the first number that no record can have: sequence, client sequence or subject out of its range.
+/// Fails if sequence, client sequence or subject is outside its range.
 Result<void> validate_numbers(const EditRecord& record);
 
-/// Canonical bytes without the checksum: version byte, then numbers, then the bounding box, then the
+/// Returns the canonical bytes without the checksum: version byte, numbers, bounding box,
 /// descriptor. Requires validate_numbers().
 Bytes encode_record(const EditRecord& record);
 
-/// The reverse; only canonical bytes pass, and the bounding box must be the descriptor's.
+/// Decodes a record. Fails if the bytes are not canonical or the bounding box is not that of the
+/// descriptor.
 Result<EditRecord> decode_record(ByteView in);
-
-/// XXH3-64 of encode_record(): stored beside the record, so that a damaged row is seen, never applied.
-std::uint64_t record_checksum(const EditRecord& record);
 
 }  // namespace runstone

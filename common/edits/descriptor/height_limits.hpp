@@ -1,6 +1,6 @@
-// HeightLimits: between which heights a world may be edited. Server and client ask the same question, so a
-// prediction is refused where the server would refuse. An edit is taken whole or not at all, never clipped:
-// what a player shapes and what the log says stay the same thing.
+// HeightLimits: the range of heights in which a world may be edited. Server and client use the same
+// check, so a client rejects the predictions that the server would reject. An edit is applied
+// completely or not at all, and is never clipped: the log holds what the player shaped.
 #pragma once
 #include <cstdint>
 
@@ -9,17 +9,17 @@
 
 namespace runstone {
 
-/// Voxels with y_min <= y < y_max. By default the whole world.
+/// Voxels with y_min <= y < y_max. The default is the whole world.
 struct HeightLimits {
   std::int32_t y_min = -kWorldLimit, y_max = kWorldLimit;
   friend bool operator==(const HeightLimits&, const HeightLimits&) = default;
 };
 
-/// Whether the limits lie inside the world and hold at least one height.
+/// Returns true if the limits lie inside the world and hold at least one height.
 bool validate(const HeightLimits& limits);
 
-/// Whether every voxel of the geometry (mask ignored) lies between the limits. Requires a valid descriptor.
-/// O(1).
+/// Returns true if every voxel of the geometry (mask ignored) lies between the limits. Requires a
+/// valid descriptor. Cost: O(1).
 bool within(const EditDescriptor& edit, const HeightLimits& limits);
 
 }  // namespace runstone

@@ -7,8 +7,9 @@ namespace {
 
 using Axes3 = std::array<std::int32_t, 3>;
 
-// Whether some point of the segment may be within r + 1/2 of a voxel of the box low .. high (both included):
-// of the segment, what lies beside the box along its longest axis must lie beside it along the others too.
+// Returns true if some point of the segment may be within r + 1/2 of a voxel of the box low .. high
+// (both included). The part of the segment that is near the box along the segment's longest axis
+// must be near it along the other axes too.
 bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes3& low,
               const Axes3& high) {
   std::size_t k = 0;
@@ -17,7 +18,7 @@ bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes
   }
   const std::int64_t length = std::abs(along[k]);
   const std::int64_t sign = along[k] < 0 ? -1 : 1;
-  // How far along the axis, 0 .. length.
+  // Distances along the axis, 0 .. length.
   const std::int64_t to_low = sign * (std::int64_t{low[k]} - start[k]);
   const std::int64_t to_high = sign * (std::int64_t{high[k]} - start[k]);
   const std::int64_t from = std::max<std::int64_t>(0, std::min(to_low, to_high) - r - 1);
@@ -33,7 +34,7 @@ bool may_meet(const Axes3& start, const Axes3& along, std::int32_t r, const Axes
   return true;
 }
 
-// Most edits are single voxels: without the boxes of the general case.
+// Most edits are single voxels. This does without the boxes of the general case.
 std::optional<OrderedShape> voxel_of(VoxelPos at, VoxelPos origin, Extent extent, AxisOrder order) {
   const std::array<std::uint32_t, 3> place = {static_cast<std::uint32_t>(at.x - origin.x),
                                               static_cast<std::uint32_t>(at.y - origin.y),

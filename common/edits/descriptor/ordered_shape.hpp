@@ -1,9 +1,10 @@
-// OrderedShape: an edit's geometry seen from one chunk, in the chunk's own order (fastest, middle, slowest
-// axis) and clipped to it. Boxes, spheres and the segments of a stroke are convex, so each line of the chunk
-// meets them in at most one row of voxels; whoever needs the geometry asks for these rows. A stroke is as
-// many shapes as it has segments here: to apply a mask and a material twice to a voxel is to apply them once,
-// since what the first one wrote the second one leaves or writes again. A paste is as many boxes as its runs
-// have here, none of which overlap. Internal to edits. Integers only.
+// OrderedShape: the geometry of an edit in the order of one chunk (fastest, middle, slowest axis),
+// clipped to the chunk. Boxes, spheres and the segments of a stroke are convex, so each line of the
+// chunk meets them in at most one row of voxels. Users of the geometry ask for these rows. Integers
+// only. Internal to edits.
+//   - A stroke has one shape per segment. Applying a mask and a material twice to a voxel equals
+//     applying them once: the second application keeps or repeats what the first one wrote.
+//   - A paste has one box per box of its runs in the chunk. These boxes do not overlap.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@
 
 namespace runstone {
 
-/// Largest w with w * w <= v.
+/// Returns the largest w with w * w <= v.
 constexpr std::uint32_t isqrt(std::uint32_t v) {
   std::uint32_t root = 0;
   if (v == 0) return 0;
@@ -33,10 +34,10 @@ constexpr std::uint32_t isqrt(std::uint32_t v) {
 
 struct OrderedShape {
   enum class Form : std::uint8_t { box, sphere, capsule };
-  std::array<std::uint32_t, 3> first{},
-      last{};  // clipped bounding box along f, m, s; half-open, never empty
-  std::array<std::int32_t, 3>
-      centre{};  // of a sphere, of a capsule's start; relative to the first voxel
+  // Clipped bounding box along f, m, s. Half-open, never empty.
+  std::array<std::uint32_t, 3> first{}, last{};
+  // Centre of a sphere or start of a capsule, relative to the first voxel.
+  std::array<std::int32_t, 3> centre{};
   std::array<std::int32_t, 3> along{};  // from a capsule's start to its end
   std::int32_t reach = 0;               // r * r + r: the largest squared distance inside
   Form form = Form::box;
@@ -49,22 +50,23 @@ struct OrderedShape {
   }
 };
 
-/// Nothing when the bounding box misses the chunk. O(1). A sphere may still have no voxel inside. Not for
-/// strokes and pastes: their parts are clipped one by one.
+/// Returns nullopt if the bounding box misses the chunk. A sphere may still have no voxel inside.
+/// Requires no stroke and no paste: their parts are clipped one by one. Cost: O(1).
 std::optional<OrderedShape> clip(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                  AxisOrder order);
 
-/// The segment from point `i` of the stroke to the next one, clipped to a box of voxels, relative to the
-/// box's first voxel. Nothing when it passes by; a few that pass by closely are told by their rows alone.
-/// O(1).
+/// Returns the segment from point `i` of the stroke to the next one, clipped to a box of voxels,
+/// relative to the box's first voxel. Returns nullopt if the segment misses the box. For a few
+/// segments that miss it closely, the result has no rows instead. Cost: O(1).
 std::optional<OrderedShape> clip_segment(const FillStroke& stroke, std::size_t i,
                                          const VoxelBox& box, AxisOrder order);
 
-/// Whether the capsule has a voxel inside its clipped box. Exact. O(lines it meets until one is found).
+/// Returns true if the capsule has a voxel inside its clipped box. Exact. Cost: O(lines it meets
+/// until one is found).
 bool has_voxel(const OrderedShape& capsule);
 
-/// Calls part(box, material) for the boxes of the paste's runs in the chunk, in index order. Takes scratch of
-/// its own. O(runs inside + lines inside * log runs).
+/// Calls part(box, material) for the boxes of the paste's runs in the chunk, in index order.
+/// Allocates. Cost: O(runs inside + lines inside * log runs).
 template <class F>
 void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder order, F&& part) {
   const auto placed = placed_cells(paste, chunk, order);
@@ -93,8 +95,8 @@ void for_each_pasted_box(const Paste& paste, const VoxelBox& chunk, AxisOrder or
   });
 }
 
-/// Calls part(shape, material) for each shape of the edit that may have a voxel in the chunk: one, or one per
-/// segment of a stroke or box of a paste.
+/// Calls part(shape, material) for each shape of the edit that may have a voxel in the chunk: one
+/// shape, or one per segment of a stroke or box of a paste.
 template <class F>
 void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, AxisOrder order,
                    F&& part) {
@@ -110,20 +112,20 @@ void for_each_part(const EditDescriptor& edit, VoxelPos origin, Extent extent, A
   }
 }
 
-/// append_spans() of edit_geometry.hpp for a shape that is clipped already.
+/// Calls append_spans() of edit_geometry.hpp for a shape that is clipped already.
 void append_spans(const OrderedShape& shape, OrderedExtent e, std::vector<IndexSpan>& out);
 
-/// Makes one ascending list of disjoint stretches of the spans from `start` on, which several shapes
-/// appended.
+/// Merges the spans from `start` on, which several shapes appended, into one ascending list of
+/// disjoint stretches.
 void unite_spans(std::vector<IndexSpan>& spans, std::size_t start);
 
-/// Calls row(m, first, last), which returns whether to go on, as for_each_row() does, for a capsule. O(lines
-/// it meets).
+/// Calls row(m, first, last) for a capsule as for_each_row() does, until it returns false. Cost:
+/// O(lines it meets).
 template <class F>
 bool visit_capsule_rows(const OrderedShape& shape, std::uint32_t s, F&& row) {
   const std::int64_t qs = static_cast<std::int64_t>(s) - shape.centre[2];
   const std::int64_t df = shape.along[0], dm = shape.along[1], ds = shape.along[2];
-  // The lines that the capsule meets at all are the row of its shadow on the plane across them.
+  // The lines that the capsule meets are the row of its projection onto the plane across them.
   const CapsuleRow lines = capsule_row(dm, ds * ds, qs * ds, qs * qs, shape.reach);
   const std::int64_t m_first =
       std::max<std::int64_t>(shape.first[1], lines.first + shape.centre[1]);
@@ -146,8 +148,9 @@ bool visit_capsule_rows(const OrderedShape& shape, std::uint32_t s, F&& row) {
   return true;
 }
 
-/// Calls row(m, first, last) for the voxels [first, last) of each line that the shape meets in layer `s`,
-/// ascending. Requires s inside the clipped box. O(lines), plus O(radius) once for a sphere.
+/// Calls row(m, first, last) for the voxels [first, last) of each line that the shape meets in
+/// layer `s`, ascending. Requires s inside the clipped box. Cost: O(lines), plus O(radius) once for
+/// a sphere.
 template <class F>
 void for_each_row(const OrderedShape& shape, std::uint32_t s, F&& row) {
   if (shape.form == OrderedShape::Form::capsule) {
@@ -174,7 +177,8 @@ void for_each_row(const OrderedShape& shape, std::uint32_t s, F&& row) {
   const auto left_over = [&](std::int32_t m) {
     return in_layer - (m - shape.centre[1]) * (m - shape.centre[1]);
   };
-  // The half width follows the circle from line to line: it never steps more than the radius up and down.
+  // The half width follows the circle from line to line. In total it moves at most the radius up
+  // and the radius down.
   auto half = static_cast<std::int32_t>(isqrt(static_cast<std::uint32_t>(left_over(m_first))));
   for (std::int32_t m = m_first; m < m_last; ++m) {
     const std::int32_t rest = left_over(m);

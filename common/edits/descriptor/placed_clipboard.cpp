@@ -22,7 +22,8 @@ LocalPos local(const Ints3& c) {
           static_cast<std::uint8_t>(c[2])};
 }
 
-/// The cells that lie in a box of the world. Requires a box inside the paste's and not empty.
+/// Returns the cells that lie in a box of the world. Requires a non-empty box inside the paste's
+/// box.
 CellBox cells_in(const Paste& paste, const VoxelBox& box) {
   const Ints3 at = of_position(paste.at), min = of_position(box.min), max = of_position(box.max);
   const Extent whole = paste.orientation.rotated(paste.clipboard->extent());
@@ -37,7 +38,7 @@ CellBox cells_in(const Paste& paste, const VoxelBox& box) {
   return {local(first), {extent.x, extent.y, extent.z}};
 }
 
-/// Bit k: what runs along clipboard axis k runs backwards in the world.
+/// Returns a byte in which bit k is set if clipboard axis k runs backwards in the world.
 std::uint8_t backward_axes(const Orientation& orientation) {
   unsigned bits = 0;
   for (const Axis axis : kAxes) {
@@ -46,7 +47,7 @@ std::uint8_t backward_axes(const Orientation& orientation) {
   return static_cast<std::uint8_t>(bits);
 }
 
-/// The axis order that becomes `order` of the world once what runs along clipboard axes runs along the world's.
+/// Returns the axis order of the clipboard that corresponds to `order` of the world.
 AxisOrder order_in_clipboard(const Orientation& orientation, AxisOrder order) {
   const auto world = axes_of(order);
   const std::array<Axis, 3> wanted = {orientation.along(world[0]), orientation.along(world[1]),
@@ -55,7 +56,7 @@ AxisOrder order_in_clipboard(const Orientation& orientation, AxisOrder order) {
                        [&](AxisOrder candidate) { return axes_of(candidate) == wanted; });
 }
 
-/// Cells first .. last (behind the last one) by clipboard axis, as the world has them.
+/// Returns the box in the world of cells first .. last (half-open), given by clipboard axis.
 VoxelBox in_world(const Paste& paste, const Ints3& first, const Ints3& last) {
   Ints3 min = of_position(paste.at), max = min;
   for (const Axis axis : kAxes) {
@@ -101,7 +102,7 @@ bool touches(const Paste& paste, const VoxelBox& box) {
       for (std::uint32_t m = from.m; m < from.m + sides.m; ++m) {
         const VoxelIndex begin = from.f + e.f * (m + e.m * s);
         cursor.seek(begin);
-        // Neighbouring runs differ, so the one behind an untouched run is touched.
+        // Neighbouring runs differ, so the run behind an untouched run is touched.
         if (cursor.material() != 0 || cursor.end() < begin + sides.f) return true;
       }
     }
@@ -162,7 +163,7 @@ std::optional<PlacedCells> placed_cells(const Paste& paste, const VoxelBox& box,
   RunChunk cells =
       cut(paste.clipboard->cells(), part.first, part.extent, backward_axes(paste.orientation));
   cells = reorder(cells, order_in_clipboard(paste.orientation, order));
-  // The same runs, under the names that the axes have in the world.
+  // The runs stay the same; the axes get the names that they have in the world.
   cells.extent = paste.orientation.rotated(cells.extent);
   cells.order = order;
   return PlacedCells{inside, std::move(cells)};

@@ -1,4 +1,4 @@
-// Placed clipboard: where the cells of a paste lie in the world. Internal to edits.
+// Placed clipboard: the places of the cells of a paste in the world. Internal to edits.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,23 +10,25 @@
 
 namespace runstone {
 
-/// Smallest box of the world that holds the touched cells. O(1).
+/// Returns the smallest box of the world that holds the touched cells. Cost: O(1).
 VoxelBox box_of(const Paste& paste);
 
-/// Whether a touched cell lies in the box. O(lines of the clipboard inside * log runs).
+/// Returns true if a touched cell lies in the box. Cost: O(lines of the clipboard inside * log
+/// runs).
 bool touches(const Paste& paste, const VoxelBox& box);
 
-/// Chunks with a touched cell, ascending. O(runs * chunks that a run meets + chunks).
+/// Returns the chunks with a touched cell, ascending. Cost: O(runs * chunks that a run meets +
+/// chunks).
 std::vector<ChunkCoord> touched_chunks(const Paste& paste, std::int32_t edge);
 
-/// Cell numbers inside a box of the world, as they lie there.
+/// Cell numbers inside a box of the world, in world orientation.
 struct PlacedCells {
-  VoxelBox box;    // of the box that was asked for, what the touched cells' box meets
-  RunChunk cells;  // its sides; in the order that was asked for
+  VoxelBox box;    // intersection of the requested box and the touched cells' box
+  RunChunk cells;  // has the sides of `box`, in the requested order
 };
 
-/// Nothing if the touched cells' box misses the box. O(runs inside + lines inside * log runs): what lies outside costs
-/// nothing.
+/// Returns nullopt if the touched cells' box misses the box. Cells outside the box cost nothing.
+/// Cost: O(runs inside + lines inside * log runs).
 std::optional<PlacedCells> placed_cells(const Paste& paste, const VoxelBox& box, AxisOrder order);
 
 }  // namespace runstone

@@ -37,8 +37,9 @@ ChunkRestore::ChunkRestore(RunChunk before, VoxelPos origin)
     : origin_(origin), now_(std::move(before)) {}
 
 void ChunkRestore::add(const EditDescriptor& edit, bool is_selected, ApplyScratch& scratch) {
-  // Once the chunks differ, two edits of others may not be swept together: the second might take back what
-  // the first wrote over a selected edit, and the sweep would see no writer at all.
+  // Once the chunks differ, two edits that are not selected may not be applied in one sweep. The
+  // second might revert what the first wrote over a selected edit, and the sweep would report no
+  // writer at all.
   const bool may_join = pending_.empty() || pending_is_selected_ == is_selected;
   if (!may_join || pending_.size() == kFollowedEditsMax) settle(scratch);
   if (is_split_ && !is_selected) return apply({&edit, 1}, false, scratch);
@@ -58,7 +59,7 @@ void ChunkRestore::apply(std::span<const EditDescriptor> edits, bool is_selected
   apply_stack(now_, digest_, origin_, edits, scratch, result_);
   if (!result_.changed) return;
   if (is_split_ && !is_selected) write_changes(restored_, changes_of(scratch, result_), scratch);
-  // One axis order and canonical runs: equal voxels have equal runs.
+  // The axis order is the same and the runs are canonical, so equal voxels have equal runs.
   if (is_selected || is_split_) is_split_ = now_.runs != restored_.runs;
 }
 

@@ -1,5 +1,5 @@
-// Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's orientation,
-// read straight from the neighbour's runs whatever its axis order is. Internal to rdm.
+// Border rows: the layer of a neighbour that touches the chunk, as rows of bits in the chunk's
+// orientation. They are read from the neighbour's runs in any axis order. Internal to rdm.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace runstone::rdm {
 
-/// A layer of a chunk, and which of its two axes runs along the bits of a row.
+/// A layer of a chunk, and the one of its two axes that runs along the bits of a row.
 struct LayerPlace {
   Axis axis, bit_axis;
   std::uint32_t at;
@@ -24,17 +24,17 @@ struct LayerPlace {
   }
 };
 
-/// One layer as rows of bits, a plane per bit of the codes that `code_of(material)` gives.
-/// Row b of plane k: bit i says whether bit k of the code of the voxel at (i, b) is set.
-template <unsigned kPlanes, class Row, class CodeOf>
+/// One layer as rows of bits: one plane per bit of the indices that `to_index(material)` returns.
+/// In row b of plane k, bit i is bit k of the index of the voxel at (i, b).
+template <unsigned kPlanes, class Row, class ToIndex>
 class LayerReader {
  public:
   using Rows = std::array<Row, kRowBits<Row>>;
 
-  /// All planes are replaced. Requires codes below 2^kPlanes and sides up to kRowBits<Row>.
+  /// Replaces all planes. Requires indices below 2^kPlanes and sides up to kRowBits<Row>.
   LayerReader(const RunChunk& chunk, LayerPlace place, std::array<Rows, kPlanes>& planes,
-              CodeOf code_of)
-      : e_(ordered(chunk.extent, chunk.order)), planes_(planes), code_of_(code_of) {
+              ToIndex to_index)
+      : e_(ordered(chunk.extent, chunk.order)), planes_(planes), to_index_(to_index) {
     for (Rows& rows : planes_) rows.fill(0);
     const int rank = rank_of(place.axis, chunk.order);
     chunk.runs.visit([&](const auto& runs) {
@@ -54,7 +54,8 @@ class LayerReader {
   void mark(std::uint32_t row, unsigned bit, PaletteIndex change) {
     for (unsigned k = 0; k < kPlanes; ++k) planes_[k][row] ^= Row{change >> k & 1} << bit;
   }
-  /// Marks of change become bits: along each row, and on into the next if `carried`.
+  /// Turns marks of change into bits along each row. The state at the end of a row carries into the
+  /// next one.
   void fill(std::uint32_t rows, std::uint32_t bits) {
     const Row valid = bits_below<Row>(bits);
     for (unsigned k = 0; k < kPlanes; ++k) {
@@ -73,67 +74,68 @@ class LayerReader {
     const std::uint32_t begin = at * e_.layer();
     RunCursor cursor(runs);
     cursor.seek(begin);
-    PaletteIndex code = code_of_(cursor.material());
-    mark(0, 0, code);
+    PaletteIndex index = to_index_(cursor.material());
+    mark(0, 0, index);
     for (; cursor.end() < begin + e_.layer();) {
       const std::uint32_t voxel = cursor.end() - begin;
       cursor.next();
-      const PaletteIndex next = code_of_(cursor.material());
+      const PaletteIndex next = to_index_(cursor.material());
       const std::uint32_t row = line_of(voxel);
-      mark(row, voxel - row * e_.f, code ^ next);
-      code = next;
+      mark(row, voxel - row * e_.f, index ^ next);
+      index = next;
     }
     fill(e_.m, e_.f);
   }
 
   template <class Runs>
   void read_middle(const Runs& runs, std::uint32_t at) {
-    constexpr std::size_t kBlock =
-        8;  // a layer holds some dozens of runs: too few for a search to pay
+    // A layer has some dozens of runs: too few for a search to pay.
+    constexpr std::size_t kBlock = 8;
     const std::size_t size = runs.size();
     std::size_t i = 0;
-    PaletteIndex carried = 0;  // of the last voxel of the row before
+    PaletteIndex carried = 0;  // of the last voxel of the previous row
     for (std::uint32_t s = 0; s < e_.s; ++s) {
       const std::uint32_t begin = s * e_.layer() + at * e_.f;
       while (i + kBlock < size && runs.end(i + kBlock - 1) <= begin) i += kBlock;
       while (runs.end(i) <= begin) ++i;
-      PaletteIndex code = code_of_(runs.material(i));
-      if (code != carried) mark(s, 0, code ^ carried);
+      PaletteIndex index = to_index_(runs.material(i));
+      if (index != carried) mark(s, 0, index ^ carried);
       for (; runs.end(i) < begin + e_.f; ++i) {
-        const PaletteIndex next = code_of_(runs.material(i + 1));
-        mark(s, runs.end(i) - begin, code ^ next);
-        code = next;
+        const PaletteIndex next = to_index_(runs.material(i + 1));
+        mark(s, runs.end(i) - begin, index ^ next);
+        index = next;
       }
-      carried = code;
+      carried = index;
     }
     fill(e_.s, e_.f);
   }
 
   template <class Runs>
   void read_fast(const Runs& runs, std::uint32_t at) {
-    // A bit a line: marks of change where the line is the first whose voxel `at` lies behind a run's end.
+    // One bit per line. A line is marked if it is the first whose voxel `at` lies behind the end of
+    // a run with another index.
     using Marks = std::array<Row64, kSideMax * kSideMax / 64 + 2>;
     std::array<Marks, kPlanes> marks;
     for (unsigned k = 0; k < kPlanes; ++k)
       std::fill_n(marks[k].begin(), e_.m * e_.s / 64 + 2, Row64{0});
     const Divider line_of(e_.f);
     const std::uint32_t ahead = e_.f - 1 - at;
-    const CodeOf code_of = code_of_;
+    const ToIndex to_index = to_index_;
     const std::size_t last = runs.size() - 1;
-    PaletteIndex code = code_of(runs.material(0));
-    for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = code >> k & 1;
+    PaletteIndex index = to_index(runs.material(0));
+    for (unsigned k = 0; k < kPlanes; ++k) marks[k][0] = index >> k & 1;
     for (std::size_t i = 0; i < last; ++i) {
-      const PaletteIndex next = code_of(runs.material(i + 1));
-      if (next == code) continue;  // most runs of a world lie between two materials that hide alike
+      const PaletteIndex next = to_index(runs.material(i + 1));
+      if (next == index) continue;  // most neighbouring runs have the same index
       const std::uint32_t line = line_of(runs.end(i) + ahead);
-      const PaletteIndex change = code ^ next;
-      code = next;
+      const PaletteIndex change = index ^ next;
+      index = next;
       for (unsigned k = 0; k < kPlanes; ++k)
         marks[k][line / 64] ^= Row64{change >> k & 1} << (line % 64);
     }
     for (unsigned k = 0; k < kPlanes; ++k) cut_rows(marks[k].data(), planes_[k]);
   }
-  /// Turns marks of change, a bit a line, into rows of e_.m bits.
+  /// Turns marks of change, one bit per line, into rows of e_.m bits.
   void cut_rows(Row64* marks, Rows& rows) const {
     Row64 carry = 0;
     for (std::uint32_t w = 0; w <= e_.m * e_.s / 64; ++w) {
@@ -155,23 +157,24 @@ class LayerReader {
 
   const OrderedExtent e_;
   std::array<Rows, kPlanes>& planes_;
-  CodeOf code_of_;
+  ToIndex to_index_;
 };
 
-/// Reads a layer with LayerReader; of a chunk of one material, the same without looking at it.
-template <std::size_t kPlanes, class Row, std::size_t kRows, class CodeOf>
+/// Reads a layer with LayerReader. For a chunk of one material it writes the same rows without
+/// reading.
+template <std::size_t kPlanes, class Row, std::size_t kRows, class ToIndex>
 void read_layer_rows(const RunChunk& chunk, LayerPlace place,
-                     std::array<std::array<Row, kRows>, kPlanes>& planes, CodeOf code_of) {
+                     std::array<std::array<Row, kRows>, kPlanes>& planes, ToIndex to_index) {
   if (!chunk.is_uniform()) {
-    LayerReader<kPlanes, Row, CodeOf>(chunk, place, planes, code_of);
+    LayerReader<kPlanes, Row, ToIndex>(chunk, place, planes, to_index);
     return;
   }
-  const PaletteIndex code = code_of(chunk.runs.material(0));
+  const PaletteIndex index = to_index(chunk.runs.material(0));
   const Row row = bits_below<Row>(side_of(chunk, place.bit_axis));
   for (unsigned k = 0; k < kPlanes; ++k) {
     planes[k].fill(0);
     std::fill_n(planes[k].begin(), side_of(chunk, place.row_axis()),
-                (code >> k & 1) != 0 ? row : Row{0});
+                (index >> k & 1) != 0 ? row : Row{0});
   }
 }
 

@@ -34,15 +34,15 @@ void ChunkBorders::read(const RunChunk& chunk, const VisibilityTable& visibility
   lay_out(chunk);
   const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    read_sides<rdm::Row64>(chunk, visibility);
+    read_sides<Row64>(chunk, visibility);
   } else {
-    read_sides<rdm::Row128>(chunk, visibility);
+    read_sides<Row128>(chunk, visibility);
   }
 }
 
 template <class Row>
 void ChunkBorders::read_sides(const RunChunk& chunk, const VisibilityTable& visibility) {
-  std::array<std::array<Row, rdm::kRowBits<Row>>, 2> planes;
+  std::array<std::array<Row, kRowBits<Row>>, 2> planes;
   for (const rdm::SideAxes& axes : rdm::side_axes(chunk.order)) {
     for (const bool positive : {false, true}) {
       const Direction side = rdm::direction_of(axes.layer, positive);
@@ -72,10 +72,10 @@ void ChunkBorders::keep(const RunChunk& chunk, const std::array<Rows, kDirection
   }
 }
 template void ChunkBorders::keep(const RunChunk&,
-                                 const std::array<std::array<rdm::Row64, 64>, kDirectionCount>&,
+                                 const std::array<std::array<Row64, 64>, kDirectionCount>&,
                                  const std::array<bool, kDirectionCount>&);
 template void ChunkBorders::keep(const RunChunk&,
-                                 const std::array<std::array<rdm::Row128, 128>, kDirectionCount>&,
+                                 const std::array<std::array<Row128, 128>, kDirectionCount>&,
                                  const std::array<bool, kDirectionCount>&);
 
 template <class Rows>

@@ -1,7 +1,8 @@
-// ChunkBorders: what the six outermost layers of a chunk hide, a bit a voxel. The helper structure for borders
-// that thesis 9.1 asks for: whoever keeps it beside a chunk spares the meshes of the six chunks around it
-// from reading runs that lie nowhere near them. It pays where whole chunks are meshed again and again; our
-// client meshes most of them once and does not keep it (docs/meshing.md).
+// ChunkBorders: the opaque voxels of the six outermost layers of a chunk, one bit per voxel. It is
+// the helper structure for borders that thesis 9.1 proposes. A holder that keeps it beside a chunk
+// saves the meshes of the six neighbours from reading runs that lie far from them. It pays where
+// whole chunks are meshed again and again. The client of this project meshes most chunks once and
+// does not keep it (docs/meshing.md).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,35 +16,36 @@ namespace runstone {
 
 class ChunkBorders {
  public:
-  /// Replaces all six sides by those of `chunk`; of one of a single material, which is its own best summary,
-  /// nothing is kept. What it says holds for this version of the chunk and this table. O(runs); allocates for
-  /// the first chunk of a size.
+  /// Replaces all six sides by those of `chunk`. For a chunk of one material nothing is kept,
+  /// because its single run is a shorter summary. The contents hold for this version of the chunk
+  /// and this table. Allocates for the first chunk of a size. Cost: O(runs).
   void read(const RunChunk& chunk, const VisibilityTable& visibility);
 
-  /// The same from rows that are known: of each side, along the bits and from row to row as side_axes() has
-  /// them, and whether it has transparent voxels.
+  /// Does the same from rows that are known: those of each side, with bits and rows along the axes
+  /// of side_axes(), and whether each side has transparent voxels.
   template <class Rows>
   void keep(const RunChunk& chunk, const std::array<Rows, kDirectionCount>& sides,
             const std::array<bool, kDirectionCount>& transparent);
 
   bool empty() const { return words_.empty(); }
-  /// Whether it may be that of a chunk of several materials, by its extent and axis order.
+  /// Returns true if extent and axis order are those of the chunk, and the borders are of a chunk
+  /// of several materials.
   bool fits(const RunChunk& chunk) const {
     return !empty() && extent_ == chunk.extent && order_ == chunk.order;
   }
-  /// Whether a side has transparent voxels.
+  /// Returns true if a side has transparent voxels.
   bool has_transparent(Direction side) const {
     return transparent_[static_cast<std::size_t>(side)];
   }
-  /// The axis along the bits of a side's rows.
+  /// Returns the axis along the bits of a side's rows.
   Axis bit_axis(Direction side) const { return bit_axis_[static_cast<std::size_t>(side)]; }
-  /// Opaque voxels of a side, in rows of row_words() words, lowest bits first.
+  /// Returns the opaque voxels of a side, in rows of row_words() words, lowest bits first.
   const std::uint32_t* rows(Direction side) const {
     return words_.data() + first_[static_cast<std::size_t>(side)];
   }
   std::size_t row_words(Direction side) const { return row_words_[static_cast<std::size_t>(side)]; }
   std::size_t row_count(Direction side) const { return row_count_[static_cast<std::size_t>(side)]; }
-  /// Heap bytes held.
+  /// Returns the heap bytes allocated.
   std::size_t byte_size() const { return words_.capacity() * sizeof(std::uint32_t); }
 
  private:

@@ -1,9 +1,10 @@
-// ChunkPalette: the materials of one chunk as small numbers, so that a layer of them is a few cache lines and
-// 64 voxels can be compared at once. Numbers are given in the order in which materials come: opaque and
-// transparent ones count apart, and all empty ones are 0.
+// ChunkPalette: small numbers for the materials of one chunk. With them a layer takes a few cache
+// lines, and 64 voxels are compared at once. Indices are given in the order in which materials
+// occur. Opaque and transparent materials are counted apart, and all empty ones have index 0.
 //   opaque        1, 2, ...
 //   transparent   kTransparentBit + 0, 1, ...
-// A chunk with few materials has its codes in a byte, kTransparentBit becoming the highest bit of it.
+// The indices of a chunk with few materials are also kept as bytes; then the highest bit of the
+// byte replaces kTransparentBit.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,76 +19,77 @@ using PaletteIndex = std::uint32_t;
 using BytePaletteIndex = std::uint8_t;
 inline constexpr PaletteIndex kTransparentBit = PaletteIndex{1} << 31;
 
-/// A code in the form C. BytePaletteIndex requires ChunkPalette::fit_bytes().
-template <class C>
-constexpr C code_as(PaletteIndex code) {
-  return static_cast<C>(sizeof(C) == 1 ? code | code >> 24 : code);
+/// Returns an index in the type Index. BytePaletteIndex requires ChunkPalette::fit_bytes().
+template <class Index>
+constexpr Index index_as(PaletteIndex index) {
+  return static_cast<Index>(sizeof(Index) == 1 ? index | index >> 24 : index);
 }
-/// What code_as() was given.
-constexpr PaletteIndex whole_code(PaletteIndex code) { return code; }
-constexpr PaletteIndex whole_code(BytePaletteIndex code) {
-  return (code & 0x7fu) | PaletteIndex{code} >> 7 << 31;
+/// Returns the argument that index_as() was given.
+constexpr PaletteIndex full_index(PaletteIndex index) { return index; }
+constexpr PaletteIndex full_index(BytePaletteIndex index) {
+  return (index & 0x7fu) | PaletteIndex{index} >> 7 << 31;
 }
 
 class ChunkPalette {
  public:
   ChunkPalette() : of_(kMaterialCountMax, kUnseen) {}
 
-  /// Forgets all numbers. O(materials seen).
+  /// Forgets all indices. Cost: O(materials seen).
   void clear() {
     for (const Material material : seen_) of_[material] = kUnseen;
     seen_.clear();
     for (auto& numbered : of_class_) numbered.clear();
   }
-  /// The code of a material of the chunk, given when it is first seen. O(1).
-  PaletteIndex number(Material material, const VisibilityTable& visibility) {
-    const PaletteIndex code = of_[material];
-    return code != kUnseen ? code : enter(material, visibility[material]);
+  /// Returns the index of a material of the chunk. The first call for a material assigns it. Cost:
+  /// O(1).
+  PaletteIndex index_of(Material material, const VisibilityTable& visibility) {
+    const PaletteIndex index = of_[material];
+    return index != kUnseen ? index : enter(material, visibility[material]);
   }
-  /// The code of a material if it is a transparent one of the chunk, else 0.
-  PaletteIndex transparent_code(Material material) const {
-    const PaletteIndex code = of_[material];
-    return code != kUnseen && (code & kTransparentBit) != 0 ? code : 0;
+  /// Returns the index of a material if it is a transparent one of the chunk, otherwise 0.
+  PaletteIndex transparent_index(Material material) const {
+    const PaletteIndex index = of_[material];
+    return index != kUnseen && (index & kTransparentBit) != 0 ? index : 0;
   }
 
   std::size_t transparent_count() const { return of_class_[1].size(); }
   bool has_transparent() const { return transparent_count() != 0; }
-  /// Materials that are not empty.
+  /// Returns the number of materials that are not empty.
   std::size_t solid_count() const { return of_class_[0].size() + of_class_[1].size(); }
-  /// The material, if there is but one that is not empty.
+  /// Returns the material that is not empty. Requires that there is only one.
   Material single() const { return of_class_[has_transparent() ? 1 : 0].front(); }
 
-  /// Whether all codes fit into a byte each.
+  /// Returns true if each index fits into a byte.
   bool fit_bytes() const { return of_class_[0].size() <= 127 && of_class_[1].size() <= 128; }
-  /// The material of a code that was given, 0 apart.
-  Material material(BytePaletteIndex code) const { return of_byte_[code]; }
-  Material material(PaletteIndex code) const {
-    return (code & kTransparentBit) != 0 ? of_class_[1][code ^ kTransparentBit]
-                                         : of_class_[0][code - 1];
+  /// Returns the material of an assigned index other than 0.
+  Material material(BytePaletteIndex index) const { return of_byte_[index]; }
+  Material material(PaletteIndex index) const {
+    return (index & kTransparentBit) != 0 ? of_class_[1][index ^ kTransparentBit]
+                                          : of_class_[0][index - 1];
   }
 
  private:
   static constexpr PaletteIndex kUnseen = std::numeric_limits<PaletteIndex>::max();
 
   PaletteIndex enter(Material material, Visibility visibility) {
-    PaletteIndex code = 0;
+    PaletteIndex index = 0;
     if (visibility != Visibility::empty) {
       const bool transparent = visibility == Visibility::transparent;
       std::vector<Material>& numbered = of_class_[transparent ? 1 : 0];
       const auto number = static_cast<PaletteIndex>(numbered.size());
-      code = transparent ? kTransparentBit | number : number + 1;
+      index = transparent ? kTransparentBit | number : number + 1;
       numbered.push_back(material);
-      if (fit_bytes()) of_byte_[code_as<BytePaletteIndex>(code)] = material;
+      if (fit_bytes()) of_byte_[index_as<BytePaletteIndex>(index)] = material;
     }
-    of_[material] = code;
+    of_[material] = index;
     seen_.push_back(material);
-    return code;
+    return index;
   }
 
   std::vector<PaletteIndex> of_;  // by material
   std::vector<Material> seen_;
   std::array<std::vector<Material>, 2> of_class_;  // opaque and transparent, by number
-  std::array<Material, 256> of_byte_{};            // by code, while they fit
+  std::array<Material, 256> of_byte_{};            // by byte index, while they fit
 };
 
 }  // namespace runstone::rdm

@@ -1,10 +1,10 @@
-// ChunkSides: the six outermost layers of the chunk itself, which a sweep comes by anyway (ChunkBorders keeps them).
-// Included once per instruction set, inside no namespace.
-#if defined(RUNSTONE_MESH_RDM_OWN_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef RUNSTONE_MESH_RDM_OWN_SIDES_INL
-#undef RUNSTONE_MESH_RDM_OWN_SIDES_INL
+// ChunkSides: collects the six outermost layers of the chunk itself during a sweep, for
+// ChunkBorders. Included once per instruction set, inside no namespace.
+#if defined(RUNSTONE_MESH_RDM_CHUNK_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
+#undef RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
 #else
-#define RUNSTONE_MESH_RDM_OWN_SIDES_INL
+#define RUNSTONE_MESH_RDM_CHUNK_SIDES_INL
 #endif
 
 #include <hwy/highway.h>
@@ -29,22 +29,25 @@ class ChunkSides {
 
  public:
   ChunkSides(const SweepInput& input, SweepState<Row>& state)
-      : st_(state), e_(input.extent), mixed_(Form::kNumbered && input.codes->has_transparent()) {}
+      : st_(state),
+        e_(input.extent),
+        mixed_(Form::kManyMaterials && input.palette->has_transparent()) {}
 
-  /// What layer s, in ring `here`, adds to the sides. Its hiding rows must be its opaque ones.
-  void find(std::uint32_t s, unsigned here) {
-    const Row* const opaque = st_.hiding[here].data();
-    auto& own = st_.chunk_sides;
-    own[at(Side::mid_neg)][s] = opaque[0];
-    own[at(Side::mid_pos)][s] = opaque[e_.m - 1];
-    own[at(Side::fast_neg)][s] = first_column(opaque);
-    own[at(Side::fast_pos)][s] = last_column(opaque);
-    if (s == 0) std::copy_n(opaque, e_.m, own[at(Side::slow_neg)].data());
-    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, own[at(Side::slow_pos)].data());
-    if (s == 0) st_.own_transparent.fill(false);
+  /// Adds the part of layer s, in slot `slot`, to the sides. Requires hiding rows that are its
+  /// opaque ones.
+  void find(std::uint32_t s, unsigned slot) {
+    const Row* const opaque = st_.hiding[slot].data();
+    auto& sides = st_.chunk_sides;
+    sides[at(Side::mid_neg)][s] = opaque[0];
+    sides[at(Side::mid_pos)][s] = opaque[e_.m - 1];
+    sides[at(Side::fast_neg)][s] = first_column(opaque);
+    sides[at(Side::fast_pos)][s] = last_column(opaque);
+    if (s == 0) std::copy_n(opaque, e_.m, sides[at(Side::slow_neg)].data());
+    if (s + 1 == e_.s) std::copy_n(opaque, e_.m, sides[at(Side::slow_pos)].data());
+    if (s == 0) st_.sides_transparent.fill(false);
     if (!mixed_) return;
     const Row* const clear = st_.transparent.data();
-    auto& found = st_.own_transparent;
+    auto& found = st_.sides_transparent;
     found[at(Side::mid_neg)] |= clear[0] != 0;
     found[at(Side::mid_pos)] |= clear[e_.m - 1] != 0;
     found[at(Side::fast_neg)] |= first_column(clear) != 0;
@@ -53,14 +56,14 @@ class ChunkSides {
     if (s == 0) found[at(Side::slow_neg)] = any;
     if (s + 1 == e_.s) found[at(Side::slow_pos)] = any;
   }
-  /// The same for a layer s that repeats the one before it, in ring `there`.
-  void repeat(std::uint32_t s, unsigned there) {
-    auto& own = st_.chunk_sides;
-    for (const Side side : kLayerSides) own[at(side)][s] = own[at(side)][s - 1];
+  /// Does the same for a layer s that repeats the previous layer, which is in slot `slot`.
+  void repeat(std::uint32_t s, unsigned slot) {
+    auto& sides = st_.chunk_sides;
+    for (const Side side : kLayerSides) sides[at(side)][s] = sides[at(side)][s - 1];
     if (s + 1 != e_.s) return;
-    std::copy_n(st_.hiding[there].data(), e_.m, own[at(Side::slow_pos)].data());
-    // One material: its first line has it, if any has.
-    st_.own_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
+    std::copy_n(st_.hiding[slot].data(), e_.m, sides[at(Side::slow_pos)].data());
+    // The layer has one material: if any voxel is transparent, the first line is.
+    st_.sides_transparent[at(Side::slow_pos)] = mixed_ && st_.transparent.data()[0] != 0;
   }
 
  private:
@@ -71,7 +74,7 @@ class ChunkSides {
 
   SweepState<Row>& st_;
   const OrderedExtent e_;
-  const bool mixed_;  // whether there are transparent materials besides others
+  const bool mixed_;  // some materials are transparent and others are not
 };
 
 }  // namespace HWY_NAMESPACE

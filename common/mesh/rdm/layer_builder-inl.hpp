@@ -1,6 +1,7 @@
-// LayerBuilder: makes the codes of one layer after the other from the runs, and from them its rows of bits: what
-// has faces, what hides them, inside the chunk and beyond its borders, and where the material changes.
-// Included once per instruction set, inside no namespace.
+// LayerBuilder: writes the palette indices of one layer after another from the runs, and from the
+// indices the rows of bits: the voxels with faces, the voxels that hide faces (inside the chunk and
+// beyond its borders), and the places where the material changes. Included once per instruction
+// set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_LAYER_BUILDER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL
 #undef RUNSTONE_MESH_RDM_LAYER_BUILDER_INL
@@ -27,49 +28,51 @@ namespace HWY_NAMESPACE {
 template <class Form>
 class LayerBuilder {
   using Lanes = typename Form::Lanes;
-  using CodeLanes = typename Form::CodeLanes;
+  using IndexLanes = typename Form::IndexLanes;
   using Row = typename Form::Row;
-  using C = typename Form::C;
+  using Index = typename Form::Index;
   using Line = typename Form::Line;
   using Rows = LayerRows<Row>;
-  static constexpr bool kNumbered = Form::kNumbered;
-  static_assert(CodeLanes::template kBehind<C> <= LayerCodes<Row, C>::kRoom);
+  static constexpr bool kManyMaterials = Form::kManyMaterials;
+  static_assert(IndexLanes::template kBehind<Index> <= LayerIndices<Row, Index>::kRoom);
 
  public:
   LayerBuilder(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
       : in_(input),
         borders_(borders),
         st_(state),
-        codes_(state.template codes<C>()),
+        indices_(state.template indices<Index>()),
         e_(input.extent),
-        mixed_(kNumbered && input.codes->has_transparent()),
+        mixed_(kManyMaterials && input.palette->has_transparent()),
         valid_(bits_below<Row>(input.extent.f)) {}
 
-  /// Goes on to layer s, which is 0 or the one above the last. Each is gone to, built or not.
-  void go_to(std::uint32_t s) {
+  /// Advances to layer s. Call it once per layer, in order from 0, even for layers that are not
+  /// built.
+  void advance_to(std::uint32_t s) {
     if (runs()[run_].end == s * e_.layer()) ++run_;
   }
 
-  /// Whether layer s, gone to, is of one material and so was the one before, with equal borders: nothing
-  /// begins or ends then, and the layer need not be built. Requires s != 0.
+  /// Returns true if the current layer s and the previous one are of the same single material and
+  /// have equal borders. Then no strip begins or ends, and the layer need not be built. Requires s
+  /// != 0.
   bool repeats(std::uint32_t s) const {
     const std::uint32_t begin = s * e_.layer();
-    const CodedRun& run = runs()[run_];
+    const PaletteRun& run = runs()[run_];
     const std::uint32_t run_begin = run_ == 0 ? 0 : runs()[run_ - 1].end;
     if (run_begin + e_.layer() > begin || run.end < begin + e_.layer()) return false;
-    if (run.code == 0) return true;
+    if (run.index == 0) return true;
     for (const Side side : kLayerSides) {
       if (borders_.hiding[at(side)][s] != borders_.hiding[at(side)][s - 1]) return false;
-      if (borders_.meets[at(side)] && (run.code & kTransparentBit) != 0) return false;
+      if (borders_.meets[at(side)] && (run.index & kTransparentBit) != 0) return false;
     }
     return true;
   }
 
-  /// Makes the codes and the rows of layer s, gone to, from the runs that lie in it.
+  /// Writes the indices and the rows of the current layer s from the runs that lie in it.
   void build(std::uint32_t s, LayerPair layers) {
-    decode(s, codes_[layers.current].data());
-    const C* line = codes_[layers.current].data();
-    const C* line_there = codes_[layers.previous].data();
+    decode(s, indices_[layers.current].data());
+    const Index* line = indices_[layers.current].data();
+    const Index* line_previous = indices_[layers.previous].data();
     Row* const solid = st_.solid[layers.current].data();
     Row* const hiding = st_.hiding[layers.current].data();
     Row* const transparent = st_.transparent.data();
@@ -78,53 +81,54 @@ class LayerBuilder {
     Row* const slow = st_.cut_slow.data();
     const std::uint32_t count = e_.m;
     Line above = Line::at(line - e_.f);
-    for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_there += e_.f) {
-      const Line own = Line::at(line);
-      const Row faced = own.solid() & valid_;
+    for (std::uint32_t m = 0; m < count; ++m, line += e_.f, line_previous += e_.f) {
+      const Line current = Line::at(line);
+      const Row faced = current.solid() & valid_;
       solid[m] = faced;
       hiding[m] = faced;
-      if constexpr (kNumbered) {
+      if constexpr (kManyMaterials) {
         if (mixed_) {
-          transparent[m] = own.transparent() & valid_;
+          transparent[m] = current.transparent() & valid_;
           hiding[m] = faced & ~transparent[m];
         }
-        fast[m] = differing(own, Line::at(line - 1)) | 1;
-        mid[m] = differing(own, above);
-        slow[m] = differing(own, Line::at(line_there));
-        above = own;
+        fast[m] = differing(current, Line::at(line - 1)) | 1;
+        mid[m] = differing(current, above);
+        slow[m] = differing(current, Line::at(line_previous));
+        above = current;
       }
     }
     std::fill_n(solid + count, Rows::kBehind, Row{0});
-    if constexpr (kNumbered) {
+    if constexpr (kManyMaterials) {
       mid[0] = mid[count] = ~Row{0};
       if (s == 0) std::fill_n(slow, count, ~Row{0});
     }
-    hiding[-1] = hide_middle(Side::mid_neg, s, codes_[layers.current].data());
+    hiding[-1] = hide_middle(Side::mid_neg, s, indices_[layers.current].data());
     hiding[count] =
-        hide_middle(Side::mid_pos, s, codes_[layers.current].data() + (count - 1) * e_.f);
+        hide_middle(Side::mid_pos, s, indices_[layers.current].data() + (count - 1) * e_.f);
   }
 
-  /// Puts what lies beyond a slow side into the hiding rows of `ring`, as if it were a layer; `own` is the
-  /// ring of our layer there.
-  void hide_slow(Side side, unsigned ring, [[maybe_unused]] unsigned own) {
-    Row* const hiding = st_.hiding[ring].data();
+  /// Writes the voxels beyond a slow side into the hiding rows of slot `slot`, as if they were a
+  /// layer. `chunk_slot` is the slot of the chunk's layer at that side.
+  void hide_slow(Side side, unsigned slot, [[maybe_unused]] unsigned chunk_slot) {
+    Row* const hiding = st_.hiding[slot].data();
     std::copy_n(borders_.hiding[at(side)].data(), e_.m, hiding);
-    if constexpr (kNumbered) {
+    if constexpr (kManyMaterials) {
       if (!borders_.meets[at(side)]) return;
-      const C* line = codes_[own].data();
+      const Index* line = indices_[chunk_slot].data();
       for (std::uint32_t m = 0; m < e_.m; ++m, line += e_.f)
         hiding[m] |= same_beyond_line(side, m, line);
     }
   }
 
-  /// What hides the faces of a fast side in layer s, which was built last, in ring `own`: bit m is line m.
-  Row hide_fast(Side side, std::uint32_t s, [[maybe_unused]] unsigned own) const {
+  /// Returns the bits that hide the faces of a fast side in layer s: bit m is line m. Layer s is
+  /// the last built layer, in slot `slot`.
+  Row hide_fast(Side side, std::uint32_t s, [[maybe_unused]] unsigned slot) const {
     Row hide = borders_.hiding[at(side)][s];
-    if constexpr (kNumbered) {
+    if constexpr (kManyMaterials) {
       if (borders_.meets[at(side)]) {
         const unsigned bit = side == Side::fast_neg ? 0 : e_.f - 1;
         const Row ours = column_of<Lanes, Row>(st_.transparent.data(), e_.m, Row{1} << bit);
-        const C* const column = codes_[own].data() + bit;
+        const Index* const column = indices_[slot].data() + bit;
         hide |= same_beyond(side, s, e_.m, ours,
                             [column, f = e_.f](unsigned m) { return column[m * f]; });
       }
@@ -133,49 +137,51 @@ class LayerBuilder {
   }
 
  private:
-  const CodedRun* runs() const { return in_.runs.data(); }
+  const PaletteRun* runs() const { return in_.runs.data(); }
 
-  /// Writes the codes of layer s to `first`, and some behind them.
-  void decode(std::uint32_t s, C* first) {
+  /// Writes the indices of layer s to `first`, and some behind them.
+  void decode(std::uint32_t s, Index* first) {
     const std::uint32_t begin = s * e_.layer();
     const std::uint32_t end = begin + e_.layer();
-    C* to = first;
-    const CodedRun* run = runs() + run_;
+    Index* to = first;
+    const PaletteRun* run = runs() + run_;
     for (; run->end < end; ++run) {
-      C* const stop = first + (run->end - begin);
-      CodeLanes::fill(to, stop, code_as<C>(run->code));
+      Index* const stop = first + (run->end - begin);
+      IndexLanes::fill(to, stop, index_as<Index>(run->index));
       to = stop;
     }
-    CodeLanes::fill(to, first + e_.layer(), code_as<C>(run->code));
+    IndexLanes::fill(to, first + e_.layer(), index_as<Index>(run->index));
     run_ = static_cast<std::size_t>(run - runs());
   }
 
-  /// What hides the faces of a middle side in layer s; `line` is ours there.
-  Row hide_middle(Side side, std::uint32_t s, [[maybe_unused]] const C* line) const {
+  /// Returns the bits that hide the faces of a middle side in layer s. `line` is the chunk's line
+  /// at that side.
+  Row hide_middle(Side side, std::uint32_t s, [[maybe_unused]] const Index* line) const {
     Row hide = borders_.hiding[at(side)][s];
-    if constexpr (kNumbered) {
+    if constexpr (kManyMaterials) {
       if (borders_.meets[at(side)]) hide |= same_beyond_line(side, s, line);
     }
     return hide;
   }
 
-  /// Where transparent voxels of ours meet their own kind beyond a border, in its row `row` of `bits` voxels:
-  /// `ours` are the transparent ones of our row there, and `code_at(bit)` their codes.
-  template <class CodeAt>
+  /// Returns the bits at which a transparent voxel of the chunk touches its own material beyond a
+  /// border, in row `row` of `bits` voxels. `ours` marks the chunk's transparent voxels of that
+  /// row, and `index_at(bit)` returns their indices.
+  template <class IndexAt>
   Row same_beyond(Side side, std::uint32_t row, std::uint32_t bits, Row ours,
-                  CodeAt&& code_at) const {
+                  IndexAt&& index_at) const {
     Row same = ours & borders_.transparent[at(side)][row];
-    if (const auto& theirs = borders_.codes[at(side)]; !theirs.empty()) {
+    if (const auto& theirs = borders_.indices[at(side)]; !theirs.empty()) {
       for (Row left = same; left != 0; left &= left - 1) {
         const unsigned bit = lowest_bit(left);
-        if (whole_code(code_at(bit)) != theirs[std::size_t{row} * bits + bit])
+        if (full_index(index_at(bit)) != theirs[std::size_t{row} * bits + bit])
           same ^= Row{1} << bit;
       }
     }
     return same;
   }
-  /// The same for a line of ours.
-  Row same_beyond_line(Side side, std::uint32_t row, const C* line) const {
+  /// Does the same for a line of the chunk.
+  Row same_beyond_line(Side side, std::uint32_t row, const Index* line) const {
     const Row ours = Line::at(line).transparent() & valid_;
     return same_beyond(side, row, e_.f, ours, [line](unsigned bit) { return line[bit]; });
   }
@@ -183,11 +189,11 @@ class LayerBuilder {
   const SweepInput& in_;
   const Borders<Row>& borders_;
   SweepState<Row>& st_;
-  typename SweepState<Row>::template Codes<C>& codes_;
+  typename SweepState<Row>::template Indices<Index>& indices_;
   const OrderedExtent e_;
-  const bool mixed_;     // whether there are transparent materials besides others
+  const bool mixed_;     // some materials are transparent and others are not
   const Row valid_;      // bits of a line
-  std::size_t run_ = 0;  // the first that lies in the layer at hand
+  std::size_t run_ = 0;  // the first run that lies in the current layer
 };
 
 }  // namespace HWY_NAMESPACE

@@ -7,15 +7,15 @@
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/sweep_traits.hpp"
 
-// The rest of this file is compiled once per instruction set; Highway picks one at run time.
+// The rest of this file is compiled once per instruction set. Highway selects one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/mesh/rdm/layer_sweep.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, as Highway asks.
+// Highway requires these includes after foreach_target.h.
 #include <hwy/highway.h>
 
 #include "common/mesh/rdm/chunk_sides-inl.hpp"
-#include "common/mesh/rdm/code_lanes-inl.hpp"
+#include "common/mesh/rdm/index_lanes-inl.hpp"
 #include "common/mesh/rdm/layer_builder-inl.hpp"
 #include "common/mesh/rdm/row_lanes-inl.hpp"
 #include "common/mesh/rdm/strip_tracer-inl.hpp"
@@ -33,7 +33,7 @@ class Sweep {
   using Rows = LayerRows<Row>;
   using Tracer = StripTracer<Form>;
   using RowSet = typename Tracer::RowSet;
-  static constexpr bool kNumbered = Form::kNumbered;
+  static constexpr bool kManyMaterials = Form::kManyMaterials;
 
  public:
   Sweep(const SweepInput& input, const Borders<Row>& borders, SweepState<Row>& state)
@@ -47,7 +47,7 @@ class Sweep {
   void run() {
     start();
     for (std::uint32_t s = 0; s < e_.s; ++s) {
-      builder_.go_to(s);
+      builder_.advance_to(s);
       if (s != 0 && builder_.repeats(s)) {
         if (wants_chunk_sides_) chunk_sides_.repeat(s, layers_.previous);
         continue;
@@ -65,7 +65,7 @@ class Sweep {
   /// By Side: rows in which strips may end or begin.
   using SideRows = std::array<RowSet, 6>;
 
-  /// As if a layer without faces lay before the first.
+  /// Prepares the state as if a layer without faces preceded the first one.
   void start() {
     const auto clear = [this](Rows& rows) {
       std::fill_n(rows.data(), e_.m + Rows::kBehind, Row{0});
@@ -75,64 +75,74 @@ class Sweep {
       clear(st_.face[at(side)][layers_.previous]);
       clear(st_.face[at(side)][layers_.current]);
     }
-    if constexpr (kNumbered) {
+    if constexpr (kManyMaterials) {
       clear(st_.cut_fast[layers_.previous]);
       clear(st_.cut_mid[layers_.previous]);
     }
   }
 
-  /// Finds the faces of layer s across the middle and the fastest axis, and those between it and the layer
-  /// before it. Returns the rows that differ from the row before.
+  /// Finds the faces of layer s: those across the middle and the fastest axis, and those between
+  /// this layer and the previous one. Returns by side the rows that differ from their previous row.
   SideRows find_faces(std::uint32_t s) {
-    const std::uint32_t count = e_.m;
+    SideRows rows = compare_rows(builder_.hide_fast(Side::fast_neg, s, layers_.current),
+                                 builder_.hide_fast(Side::fast_pos, s, layers_.current));
+    // Rows behind the last row of the layer have no faces. The first of them would close open
+    // strips.
+    const Row valid = bits_below<Row>(e_.m);
+    for (RowSet& set : rows) set &= valid;
+    return rows;
+  }
+
+  /// Writes the faces of the current layer. `hide_neg` and `hide_pos` hide the faces of the fast
+  /// sides: bit m is row m. The result also has bits for rows behind the last row.
+  HWY_INLINE SideRows compare_rows(Row hide_neg, Row hide_pos) {
     const Row* const solid = st_.solid[layers_.current].data();
     const Row* const hiding = st_.hiding[layers_.current].data();
-    const Row* const solid_there = st_.solid[layers_.previous].data();
-    const Row* const hiding_there = st_.hiding[layers_.previous].data();
+    const Row* const solid_previous = st_.solid[layers_.previous].data();
+    const Row* const hiding_previous = st_.hiding[layers_.previous].data();
     const Row* const cut_fast = st_.cut_fast[layers_.current].data();
-    const Row* const cut_fast_there = st_.cut_fast[layers_.previous].data();
+    const Row* const cut_fast_previous = st_.cut_fast[layers_.previous].data();
     const Row* const cut_mid = st_.cut_mid[layers_.current].data();
-    const Row* const cut_mid_there = st_.cut_mid[layers_.previous].data();
+    const Row* const cut_mid_previous = st_.cut_mid[layers_.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const auto face = [this](Side side, unsigned ring) { return st_.face[at(side)][ring].data(); };
-    Row* const slow_neg = face(Side::slow_neg, 0);
-    Row* const slow_pos = face(Side::slow_pos, 0);
+    const auto face = [this](Side side, unsigned slot) { return st_.face[at(side)][slot].data(); };
+    Row *const slow_neg = face(Side::slow_neg, 0), *const slow_pos = face(Side::slow_pos, 0);
     Row* const mid_neg = face(Side::mid_neg, layers_.current);
     Row* const mid_pos = face(Side::mid_pos, layers_.current);
     Row* const fast_neg = face(Side::fast_neg, layers_.current);
     Row* const fast_pos = face(Side::fast_pos, layers_.current);
-    const Row* const mid_neg_there = face(Side::mid_neg, layers_.previous);
-    const Row* const mid_pos_there = face(Side::mid_pos, layers_.previous);
-    const Row* const fast_neg_there = face(Side::fast_neg, layers_.previous);
-    const Row* const fast_pos_there = face(Side::fast_pos, layers_.previous);
-    const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, layers_.current);
-    const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, layers_.current);
+    const Row* const mid_neg_before = face(Side::mid_neg, layers_.previous);
+    const Row* const mid_pos_before = face(Side::mid_pos, layers_.previous);
+    const Row* const fast_neg_before = face(Side::fast_neg, layers_.previous);
+    const Row* const fast_pos_before = face(Side::fast_pos, layers_.previous);
     const Row last = Row{1} << (e_.f - 1);
     SideRows rows{};
-    for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) {
-      const V own = Lanes::load(solid + m);
+    for (std::uint32_t m = 0; m < e_.m; m += Lanes::kLanes) {
+      const V voxels = Lanes::load(solid + m);
       const V hide = Lanes::load(hiding + m);
-      V f_mid_neg = Lanes::without(own, Lanes::load(hiding + m - 1));
-      V f_mid_pos = Lanes::without(own, Lanes::load(hiding + m + 1));
+      V f_mid_neg = Lanes::without(voxels, Lanes::load(hiding + m - 1));
+      V f_mid_pos = Lanes::without(voxels, Lanes::load(hiding + m + 1));
       V f_fast_neg = Lanes::without(
-          own, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
+          voxels, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
       V f_fast_pos = Lanes::without(
-          own, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
-      V f_slow_neg = Lanes::without(own, Lanes::load(hiding_there + m));
-      V f_slow_pos = Lanes::without(Lanes::load(solid_there + m), hide);
-      // The same faces a row before, for the slow sides.
-      V g_slow_neg = Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_there + m - 1));
-      V g_slow_pos = Lanes::without(Lanes::load(solid_there + m - 1), Lanes::load(hiding + m - 1));
-      V along = own;    // bits at which strips along a row are cut other than in the layer before
-      V between = own;  // where the material differs from the layer before
-      V along_neg = own, along_pos = own;
-      if constexpr (kNumbered) {
+          voxels, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
+      V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_previous + m));
+      V f_slow_pos = Lanes::without(Lanes::load(solid_previous + m), hide);
+      // The same faces of the previous row, for the slow sides.
+      V g_slow_neg =
+          Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_previous + m - 1));
+      V g_slow_pos =
+          Lanes::without(Lanes::load(solid_previous + m - 1), Lanes::load(hiding + m - 1));
+      // `along`: bits at which strips along a row are cut differently than in the previous layer.
+      // `between`: voxels whose material differs from that of the previous layer.
+      V along = voxels, between = voxels, along_neg = voxels, along_pos = voxels;
+      if constexpr (kManyMaterials) {
         const V fast = Lanes::load(cut_fast + m);
         const V mid = Lanes::load(cut_mid + m);
         between = Lanes::load(cut_slow + m);
         const V slow_before = Lanes::load(cut_slow + m - 1);
-        const V fast_there = Lanes::load(cut_fast_there + m);
-        const V mid_there = Lanes::load(cut_mid_there + m);
+        const V fast_previous = Lanes::load(cut_fast_previous + m);
+        const V mid_previous = Lanes::load(cut_mid_previous + m);
         f_mid_neg = Lanes::both(f_mid_neg, mid);
         f_mid_pos = Lanes::both(f_mid_pos, Lanes::load(cut_mid + m + 1));
         f_fast_neg = Lanes::both(f_fast_neg, fast);
@@ -141,10 +151,10 @@ class Sweep {
         f_slow_pos = Lanes::both(f_slow_pos, between);
         g_slow_neg = Lanes::both(g_slow_neg, slow_before);
         g_slow_pos = Lanes::both(g_slow_pos, slow_before);
-        along = Lanes::either(between, Lanes::differing(fast, fast_there));
+        along = Lanes::either(between, Lanes::differing(fast, fast_previous));
         along_neg = Lanes::either(mid, Lanes::differing(fast, Lanes::load(cut_fast + m - 1)));
         along_pos = Lanes::either(
-            mid_there, Lanes::differing(fast_there, Lanes::load(cut_fast_there + m - 1)));
+            mid_previous, Lanes::differing(fast_previous, Lanes::load(cut_fast_previous + m - 1)));
       }
       Lanes::store(f_slow_neg, slow_neg + m);
       Lanes::store(f_slow_pos, slow_pos + m);
@@ -154,34 +164,33 @@ class Sweep {
       Lanes::store(f_fast_pos, fast_pos + m);
       add_rows(rows[at(Side::slow_neg)], differ(f_slow_neg, g_slow_neg, along_neg), m);
       add_rows(rows[at(Side::slow_pos)], differ(f_slow_pos, g_slow_pos, along_pos), m);
-      add_rows(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_there + m), along),
+      add_rows(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_before + m), along),
                m);
-      add_rows(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_there + m), along),
+      add_rows(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_before + m), along),
                m);
       add_rows(rows[at(Side::fast_neg)],
-               differ(f_fast_neg, Lanes::load(fast_neg_there + m), between), m);
+               differ(f_fast_neg, Lanes::load(fast_neg_before + m), between), m);
       add_rows(rows[at(Side::fast_pos)],
-               differ(f_fast_pos, Lanes::load(fast_pos_there + m), between), m);
+               differ(f_fast_pos, Lanes::load(fast_pos_before + m), between), m);
     }
-    // Rows behind the last one have no faces, so the first of them closes what is open, if it was met.
-    const Row valid = bits_below<Row>(count);
-    for (RowSet& set : rows) set &= valid;
     return rows;
   }
+
   static HWY_INLINE std::uint64_t low_lanes(Row set, std::uint32_t m) {
     return static_cast<std::uint64_t>(set >> m);
   }
-  /// Lanes in which faces now and before differ, or are cut otherwise.
+  /// Returns the lanes in which the faces differ from the previous ones or are cut differently.
   static HWY_INLINE std::uint64_t differ(V now, V before, [[maybe_unused]] V cut) {
     V x = Lanes::differing(now, before);
-    if constexpr (kNumbered) x = Lanes::either(x, Lanes::both(now, cut));
+    if constexpr (kManyMaterials) x = Lanes::either(x, Lanes::both(now, cut));
     return Lanes::any(x);
   }
   static HWY_INLINE void add_rows(RowSet& set, std::uint64_t lanes, std::uint32_t m) {
     set |= Row{lanes} << m;
   }
 
-  /// Behind the last layer: as if one without faces followed it. The last one is in ring `there`.
+  /// Ends the sweep as if a layer without faces followed the last one, which is in the previous
+  /// slot.
   SideRows end_faces() {
     builder_.hide_slow(Side::slow_pos, layers_.current, layers_.previous);
     Row* const slow_pos = st_.face[at(Side::slow_pos)][0].data();
@@ -203,7 +212,7 @@ class Sweep {
     return rows;
   }
 
-  /// Follows the strips of layer s, or those that end behind the last one, in the rows given.
+  /// Traces in the given rows the strips of layer s, or the strips that end behind the last layer.
   void trace(const SideRows& rows, std::uint32_t s) {
     if (s != e_.s)
       tracer_.template trace_slow<Side::slow_neg>(rows[at(Side::slow_neg)], s, layers_.current);
@@ -225,31 +234,31 @@ class Sweep {
   Tracer tracer_;
 };
 
-template <class Lanes, class CodeLanes>
+template <class Lanes, class IndexLanes>
 void sweep(const SweepInput& input, const Borders<typename Lanes::Row>& borders,
            SweepState<typename Lanes::Row>& state) {
-  if (input.codes->solid_count() == 1) {
-    Sweep<SweepTraits<Lanes, CodeLanes, BytePaletteIndex, false>>(input, borders, state).run();
-  } else if (input.codes->fit_bytes()) {
-    Sweep<SweepTraits<Lanes, CodeLanes, BytePaletteIndex, true>>(input, borders, state).run();
+  if (input.palette->solid_count() == 1) {
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, false>>(input, borders, state).run();
+  } else if (input.palette->fit_bytes()) {
+    Sweep<SweepTraits<Lanes, IndexLanes, BytePaletteIndex, true>>(input, borders, state).run();
   } else {
-    Sweep<SweepTraits<Lanes, CodeLanes, PaletteIndex, true>>(input, borders, state).run();
+    Sweep<SweepTraits<Lanes, IndexLanes, PaletteIndex, true>>(input, borders, state).run();
   }
 }
 
 void sweep_64(const SweepInput& input, const Borders<Row64>& borders, SweepState<Row64>& state) {
-  sweep<VectorRows, VectorCodes>(input, borders, state);
+  sweep<VectorRows, VectorIndices>(input, borders, state);
 }
 void sweep_128(const SweepInput& input, const Borders<Row128>& borders, SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, VectorCodes>(input, borders, state);
+  sweep<OneRow<Row128>, VectorIndices>(input, borders, state);
 }
 void sweep_plain_64(const SweepInput& input, const Borders<Row64>& borders,
                     SweepState<Row64>& state) {
-  sweep<OneRow<Row64>, PlainCodes>(input, borders, state);
+  sweep<OneRow<Row64>, PlainIndices>(input, borders, state);
 }
 void sweep_plain_128(const SweepInput& input, const Borders<Row128>& borders,
                      SweepState<Row128>& state) {
-  sweep<OneRow<Row128>, PlainCodes>(input, borders, state);
+  sweep<OneRow<Row128>, PlainIndices>(input, borders, state);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -271,7 +280,7 @@ void check(const SweepInput& input) {
   const OrderedExtent& e = input.extent;
   RUNSTONE_ASSERT(std::max({e.f, e.m, e.s}) <= kRowBits<Row>);
   RUNSTONE_ASSERT(!input.runs.empty() && input.runs.back().end == e.layer() * e.s);
-  RUNSTONE_ASSERT(input.codes->solid_count() != 0);
+  RUNSTONE_ASSERT(input.palette->solid_count() != 0);
 }
 
 }  // namespace

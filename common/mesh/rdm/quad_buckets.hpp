@@ -1,5 +1,6 @@
-// QuadBuckets: finished quads by direction and layer, in the order in which they were closed. A sweep closes
-// quads of all layers in turn; a bucket a layer makes the mesh a plain concatenation, without a sort.
+// QuadBuckets: finished quads by direction and layer, in the order in which they were closed. A
+// sweep closes quads of all layers in turn. With a bucket per layer the mesh is a concatenation,
+// without a sort.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,7 +25,7 @@ class QuadBuckets {
     std::uint32_t room = 0;  // a multiple of kStep
   };
 
-  /// The buckets of one direction, by layer.
+  /// Returns the buckets of one direction, by layer.
   Bucket* of(Direction direction) {
     return buckets_.data() + static_cast<std::size_t>(direction) * kSideMax;
   }
@@ -32,14 +33,15 @@ class QuadBuckets {
     if (bucket.count == bucket.room) grow(bucket);
     bucket.quads[bucket.count++] = quad;
   }
-  /// Room for `more` quads, to be written from the place returned on and added to `count`.
+  /// Makes room for `more` quads and returns the place of the first. The caller writes them and
+  /// adds them to `count`.
   static Quad* reserve(Bucket& bucket, std::uint32_t more) {
     while (bucket.room - bucket.count < more) grow(bucket);
     return bucket.quads.get() + bucket.count;
   }
 
-  /// Replaces `out` by all quads put since the last call, and forgets them. `sides` of the chunk, by axis.
-  /// O(quads + layers).
+  /// Replaces `out` by all quads put since the last call, and forgets them. `sides`: of the chunk,
+  /// by axis. Cost: O(quads + layers).
   void finish(const std::array<std::uint8_t, 3>& sides, QuadLayers& out) {
     std::size_t total = 0;
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
@@ -69,7 +71,7 @@ class QuadBuckets {
     out.quads.resize(total);
   }
 
-  /// Makes room for more than there is.
+  /// Doubles the room of a bucket.
   static void grow(Bucket& bucket) {
     const std::uint32_t room = bucket.room == 0 ? 32 : bucket.room * 2;
     auto quads = std::make_unique<Quad[]>(room);

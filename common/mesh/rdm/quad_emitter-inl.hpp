@@ -1,10 +1,11 @@
-// QuadEmitter: where the strips of one side become quads: packed when a strip opens, put into the bucket of their
-// layer when it closes. Included once per instruction set, inside no namespace.
-#if defined(RUNSTONE_MESH_RDM_QUAD_OUTLET_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
-#undef RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
+// QuadEmitter: turns the strips of one side into quads. A quad is packed when its strip opens and
+// put into the bucket of its layer when the strip closes. Included once per instruction set, inside
+// no namespace.
+#if defined(RUNSTONE_MESH_RDM_QUAD_EMITTER_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
+#undef RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
 #else
-#define RUNSTONE_MESH_RDM_QUAD_OUTLET_INL
+#define RUNSTONE_MESH_RDM_QUAD_EMITTER_INL
 #endif
 
 #include <hwy/highway.h>
@@ -23,60 +24,61 @@ HWY_BEFORE_NAMESPACE();
 namespace runstone::rdm {
 namespace HWY_NAMESPACE {
 
-/// A value made anew for each side of each layer, so that the compiler may keep it in registers while bytes
-/// are written. Form: a SweepTraits.
+/// A new value is made for each side of each layer, so that the compiler can keep it in registers
+/// while bytes are written. Form: a SweepTraits.
 template <class Form>
 class QuadEmitter {
   using Row = typename Form::Row;
-  using C = typename Form::C;
-  static constexpr bool kNumbered = Form::kNumbered;
+  using Index = typename Form::Index;
+  static constexpr bool kManyMaterials = Form::kManyMaterials;
 
  public:
-  /// `layer`: the codes of the strips' voxels.
-  HWY_INLINE QuadEmitter(const SweepInput& input, Side side, const C* layer)
+  /// `layer`: the palette indices of the strips' voxels.
+  HWY_INLINE QuadEmitter(const SweepInput& input, Side side, const Index* layer)
       : shape_(input.shape[at(side)]),
-        opaque_((!kNumbered && input.codes->has_transparent() ? input.transparent : input.opaque)
-                    ->of(input.direction[at(side)])),
+        opaque_(
+            (!kManyMaterials && input.palette->has_transparent() ? input.transparent : input.opaque)
+                ->of(input.direction[at(side)])),
         transparent_(input.transparent->of(input.direction[at(side)])),
         layer_(layer),
         line_size_(input.extent.f),
-        codes_(input.codes),
-        mixed_(kNumbered && input.codes->has_transparent()),
-        single_(kNumbered ? kEmpty : input.codes->single()) {}
+        palette_(input.palette),
+        mixed_(kManyMaterials && input.palette->has_transparent()),
+        single_(kManyMaterials ? kEmpty : input.palette->single()) {}
 
-  /// The quad of a strip whose material is that of bit `bit` of row `line`.
+  /// Returns the quad of a strip whose material is that of bit `bit` of row `line`.
   HWY_INLINE Quad open(const Strip& strip, [[maybe_unused]] std::uint32_t line,
                        [[maybe_unused]] unsigned bit) const {
-    if constexpr (!kNumbered) {
+    if constexpr (!kManyMaterials) {
       return shape_.open(strip, single_);
     } else {
-      const C code = layer_[line * line_size_ + bit];
-      Quad quad = shape_.open(strip, codes_->material(code));
-      if (mixed_ && whole_code(code) >= kTransparentBit) quad.bits ^= kTransparentQuad;
+      const Index index = layer_[line * line_size_ + bit];
+      Quad quad = shape_.open(strip, palette_->material(index));
+      if (mixed_ && full_index(index) >= kTransparentBit) quad.bits ^= kTransparentQuad;
       return quad;
     }
   }
-  /// Puts a quad that was open before row `row`.
+  /// Puts a quad whose strip ends before row `row`.
   HWY_INLINE void close(Quad open, std::uint32_t layer, std::uint32_t row) const {
     Quad quad = shape_.close(open, row);
     QuadBuckets::Bucket* const buckets = pass_of(quad);
     QuadBuckets::put(buckets[layer], quad);
   }
-  /// The same; or, if it joins it, adds its row to the quad that was last put into that layer. Requires a
-  /// quad of one row.
+  /// Does the same, or, if `joins`, adds one row to the quad that was put last into that layer.
+  /// Requires a quad of one row.
   HWY_INLINE void close_or_join(Quad open, std::uint32_t layer, std::uint32_t row,
                                 bool joins) const {
     Quad quad = shape_.close(open, row);
     QuadBuckets::Bucket& bucket = pass_of(quad)[layer];
     if (bucket.count == bucket.room) QuadBuckets::grow(bucket);
-    // Without a branch: which of the two it is cannot be foreseen.
+    // It works without a branch, because the choice is unpredictable.
     bucket.count -= joins ? 1 : 0;
     Quad* const to = bucket.quads.get() + bucket.count++;
     *to = joins ? shape_.with_row_more(*to) : quad;
   }
 
-  /// Closes the strips of a line that end at the bits of `closing`, before row `row`. `open`: its open quads,
-  /// by end.
+  /// Closes the strips of a line that end at the bits of `closing`, before row `row`. `open`: the
+  /// open quads of the line, by end.
   HWY_INLINE void close_strips(Row closing, const Quad* open, std::uint32_t layer,
                                std::uint32_t row) const {
     if (closing == 0) return;
@@ -91,8 +93,8 @@ class QuadEmitter {
       *next++ = shape_.close(open[lowest_bit(closing)], row);
     bucket.count += static_cast<std::uint32_t>(next - to);
   }
-  /// Opens the strips that end at the bits of `opening` and begin at bits of `start`, in row `row`, which is
-  /// that of their material, too.
+  /// Opens the strips that end at the bits of `opening` and begin at bits of `start`, in row `row`.
+  /// Their material is that of the same row.
   HWY_INLINE void open_strips(Row opening, Row start, Quad* open, std::uint32_t layer,
                               std::uint32_t row) const {
     for (; opening != 0; opening &= opening - 1) {
@@ -103,11 +105,11 @@ class QuadEmitter {
   }
 
  private:
-  /// Says in an open quad that it is for the transparent pass; zero in a closed one.
+  /// Marks an open quad of the transparent pass. The bit is zero in a closed quad.
   static constexpr std::uint64_t kTransparentQuad = std::uint64_t{1} << 63;
-  /// The buckets of the pass that a quad is for; it no longer says so then.
+  /// Returns the buckets of the quad's pass, and clears the mark of the quad.
   HWY_INLINE QuadBuckets::Bucket* pass_of(Quad& quad) const {
-    if (!kNumbered || (quad.bits & kTransparentQuad) == 0) return opaque_;
+    if (!kManyMaterials || (quad.bits & kTransparentQuad) == 0) return opaque_;
     quad.bits ^= kTransparentQuad;
     return transparent_;
   }
@@ -115,11 +117,11 @@ class QuadEmitter {
   QuadShape shape_;
   QuadBuckets::Bucket* opaque_;
   QuadBuckets::Bucket* transparent_;
-  const C* layer_;
+  const Index* layer_;
   std::uint32_t line_size_;
-  const ChunkPalette* codes_;
-  bool mixed_;       // whether there are transparent materials besides others
-  Material single_;  // the material, if there is but one
+  const ChunkPalette* palette_;
+  bool mixed_;       // some materials are transparent and others are not
+  Material single_;  // the material, if there is only one
 };
 
 }  // namespace HWY_NAMESPACE

@@ -1,6 +1,6 @@
-// QuadShape: how the quads of one direction lie: which axis their strips run along, which axis their rows go
-// up. Turns a rectangle of faces into packed bits with shifts alone, in two steps: a strip opens when
-// it is first met and closes behind its last row.
+// QuadShape: the axes of the quads of one direction: the axis along their strips and the axis along
+// their rows. It turns a rectangle of faces into packed bits with shifts alone, in two steps: a
+// strip opens in its first row and closes behind its last row.
 #pragma once
 #include <cstdint>
 
@@ -27,24 +27,24 @@ class QuadShape {
         rows_shift_(u_axis_of(axis_of(direction)) == strip ? 28 : 21),
         strip_bits_(~(std::uint64_t{127} << row_shift_ | std::uint64_t{127} << rows_shift_)) {}
 
-  /// The quad of a strip whose last row is not known yet; close() adds it.
+  /// Returns the quad of a strip whose last row is not known yet; close() adds it.
   constexpr Quad open(const Strip& s, Material material) const {
     return {(base_ | std::uint64_t{s.layer} << layer_shift_ |
              std::uint64_t{s.begin} << strip_shift_ | std::uint64_t{s.row} << row_shift_ |
              std::uint64_t{s.length - 1} << length_shift_ | std::uint64_t{material} << 38) -
             (std::uint64_t{s.row + 1} << rows_shift_)};
   }
-  /// The same strip in all rows before `row_end`.
+  /// Returns the quad of the same strip in all rows before `row_end`.
   constexpr Quad close(Quad open, std::uint32_t row_end) const {
     return {open.bits + (std::uint64_t{row_end} << rows_shift_)};
   }
 
-  /// A closed quad with one row more.
+  /// Returns a closed quad with one more row.
   constexpr Quad with_row_more(Quad q) const {
     return {q.bits + (std::uint64_t{1} << rows_shift_)};
   }
 
-  /// First row and number of rows of a closed quad.
+  /// Returns the first row of a closed quad; rows() returns the number of its rows.
   constexpr std::uint32_t row(Quad q) const {
     return static_cast<std::uint32_t>(q.bits >> row_shift_ & 127);
   }
@@ -52,13 +52,14 @@ class QuadShape {
     return static_cast<std::uint32_t>(q.bits >> rows_shift_ & 127) + 1;
   }
   constexpr std::uint32_t row_end(Quad q) const { return row(q) + rows(q); }
-  /// The same strip in rows [row, row + rows).
+  /// Returns the quad of the same strip in rows [row, row + rows).
   constexpr Quad with_rows(Quad q, std::uint32_t row, std::uint32_t rows) const {
     return {strip(q) | std::uint64_t{row} << row_shift_ | std::uint64_t{rows - 1} << rows_shift_};
   }
-  /// All of a quad but its rows: equal for quads that may be joined where their rows touch.
+  /// Returns all of a quad except its rows. It is equal for quads that may be joined where their
+  /// rows touch.
   constexpr std::uint64_t strip(Quad q) const { return q.bits & strip_bits_; }
-  /// Last face along the strip.
+  /// Returns the last face along the strip.
   constexpr std::uint32_t last(Quad q) const {
     return static_cast<std::uint32_t>((q.bits >> strip_shift_ & 127) +
                                       (q.bits >> length_shift_ & 127));

@@ -19,7 +19,7 @@ using rdm::RowRuns;
 using rdm::side_of;
 using LayerSet = std::bitset<kSideMax>;
 
-/// Calls visit(place) for all of a set, upwards.
+/// Calls visit(place) for all members of a set, ascending.
 template <class F>
 void for_each(const LayerSet& set, F&& visit) {
   static const LayerSet kLow(~0ULL);
@@ -31,25 +31,26 @@ void for_each(const LayerSet& set, F&& visit) {
   }
 }
 
-/// The layers of one direction whose faces an edit may touch: those with changed voxels, and those that look
-/// at them.
+/// Returns the layers of one direction whose faces an edit may touch: the layers with changed
+/// voxels, and the layers whose faces look at them.
 LayerSet faces_touched(const LayerSet& changed, bool positive, bool beyond, unsigned side) {
   LayerSet out = changed | (positive ? changed >> 1 : changed << 1);
   if (beyond) out.set(positive ? side - 1 : 0);
   return out & ~LayerSet() >> (kSideMax - side);
 }
 
-/// The quads of one layer while rows of it are replaced: first those that were there before, in the order of
-/// the mesh, then others.
+/// The quads of one layer while rows of it are replaced: first the quads that were there before, in
+/// the order of the mesh, then new ones.
 struct LayerQuads {
   std::vector<Quad>& quads;
   std::size_t in_order;
 
-  /// Puts new strips into row `row`: quads that cover the row are cut above and below it, and what repeats
-  /// exactly is joined again. `beside` is scratch. O(quads + strips * quads beside the row).
+  /// Puts new strips into row `row`. Quads that cover the row are cut above and below it, and
+  /// strips that repeat exactly are joined again. `adjacent` is scratch. Cost: O(quads + strips *
+  /// quads adjacent to the row).
   void replace_row(const QuadShape& shape, std::uint32_t row, std::span<const Quad> strips,
-                   std::vector<Quad>& beside) {
-    beside.clear();
+                   std::vector<Quad>& adjacent) {
+    adjacent.clear();
     std::size_t kept = 0;
     std::size_t kept_in_order = 0;
     for (std::size_t i = 0; i < quads.size(); ++i) {
@@ -61,10 +62,10 @@ struct LayerQuads {
         kept_in_order += i < in_order ? 1 : 0;
         continue;
       }
-      if (first < row) beside.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
+      if (first < row) adjacent.push_back(shape.with_rows(quad, first, std::min(end, row) - first));
       if (row + 1 < end) {
         const std::uint32_t below = std::max(first, row + 1);
-        beside.push_back(shape.with_rows(quad, below, end - below));
+        adjacent.push_back(shape.with_rows(quad, below, end - below));
       }
     }
     quads.resize(kept);
@@ -73,8 +74,8 @@ struct LayerQuads {
       const std::uint64_t same = shape.strip(strip);
       std::uint32_t first = row;
       std::uint32_t end = row + 1;
-      for (std::size_t i = 0; i < beside.size();) {
-        const Quad quad = beside[i];
+      for (std::size_t i = 0; i < adjacent.size();) {
+        const Quad quad = adjacent[i];
         if (shape.strip(quad) != same) {
           ++i;
           continue;
@@ -84,15 +85,15 @@ struct LayerQuads {
         } else {
           end = shape.row_end(quad);
         }
-        beside[i] = beside.back();
-        beside.pop_back();
+        adjacent[i] = adjacent.back();
+        adjacent.pop_back();
       }
       quads.push_back(shape.with_rows(strip, first, end - first));
     }
-    quads.insert(quads.end(), beside.begin(), beside.end());
+    quads.insert(quads.end(), adjacent.begin(), adjacent.end());
   }
 
-  /// Puts all into the order of `place(quad)`. The others are few: each is inserted.
+  /// Sorts all quads by `place(quad)`. The new quads are few: each is inserted.
   template <class Place>
   void sort(Place&& place) {
     for (std::size_t i = in_order; i < quads.size(); ++i) {
@@ -136,7 +137,7 @@ class Remesher {
     }
   }
 
-  /// Rows to be meshed again, in all layers.
+  /// Returns the number of rows to mesh again, in all layers.
   std::size_t row_count() const {
     std::size_t count = 0;
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
@@ -182,7 +183,7 @@ class Remesher {
       const auto before = passes_[pass]->layer(direction, layer);
       const std::vector<Quad>& now = scratch_.layer[pass];
       if (now.empty() && before.empty()) continue;
-      // The order in which a sweep closes them: it goes up the rows, or along the strips.
+      // The order in which a sweep closes them: by row, or along the strips.
       if (rank_of(a.layer, chunk_.order) == 0) {
         quads[pass].sort([&shape](Quad q) { return shape.last(q) << 8 | shape.row(q); });
       } else {
@@ -198,10 +199,10 @@ class Remesher {
 
   void mesh_row(Direction direction, std::uint32_t layer, std::uint32_t row,
                 const rdm::StripAxes& a, const QuadShape& shape, std::array<LayerQuads, 2>& quads) {
-    const RowRuns& own = own_row(layer, row, a);
+    const RowRuns& inside = chunk_row(layer, row, a);
     const RowRuns* beyond = &scratch_.row_beyond;
     if (layer != (is_positive(direction) ? side_of(chunk_, a.layer) - 1 : 0)) {
-      beyond = &own_row(is_positive(direction) ? layer + 1 : layer - 1, row, a);
+      beyond = &chunk_row(is_positive(direction) ? layer + 1 : layer - 1, row, a);
     } else if (const RunChunk* const neighbour = neighbours_[static_cast<std::size_t>(direction)]) {
       const std::uint32_t other = is_positive(direction) ? 0 : side_of(*neighbour, a.layer) - 1;
       read(*neighbour, {a.layer, other, a.row, row}, 1, &scratch_.row_beyond);
@@ -212,11 +213,11 @@ class Remesher {
     auto& strips = scratch_.strips;
     std::array<std::size_t, 2> count{};
     std::uint32_t begin = 0;
-    for (std::uint32_t i = 0, j = 0; i < own.count; ++i) {
-      const Material material = own.stretch[i].material;
-      const std::uint32_t end = own.stretch[i].end;
+    for (std::uint32_t i = 0, j = 0; i < inside.count; ++i) {
+      const Material material = inside.stretch[i].material;
+      const std::uint32_t end = inside.stretch[i].end;
       const std::size_t pass = visibility_[material] == Visibility::transparent ? 1 : 0;
-      // The part of the stretch whose faces show is cut where what lies beyond hides them.
+      // The part of the stretch whose faces show is cut where the voxels beyond hide them.
       for (std::uint32_t at = begin; at < end;) {
         while (beyond->stretch[j].end <= at) ++j;
         const std::uint32_t first = at;
@@ -236,13 +237,13 @@ class Remesher {
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
       if (count[pass] == 0 && scratch_.layer[pass].empty()) continue;
       quads[pass].replace_row(shape, row, std::span(strips[pass]).first(count[pass]),
-                              scratch_.beside);
+                              scratch_.adjacent);
     }
   }
 
-  /// A row of the chunk; those of one row number are kept until another is asked for. With it, the layers
-  /// beside are read: they will be asked for next.
-  const RowRuns& own_row(std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a) {
+  /// Returns a row of the chunk. Rows of one row number are kept until another number is requested.
+  /// The adjacent layers are read too, because they are requested next.
+  const RowRuns& chunk_row(std::uint32_t layer, std::uint32_t row, const rdm::StripAxes& a) {
     if (row != scratch_.row_number) {
       scratch_.row_number = row;
       scratch_.row_known.reset();
@@ -266,7 +267,7 @@ class Remesher {
     for (std::size_t i = begin; i < end; ++i) first[i] += shift;
   }
 
-  /// Puts the layers of a patch in the place of those in `out`. O(quads + layers).
+  /// Replaces the layers of a patch in `out`. Cost: O(quads + layers).
   static void splice(LayerPatch& patch, QuadLayers& out) {
     if (patch.layers.empty()) return;
     std::vector<Quad>& merged = patch.merged;
@@ -279,7 +280,7 @@ class Remesher {
     std::uint32_t kept = 0;   // old quads before this are in `merged`, or replaced
     std::size_t next = 0;     // first[] before this counts in `merged`
     std::uint32_t begin = 0;  // of the layer's quads in the patch
-    std::uint32_t shift = 0;  // what to add to first[], modulo 2^32
+    std::uint32_t shift = 0;  // added to first[], modulo 2^32
     for (const LayerPatch::Layer& layer : patch.layers) {
       const std::uint32_t old_begin = out.first[layer.index];
       const std::uint32_t old_end = out.first[layer.index + 1];
@@ -302,8 +303,8 @@ class Remesher {
   const VisibilityTable& visibility_;
   RdmScratch::State& scratch_;
   const std::array<QuadLayers*, 2> passes_;
-  std::array<LayerSet, kDirectionCount> touched_;  // layers to be meshed again
-  std::array<DirtyLayers, kDirectionCount> rows_;  // where in them
+  std::array<LayerSet, kDirectionCount> touched_;  // layers to mesh again
+  std::array<DirtyLayers, kDirectionCount> rows_;  // changed rows, per direction
 };
 
 }  // namespace
@@ -313,7 +314,8 @@ bool mesh_rdm_layers(const RunChunk& chunk, const MeshNeighbours& neighbours,
                      const std::array<DirtyLayers, kDirectionCount>& beyond, RdmScratch& scratch,
                      ChunkMesh& mesh) {
   Remesher remesher(chunk, neighbours, visibility, dirty, beyond, scratch.state(), mesh);
-  // A row on its own costs some times its share of a sweep, which has a row per line in each direction.
+  // A single row costs several times its share of a sweep, which has a row per line in each
+  // direction.
   constexpr std::size_t kSweepRows = 8;
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
   if (remesher.row_count() * kSweepRows > std::size_t{kDirectionCount} * e.m * e.s) {

@@ -34,23 +34,23 @@ using rdm::side_of;
 using rdm::SideAxes;
 using Scratch = RdmScratch::State;
 
-/// Numbers the materials of the chunk and lists its runs by code.
-void code_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
-  scratch.codes.clear();
+/// Assigns palette indices to the materials of the chunk and lists its runs by index.
+void index_runs(const RunChunk& chunk, const VisibilityTable& visibility, Scratch& scratch) {
+  scratch.palette.clear();
   scratch.runs.resize(chunk.runs.size());
   chunk.runs.visit([&, out = scratch.runs.data()](const auto& runs) {
-    rdm::ChunkPalette& codes = scratch.codes;
+    rdm::ChunkPalette& palette = scratch.palette;
     const std::size_t size = runs.size();
     for (std::size_t i = 0; i < size; ++i)
-      out[i] = {runs.end(i), codes.number(runs.material(i), visibility)};
+      out[i] = {runs.end(i), palette.index_of(runs.material(i), visibility)};
   });
-  // A single transparent material is meshed as a single opaque one would be.
-  if (scratch.codes.solid_count() == 1 && scratch.codes.has_transparent()) {
-    for (rdm::CodedRun& run : scratch.runs) run.code = run.code != 0 ? 1 : 0;
+  // A single transparent material is meshed as a single opaque one.
+  if (scratch.palette.solid_count() == 1 && scratch.palette.has_transparent()) {
+    for (rdm::PaletteRun& run : scratch.runs) run.index = run.index != 0 ? 1 : 0;
   }
 }
 
-/// Rows of bits from those that a neighbour's holder keeps, in the chunk's own orientation.
+/// Copies the rows of bits that a neighbour's holder keeps, in the chunk's orientation.
 template <class Rows>
 void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side, Axis bit_axis,
                  Rows& out) {
@@ -73,17 +73,18 @@ void copy_border(const ChunkBorders& borders, const RunChunk& of, Direction side
   }
   if (borders.bit_axis(side) == bit_axis) return;
   std::fill(out.begin() + static_cast<std::ptrdiff_t>(count), out.end(), Row{0});
-  rdm::transpose(out);
+  transpose(out);
 }
 
-/// The border of a chunk that has transparent materials among others, where the neighbour may have them, too.
+/// Reads a border where transparent voxels may meet: the chunk has transparent materials among
+/// others, and the neighbour may have them too.
 template <class Row>
 void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
                        const VisibilityTable& visibility, Scratch& scratch, std::size_t at,
                        rdm::Borders<Row>& borders) {
-  const rdm::ChunkPalette& codes = scratch.codes;
-  const auto class_of = [&codes, &visibility](Material material) -> PaletteIndex {
-    return codes.transparent_code(material) != 0        ? 2
+  const rdm::ChunkPalette& palette = scratch.palette;
+  const auto class_of = [&palette, &visibility](Material material) -> PaletteIndex {
+    return palette.transparent_index(material) != 0     ? 2
            : visibility[material] == Visibility::opaque ? 1
                                                         : 0;
   };
@@ -95,7 +96,8 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
     read_layer(neighbour, place.axis, place.at, place.bit_axis, voxels);
   };
   std::array<typename rdm::Borders<Row>::Rows, 2> planes;
-  // Among many short runs, looking at each voxel of the layer costs less than at each run of the chunk.
+  // With many short runs, reading each voxel of the layer costs less than reading each run of the
+  // chunk.
   const bool dense = neighbour.runs.size() > std::size_t{4} * bits * rows;
   if (dense) {
     read_voxels();
@@ -115,10 +117,10 @@ void read_mixed_border(const RunChunk& neighbour, const rdm::LayerPlace& place,
   borders.transparent[at] = planes[1];
   borders.meets[at] =
       std::any_of(planes[1].begin(), planes[1].end(), [](Row row) { return row != 0; });
-  if (!borders.meets[at] || codes.transparent_count() == 1) return;
+  if (!borders.meets[at] || palette.transparent_count() == 1) return;
   if (!dense) read_voxels();
-  std::transform(voxels.begin(), voxels.end(), std::back_inserter(borders.codes[at]),
-                 [&codes](Material material) { return codes.transparent_code(material); });
+  std::transform(voxels.begin(), voxels.end(), std::back_inserter(borders.indices[at]),
+                 [&palette](Material material) { return palette.transparent_index(material); });
 }
 
 template <class Row>
@@ -126,10 +128,10 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
                  const ChunkBorders* kept, const SideAxes& axes, const VisibilityTable& visibility,
                  Scratch& scratch, Side side, rdm::Borders<Row>& borders) {
   const std::size_t at = rdm::at(side);
-  const rdm::ChunkPalette& codes = scratch.codes;
+  const rdm::ChunkPalette& palette = scratch.palette;
   auto& hiding = borders.hiding[at];
   borders.meets[at] = false;
-  borders.codes[at].clear();
+  borders.indices[at].clear();
   if (neighbour == nullptr) {
     hiding.fill(0);
     return;
@@ -140,9 +142,9 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
   const rdm::LayerPlace place{axes.layer, axes.bit, layer};
   std::array<typename rdm::Borders<Row>::Rows, 1> plane;
   const Direction touching = opposite(direction);
-  const bool told = kept != nullptr && !neighbour->is_uniform();
-  if (!codes.has_transparent() || (told && !kept->has_transparent(touching))) {
-    if (told) return copy_border(*kept, *neighbour, touching, axes.bit, hiding);
+  const bool is_kept = kept != nullptr && !neighbour->is_uniform();
+  if (!palette.has_transparent() || (is_kept && !kept->has_transparent(touching))) {
+    if (is_kept) return copy_border(*kept, *neighbour, touching, axes.bit, hiding);
     rdm::read_layer_rows(*neighbour, place, plane,
                          [table = visibility.data()](Material material) -> PaletteIndex {
                            return table[material] == Visibility::opaque ? 1 : 0;
@@ -150,11 +152,11 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
     hiding = plane[0];
     return;
   }
-  if (codes.solid_count() == 1) {
+  if (palette.solid_count() == 1) {
     rdm::read_layer_rows(
         *neighbour, place, plane,
-        [table = visibility.data(), own = codes.single()](Material material) -> PaletteIndex {
-          return table[material] == Visibility::opaque || material == own ? 1 : 0;
+        [table = visibility.data(), single = palette.single()](Material material) -> PaletteIndex {
+          return table[material] == Visibility::opaque || material == single ? 1 : 0;
         });
     hiding = plane[0];
     return;
@@ -164,7 +166,7 @@ void read_border(const RunChunk& chunk, Direction direction, const RunChunk* nei
 
 template <class Row>
 void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
-                ChunkBorders* own, const VisibilityTable& visibility, Scratch& scratch,
+                ChunkBorders* chunk_borders, const VisibilityTable& visibility, Scratch& scratch,
                 std::unique_ptr<RowScratch<Row>>& rows) {
   if (!rows) rows = std::make_unique<RowScratch<Row>>();
   const auto axes = side_axes(chunk.order);
@@ -172,10 +174,10 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   rdm::SweepInput input;
   input.runs = scratch.runs;
   input.extent = ordered(chunk.extent, chunk.order);
-  input.codes = &scratch.codes;
+  input.palette = &scratch.palette;
   input.opaque = &scratch.opaque;
   input.transparent = &scratch.transparent;
-  input.chunk_sides = own != nullptr;
+  input.chunk_sides = chunk_borders != nullptr;
   for (std::size_t side = 0; side < kDirectionCount; ++side) {
     const SideAxes& a = axes[side / 2];
     const Direction direction = direction_of(a.layer, side % 2 != 0);
@@ -190,11 +192,12 @@ void mesh_chunk(const RunChunk& chunk, const MeshNeighbours& neighbours, const M
   } else {
     rdm::sweep_layers(input, rows->borders, rows->sweep);
   }
-  if (own != nullptr) own->keep(chunk, rows->sweep.chunk_sides, rows->sweep.own_transparent);
+  if (chunk_borders != nullptr)
+    chunk_borders->keep(chunk, rows->sweep.chunk_sides, rows->sweep.sides_transparent);
 }
 
-/// Meshes a chunk of one material whose neighbours are missing or of one material each: whole sides, or
-/// nothing. Returns false, with nothing done, if a neighbour is of several.
+/// Meshes a chunk of one material whose neighbours are missing or of one material each: whole
+/// sides, or nothing. Returns false and does nothing if a neighbour has several materials.
 bool mesh_uniform(const RunChunk& chunk, const MeshNeighbours& neighbours,
                   const VisibilityTable& visibility, ChunkMesh& out) {
   if (!std::all_of(neighbours.begin(), neighbours.end(),
@@ -228,29 +231,31 @@ void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours,
 
 void mesh_rdm(const RunChunk& chunk, const MeshNeighbours& neighbours, const MeshBorders& borders,
               const VisibilityTable& visibility, RdmScratch& scratch, ChunkMesh& out,
-              ChunkBorders* own) {
+              ChunkBorders* chunk_borders) {
   Scratch& state = scratch.state();
   if (chunk.is_uniform()) {
-    if (own != nullptr) own->read(chunk, visibility);
-    own = nullptr;
+    if (chunk_borders != nullptr) chunk_borders->read(chunk, visibility);
+    chunk_borders = nullptr;
     if (visibility[chunk.runs.material(0)] == Visibility::empty) return out.clear();
     if (mesh_uniform(chunk, neighbours, visibility, out)) return;
   }
-  code_runs(chunk, visibility, state);
-  const bool single_transparent = state.codes.solid_count() == 1 && state.codes.has_transparent();
-  if (own != nullptr && (state.codes.solid_count() == 0 || single_transparent)) {
-    own->read(chunk, visibility);  // the sweep does not tell it from an opaque one, or does not run
-    own = nullptr;
+  index_runs(chunk, visibility, state);
+  const bool single_transparent =
+      state.palette.solid_count() == 1 && state.palette.has_transparent();
+  if (chunk_borders != nullptr && (state.palette.solid_count() == 0 || single_transparent)) {
+    // The sweep does not run, or does not distinguish this material from an opaque one.
+    chunk_borders->read(chunk, visibility);
+    chunk_borders = nullptr;
   }
-  if (state.codes.solid_count() == 0) return out.clear();
+  if (state.palette.solid_count() == 0) return out.clear();
   const auto sides = chunk.extent.sides();
   if (*std::max_element(sides.begin(), sides.end()) <= 64) {
-    mesh_chunk(chunk, neighbours, borders, own, visibility, state, state.narrow);
+    mesh_chunk(chunk, neighbours, borders, chunk_borders, visibility, state, state.narrow);
   } else {
-    mesh_chunk(chunk, neighbours, borders, own, visibility, state, state.wide);
+    mesh_chunk(chunk, neighbours, borders, chunk_borders, visibility, state, state.wide);
   }
   state.opaque.finish(sides, out.opaque);
-  if (state.codes.has_transparent()) {
+  if (state.palette.has_transparent()) {
     state.transparent.finish(sides, out.transparent);
   } else {
     out.transparent.clear();

@@ -1,4 +1,5 @@
-// Rows of bits, as many a step as the machine takes. Included once per instruction set, inside no namespace.
+// Rows of bits as vectors: as many rows a step as the machine takes. Included once per instruction
+// set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_ROW_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_ROW_LANES_INL
 #undef RUNSTONE_MESH_RDM_ROW_LANES_INL
@@ -18,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One row a step: the plain path, and rows wider than a vector's lane.
+/// One row a step: for the plain path, and for rows wider than a vector's lane.
 template <class R>
 struct OneRow {
   using Row = R;
@@ -34,9 +35,9 @@ struct OneRow {
   static V sum(V a, V b) { return a + b; }
   static V up(V a) { return a << 1; }
   static V down(V a) { return a >> 1; }
-  /// Bit i: lane i is not zero.
+  /// Returns a word in which bit i is set if lane i is not zero.
   static std::uint64_t any(V a) { return a != 0 ? 1 : 0; }
-  /// `row` in the lanes whose bit is set.
+  /// Returns `row` in the lanes whose bit is set, and zero in the others.
   static V where(std::uint64_t lanes, Row row) { return (lanes & 1) != 0 ? row : 0; }
 };
 
@@ -71,13 +72,14 @@ struct VectorRows {
 using VectorRows = OneRow<Row64>;
 #endif
 
-/// Calls step(first row) for every step of whole vectors over `count` rows; the last may go beyond them.
+/// Calls step(first row) for every step of whole vectors over `count` rows. The last step may go
+/// beyond them.
 template <class Lanes, class F>
 HWY_INLINE void for_rows(std::uint32_t count, F&& step) {
   for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) step(m);
 }
 
-/// Bit m: whether row m, below `count`, has the bit of `bit`.
+/// Returns a row in which bit m < `count` is set if row m has a bit of `bit`.
 template <class Lanes, class Row>
 Row column_of(const Row* rows, std::uint32_t count, Row bit) {
   const auto wanted = Lanes::all(bit);

@@ -1,4 +1,4 @@
-// RowRuns: the voxels of one row, in whatever direction it lies, as stretches of one material. Internal to rdm.
+// RowRuns: the voxels of one row along any axis, as stretches of one material. Internal to rdm.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace runstone::rdm {
 
 struct RowRuns {
-  /// Covers [end of the one before it, end).
+  /// Covers [end of the previous stretch, end).
   struct Stretch {
     std::uint8_t end;
     Material material;
@@ -21,7 +21,7 @@ struct RowRuns {
   std::uint32_t count = 0;
 
   void clear() { count = 0; }
-  /// Adds voxels up to `end`, in the stretch before if they are of its material.
+  /// Adds voxels up to `end`. They join the last stretch if it has the same material.
   void append(std::uint32_t end, Material material) {
     if (count == 0 || stretch[count - 1].material != material) ++count;
     stretch[count - 1] = {static_cast<std::uint8_t>(end), material};
@@ -36,9 +36,9 @@ struct RowPlace {
   std::uint32_t row;
 };
 
-/// Reads `count` rows side by side into out[0], out[1], ...: those of the layers from place.at on.
-/// O(length + log runs + runs between the first voxel and the last) a row; where the layers lie along the
-/// fastest axis, O(length * log runs) for all together.
+/// Reads `count` rows side by side into out[0], out[1], ...: the rows of the layers from place.at
+/// on. Cost per row: O(length + log runs + runs between the first voxel and the last). If the
+/// layers lie along the fastest axis, the cost of all rows together is O(length * log runs).
 template <class Runs>
 void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, unsigned count,
                RowRuns* out) {
@@ -61,7 +61,7 @@ void read_rows(const Runs& runs, const RunChunk& chunk, const RowPlace& place, u
     stride *= side;
   }
   for (unsigned r = 0; r < count; ++r) out[r].clear();
-  if (across == 1) {  // rows beside each other in the list of runs: one walk for all
+  if (across == 1) {  // the rows are adjacent in the list of runs: one walk for all
     RunCursor cursor(runs);
     for (std::uint32_t i = 0; i < length; ++i) {
       const std::uint32_t first = voxel + i * step;

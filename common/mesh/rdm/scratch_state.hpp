@@ -1,4 +1,4 @@
-// What RdmScratch keeps between calls. Internal to rdm.
+// The state that RdmScratch keeps between calls. Internal to rdm.
 #pragma once
 #include <array>
 #include <bitset>
@@ -14,18 +14,18 @@
 
 namespace runstone::rdm {
 
-/// What depends on the width of a row.
+/// The part that depends on the width of a row.
 template <class Row>
 struct RowScratch {
   Borders<Row> borders;
   SweepState<Row> sweep;
 };
 
-/// Quads of some layers that take the place of others, in one pass (opaque or transparent).
+/// Quads of some layers that replace others, in one pass (opaque or transparent).
 struct LayerPatch {
   struct Layer {
     std::size_t index = 0;        // in QuadLayers::first
-    std::uint32_t quads_end = 0;  // in `quads`; they begin where those of the layer before end
+    std::uint32_t quads_end = 0;  // in `quads`; they begin where those of the previous layer end
   };
   std::vector<Layer> layers;  // ascending
   std::vector<Quad> quads;
@@ -37,21 +37,21 @@ struct LayerPatch {
 namespace runstone {
 
 struct RdmScratch::State {
-  rdm::ChunkPalette codes;
-  std::vector<rdm::CodedRun> runs;
+  rdm::ChunkPalette palette;
+  std::vector<rdm::PaletteRun> runs;
   std::vector<Material> border_voxels;  // of a border layer, where transparent materials meet
   rdm::QuadBuckets opaque, transparent;
   std::array<rdm::LayerPatch, 2> patch;         // opaque and transparent
   std::array<rdm::RowRuns, kSideMax> row_runs;  // of one row in some layers of an axis
-  std::bitset<kSideMax> row_known;              // which they are
+  std::bitset<kSideMax> row_known;              // the layers that row_runs holds
   rdm::RowRuns row_beyond;                      // of the same row in a neighbour
   std::uint32_t row_number = 0;
-  std::array<std::array<Quad, kSideMax>, 2> strips;  // of the row at hand, by pass
-  std::vector<Quad> beside;                          // quads above and below that row
-  std::array<std::vector<Quad>, 2> layer;            // quads of the layer at hand, by pass
-  std::unique_ptr<rdm::RowScratch<rdm::Row64>> narrow;
-  std::unique_ptr<rdm::RowScratch<rdm::Row128>>
-      wide;  // made for the first chunk with a side above 64
+  std::array<std::array<Quad, kSideMax>, 2> strips;  // of the current row, by pass
+  std::vector<Quad> adjacent;                        // quads above and below that row
+  std::array<std::vector<Quad>, 2> layer;            // quads of the current layer, by pass
+  std::unique_ptr<rdm::RowScratch<Row64>> narrow;
+  // Made for the first chunk with a side above 64.
+  std::unique_ptr<rdm::RowScratch<Row128>> wide;
   bool plain = false;
 };
 

@@ -1,5 +1,5 @@
-// Side axes: how the six sides of a chunk lie as rows of bits, and how their quads come about, by its axis order.
-// Internal to rdm.
+// Side axes: the axes of the six sides of a chunk as rows of bits, and of their quads, by axis
+// order. Internal to rdm.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,31 +15,33 @@ constexpr Direction direction_of(Axis axis, bool positive) {
   return static_cast<Direction>(static_cast<unsigned>(axis) * 2 + (positive ? 1 : 0));
 }
 
-/// Voxels of the chunk along an axis.
+/// Returns the voxels of the chunk along an axis.
 inline std::uint32_t side_of(const RunChunk& chunk, Axis axis) {
   return chunk.extent.sides()[static_cast<std::size_t>(axis)];
 }
 
-/// A side as rows of bits: the axis across it, that along the bits, that from row to row.
+/// A side as rows of bits: the axis across it, the axis along the bits, and the axis from row to
+/// row.
 struct SideAxes {
   Axis layer, bit, row;
 };
-/// Of the slow, the middle and the fast sides.
+/// Returns the axes of the slow, the middle and the fast sides.
 constexpr std::array<SideAxes, 3> side_axes(AxisOrder order) {
   const auto axes = axes_of(order);
   return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[1], axes[2]}}};
 }
 
-/// The quads of a side: the axis across it, that along their strips, that along which equal strips are joined.
+/// The quads of a side: the axis across it, the axis along their strips, and the axis along which
+/// equal strips are joined.
 struct StripAxes {
   Axis layer, strip, row;
 };
-/// Of the slow, the middle and the fast sides.
+/// Returns the axes of the slow, the middle and the fast sides.
 constexpr std::array<StripAxes, 3> strip_axes(AxisOrder order) {
   const auto axes = axes_of(order);
   return {{{axes[2], axes[0], axes[1]}, {axes[1], axes[0], axes[2]}, {axes[0], axes[2], axes[1]}}};
 }
-/// Of the sides across one axis.
+/// Returns the axes of the sides across one axis.
 constexpr StripAxes strip_axes(AxisOrder order, Axis layer) {
   const auto all = strip_axes(order);
   return *std::find_if(all.begin(), all.end(),

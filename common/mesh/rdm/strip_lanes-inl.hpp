@@ -1,5 +1,5 @@
-// Strip lanes: row_strips.hpp for as many rows a step as the machine takes. Included once per instruction set,
-// inside no namespace.
+// Strip lanes: row_strips.hpp for as many rows a step as the machine takes. Included once per
+// instruction set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_STRIP_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_STRIP_LANES_INL
 #undef RUNSTONE_MESH_RDM_STRIP_LANES_INL
@@ -21,25 +21,25 @@ struct StripLanes {
   using V = typename Lanes::V;
   V face, start, end;
 
-  /// strips_along(): `face` and `cut` are the first of the rows.
+  /// strips_along(): `face` and `cut` point to the first of the rows.
   static HWY_INLINE StripLanes along(const Row* face, [[maybe_unused]] const Row* cut) {
     const V f = Lanes::load(face);
     V before = Lanes::up(f);
     V behind = Lanes::down(f);
-    if constexpr (Form::kNumbered) {
+    if constexpr (Form::kManyMaterials) {
       const V c = Lanes::load(cut);
       before = Lanes::without(before, c);
       behind = Lanes::without(behind, Lanes::down(c));
     }
     return {f, Lanes::without(f, before), Lanes::without(f, behind)};
   }
-  /// changed(): `cut` is the first of the rows.
+  /// changed(): `cut` points to the first of the rows.
   static HWY_INLINE V changed(const StripLanes& now, const StripLanes& before,
                               [[maybe_unused]] const Row* cut) {
     V x = Lanes::either(Lanes::differing(now.face, before.face),
                         Lanes::either(Lanes::differing(now.start, before.start),
                                       Lanes::differing(now.end, before.end)));
-    if constexpr (Form::kNumbered) {
+    if constexpr (Form::kManyMaterials) {
       x = Lanes::either(x, Lanes::both(Lanes::both(now.face, before.face), Lanes::load(cut)));
     }
     return x;

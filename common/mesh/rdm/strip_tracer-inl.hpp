@@ -1,6 +1,6 @@
-// StripTracer: follows the strips of one side of a layer in the rows that differ from the row before: closes what
-// ends there and opens what begins; all other strips go on untouched. Included once per instruction set,
-// inside no namespace.
+// StripTracer: traces the strips of one side of a layer in the rows that differ from their previous
+// row. It closes the strips that end there and opens those that begin. All other strips continue.
+// Included once per instruction set, inside no namespace.
 #if defined(RUNSTONE_MESH_RDM_STRIP_TRACER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
 #undef RUNSTONE_MESH_RDM_STRIP_TRACER_INL
@@ -28,31 +28,31 @@ namespace HWY_NAMESPACE {
 template <class Form>
 class StripTracer {
   using Lanes = typename Form::Lanes;
-  using CodeLanes = typename Form::CodeLanes;
+  using IndexLanes = typename Form::IndexLanes;
   using Row = typename Form::Row;
-  using C = typename Form::C;
+  using Index = typename Form::Index;
   using Strips = RowStrips<Row>;
-  using Outlet = QuadEmitter<Form>;
-  static constexpr bool kNumbered = Form::kNumbered;
+  using Emitter = QuadEmitter<Form>;
+  static constexpr bool kManyMaterials = Form::kManyMaterials;
 
  public:
-  /// A bit for each row in which strips may end or begin.
+  /// One bit for each row in which strips may end or begin.
   using RowSet = Row;
 
   StripTracer(const SweepInput& input, SweepState<Row>& state)
-      : in_(input), st_(state), codes_(state.template codes<C>()), e_(input.extent) {}
+      : in_(input), st_(state), indices_(state.template indices<Index>()), e_(input.extent) {}
 
-  /// Faces across the slowest axis, of layer `layer`, which is in ring `own`. Strips lie along a line, and the
-  /// next row is the next line.
+  /// Traces the faces across the slowest axis of layer `layer`, which is in slot `slot`. Strips lie
+  /// along a line, and the next row is the next line.
   template <Side kSide>
-  void trace_slow(RowSet rows, std::uint32_t layer, unsigned own) {
+  void trace_slow(RowSet rows, std::uint32_t layer, unsigned slot) {
     const Row* const face = st_.face[at(kSide)][0].data();
     const std::uint32_t count = e_.m;
     const Row bottom = face[count - 1];
     if (rows == 0 && bottom == 0) return;
-    const Row* const cut_fast = st_.cut_fast[own].data();
-    const Row* const cut_mid = st_.cut_mid[own].data();
-    const Outlet out(in_, kSide, codes_[own].data());
+    const Row* const cut_fast = st_.cut_fast[slot].data();
+    const Row* const cut_mid = st_.cut_mid[slot].data();
+    const Emitter out(in_, kSide, indices_[slot].data());
     Quad* const open = st_.open[at(kSide)].data();
     if (most(rows)) {
       compare_along({face, cut_fast, face - 1, cut_fast - 1, cut_mid});
@@ -78,8 +78,8 @@ class StripTracer {
     out.close_strips(over.end, open, layer, count);
   }
 
-  /// Faces across the middle axis in layer s. Strips lie along a line, and the next row is the same line of the
-  /// next layer.
+  /// Traces the faces across the middle axis in layer s. Strips lie along a line, and the next row
+  /// is the same line of the next layer.
   template <Side kSide>
   void trace_middle(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
@@ -88,7 +88,7 @@ class StripTracer {
     const Row* const cut_fast = st_.cut_fast[layers.current].data();
     const Row* const cut_fast_before = st_.cut_fast[layers.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const Outlet out(in_, kSide, codes_[layers.current].data());
+    const Emitter out(in_, kSide, indices_[layers.current].data());
     Quad* const open = st_.open[at(kSide)].data();
     Row* const closing = st_.closing.data();
     Row* const opening = st_.opening.data();
@@ -123,9 +123,10 @@ class StripTracer {
     }
   }
 
-  /// Faces across the fastest axis in layer s: every bit is a layer of its own. Strips run along the slowest
-  /// axis, one a bit: a face that appears begins one, a face that disappears ends one. Those that end side by
-  /// side in neighbouring rows are one quad if they began together and are of one material.
+  /// Traces the faces across the fastest axis in layer s: every bit is a layer of its own. Strips
+  /// run along the slowest axis, one a bit: a face that appears begins a strip, and a face that
+  /// disappears ends one. Strips that end side by side in neighbouring rows are one quad if they
+  /// began together and are of one material.
   template <Side kSide>
   void trace_fast(RowSet rows, std::uint32_t s, LayerPair layers) {
     if (rows == 0) return;
@@ -133,7 +134,7 @@ class StripTracer {
     const Row* const face_before = st_.face[at(kSide)][layers.previous].data();
     const Row* const cut_mid_before = st_.cut_mid[layers.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
-    const Outlet out(in_, kSide, codes_[layers.previous].data());
+    const Emitter out(in_, kSide, indices_[layers.previous].data());
     std::uint8_t* const start_layer = st_.start_layer[at(kSide) - at(Side::fast_neg)].data();
     Row* const joins_previous = st_.joins_previous.data();
     Place* const closed = st_.closed.data();
@@ -152,7 +153,7 @@ class StripTracer {
       const std::uint32_t m = *place / kRowBits<Row>;
       const unsigned bit = *place % kRowBits<Row>;
       const std::uint32_t first = start_layer[*place];
-      // Row 0 has nothing beside it; it may read any byte.
+      // Row 0 has no row above it and may read any byte.
       const bool joins = (joins_previous[m] >> bit & 1) != 0 &&
                          start_layer[*place - (m == 0 ? 0 : kRowBits<Row>)] == first;
       out.close_or_join(out.open({bit, first, s - first, m}, m, bit), bit, m + 1, joins);
@@ -160,15 +161,16 @@ class StripTracer {
     for (RowSet left = rows; left != 0; left &= left - 1) {
       const std::uint32_t m = lowest_bit(left);
       const Row opening = face[m] & (~face_before[m] | cut_at(cut_slow + m));
-      CodeLanes::template put<Row>(opening, static_cast<std::uint8_t>(s),
-                                   start_layer + std::size_t{m} * kRowBits<Row>);
+      IndexLanes::template put<Row>(opening, static_cast<std::uint8_t>(s),
+                                    start_layer + std::size_t{m} * kRowBits<Row>);
     }
   }
 
  private:
-  static HWY_INLINE Row cut_at(const Row* cut) { return kNumbered ? *cut : Row{0}; }
+  static HWY_INLINE Row cut_at(const Row* cut) { return kManyMaterials ? *cut : Row{0}; }
 
-  /// Whether so many rows change that all of them at once cost less than these one by one.
+  /// Returns true if so many rows change that comparing all rows at once costs less than comparing
+  /// these one by one.
   bool most([[maybe_unused]] RowSet rows) const {
     if constexpr (Lanes::kLanes == 1) {
       return false;
@@ -177,11 +179,12 @@ class StripTracer {
     }
   }
 
-  /// Rows of strips and their cuts, the same of the rows before, and where the material differs between them.
+  /// Rows of strips and their cuts, the same of the previous rows, and the bits whose material
+  /// differs between them.
   struct Lines {
     const Row *face, *cut, *face_before, *cut_before, *differs;
   };
-  /// Finds what closes and opens, for all rows.
+  /// Finds the strips that close and open, for all rows.
   void compare_along(const Lines& in) {
     using Vectors = StripLanes<Form>;
     Row* const closing = st_.closing.data();
@@ -197,8 +200,8 @@ class StripTracer {
     });
   }
 
-  /// Places of bits are written down first and gone through afterwards, so that the loop over them has no end
-  /// in each row that a processor would have to foresee. What is written behind the last one does not count.
+  /// The places of bits are written to a list first and visited afterwards. So the loop over them
+  /// is not per row, and its end is predictable. Values written behind the last place are ignored.
   using Place = std::uint16_t;
   static HWY_INLINE Place* write_places(Row bits, std::uint32_t row, Place* to) {
     const std::uint32_t base = row * kRowBits<Row>;
@@ -213,7 +216,7 @@ class StripTracer {
 
   const SweepInput& in_;
   SweepState<Row>& st_;
-  typename SweepState<Row>::template Codes<C>& codes_;
+  typename SweepState<Row>::template Indices<Index>& indices_;
   const OrderedExtent e_;
 };
 

@@ -1,5 +1,6 @@
-// SweepState: what a layer sweep writes and reads again: two layers as codes and as rows of bits, the strips
-// that are open, and the chunk's own sides. Kept between sweeps, so that none allocates. Internal to rdm.
+// SweepState: the state of a layer sweep: two layers as palette indices and as rows of bits, the
+// open strips, and the chunk's own sides. It is kept between sweeps, so that a sweep does not
+// allocate. Internal to rdm.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -23,16 +24,17 @@ struct alignas(64) LayerRows {
   const Row* data() const { return slots.data() + kBefore; }
 };
 
-/// The codes of one layer, line behind line, with room before and behind for whole rows and vectors.
-template <class Row, class C>
-struct LayerCodes {
-  static constexpr std::size_t kRoom =
-      kSideMax;  // the line before the first one is read, and a row behind
-  alignas(64) std::array<C, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
-  C* data() { return slots.data() + kRoom; }
+/// The palette indices of one layer, line by line, with room before and behind for whole rows and
+/// vectors.
+template <class Row, class Index>
+struct LayerIndices {
+  // The line before the first one is read, and a row behind.
+  static constexpr std::size_t kRoom = kSideMax;
+  alignas(64) std::array<Index, kRoom + std::size_t{kRowBits<Row>} * kRowBits<Row> + kRoom> slots{};
+  Index* data() { return slots.data() + kRoom; }
 };
 
-/// Which of the two layers in SweepState is the one at hand, and which the one before it.
+/// The slots of the current and of the previous layer in SweepState.
 struct LayerPair {
   unsigned current = 0, previous = 1;
 };
@@ -40,52 +42,55 @@ struct LayerPair {
 template <class Row>
 struct SweepState {
   using Rows = LayerRows<Row>;
-  template <class C>
-  using Codes = std::array<LayerCodes<Row, C>, 2>;
+  template <class Index>
+  using Indices = std::array<LayerIndices<Row, Index>, 2>;
   static constexpr std::size_t kPlaces = std::size_t{kRowBits<Row>} * kRowBits<Row>;  // rows * bits
-  static_assert(kPlaces <= 1u << 16 &&
-                kSideMax <= 1u << 8);  // places and layers as they are kept here
+  // Places and layers fit the types below.
+  static_assert(kPlaces <= 1u << 16 && kSideMax <= 1u << 8);
 
-  // What LayerBuilder makes. Where there are two of a thing, they are by ring.
-  Codes<BytePaletteIndex> byte_codes;
-  std::unique_ptr<Codes<PaletteIndex>>
-      whole_codes;            // made for the first chunk whose codes do not fit bytes
+  // The part that LayerBuilder writes. Pairs are indexed by slot.
+  Indices<BytePaletteIndex> byte_indices;
+  // Made for the first chunk whose indices do not fit into bytes.
+  std::unique_ptr<Indices<PaletteIndex>> full_indices;
   std::array<Rows, 2> solid;  // voxels with faces
-  std::array<Rows, 2>
-      hiding;        // voxels that hide a face, with the middle neighbours' in the slots around
-  Rows transparent;  // of the layer at hand
-  std::array<Rows, 2> cut_fast,
-      cut_mid;  // where the material differs from the voxel before, along an axis
+  // Voxels that hide a face. The rows before and behind are those of the middle neighbours.
+  std::array<Rows, 2> hiding;
+  Rows transparent;  // of the current layer
+  // Places where the material differs from the previous voxel along an axis.
+  std::array<Rows, 2> cut_fast, cut_mid;
   Rows cut_slow;
 
-  /// Voxels whose face shows, by Side; slow sides lie between two layers and use the first ring only.
+  /// Voxels whose face shows, by Side. Slow sides lie between two layers and use the first slot
+  /// only.
   std::array<std::array<Rows, 2>, 6> face;
 
-  // What StripTracer makes of one side of a layer: strips that end and begin, by row.
-  Rows closing, opening,
-      start;            // last bits of strips that close and that open; first bits of strips
-  Rows joins_previous;  // of upright strips: bits that close in the row before as well
+  // The part that StripTracer writes for one side of a layer: strips that end and begin, by row.
+  // Last bits of strips that close and that open, and first bits of strips.
+  Rows closing, opening, start;
+  Rows joins_previous;  // of upright strips: bits that close in the previous row as well
   /// Places of bits that close and open, row * kRowBits + bit, with room for a step behind.
   std::array<std::uint16_t, kPlaces + 4> closed, opened;
-  // And what it keeps from row to row, or layer to layer.
-  /// Quads that are open, by Side; then by end of the strip (slow), or by row and end (middle).
+  // The part that StripTracer keeps from row to row, or from layer to layer.
+  /// Open quads, by Side; then by end of the strip (slow), or by row and end (middle).
   std::array<std::array<Quad, kPlaces>, 4> open;
-  /// Layer in which a face across the fastest axis appeared: negative and positive side, then row and bit.
+  /// The layer in which a face across the fastest axis appeared: by negative and positive side,
+  /// then row and bit.
   std::array<std::array<std::uint8_t, kPlaces>, 2> start_layer;
 
-  // What ChunkSides makes, by Side.
-  std::array<std::array<Row, kRowBits<Row>>, 6>
-      chunk_sides;                      // opaque voxels, laid out as in Borders
-  std::array<bool, 6> own_transparent;  // whether there are transparent ones
+  // The part that ChunkSides writes, by Side.
+  // Opaque voxels, laid out as in Borders.
+  std::array<std::array<Row, kRowBits<Row>>, 6> chunk_sides;
+  std::array<bool, 6> sides_transparent;  // true if the side has transparent voxels
 
-  /// The codes in the form C. Allocates for the first chunk that needs whole ones.
-  template <class C>
-  Codes<C>& codes() {
-    if constexpr (sizeof(C) == 1) {
-      return byte_codes;
+  /// Returns the palette indices in the type Index. Allocates for the first chunk that needs full
+  /// ones.
+  template <class Index>
+  Indices<Index>& indices() {
+    if constexpr (sizeof(Index) == 1) {
+      return byte_indices;
     } else {
-      if (!whole_codes) whole_codes = std::make_unique<Codes<PaletteIndex>>();
-      return *whole_codes;
+      if (!full_indices) full_indices = std::make_unique<Indices<PaletteIndex>>();
+      return *full_indices;
     }
   }
 };

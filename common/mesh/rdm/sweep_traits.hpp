@@ -1,19 +1,22 @@
-// SweepTraits: what the parts of a sweep are compiled for. Internal to rdm.
+// SweepTraits: the compile-time parameters of a sweep. Internal to rdm.
 #pragma once
 
 namespace runstone::rdm {
 
-/// LanesOf: rows as many a step (row_lanes-inl.hpp). CodeLanesOf: codes side by side (code_lanes-inl.hpp).
-/// CodeOf: the form of the codes. kManyMaterials: the chunk has more than one material, so faces are cut where
-/// it changes; with one, codes say no more than solid or not.
-template <class LanesOf, class CodeLanesOf, class CodeOf, bool kManyMaterials>
+/// The parameters are:
+///   - LanesOf: the rows of a step (row_lanes-inl.hpp);
+///   - IndexLanesOf: the palette indices of a step (index_lanes-inl.hpp);
+///   - IndexOf: the type of an index;
+///   - kManyMaterialsOf: true if the chunk has more than one material, so that faces are cut where
+///     the material changes. With one material, an index only says whether a voxel is solid.
+template <class LanesOf, class IndexLanesOf, class IndexOf, bool kManyMaterialsOf>
 struct SweepTraits {
   using Lanes = LanesOf;
-  using CodeLanes = CodeLanesOf;
-  using C = CodeOf;
+  using IndexLanes = IndexLanesOf;
+  using Index = IndexOf;
   using Row = typename Lanes::Row;
-  using Line = typename CodeLanes::template Line<Row, C>;
-  static constexpr bool kNumbered = kManyMaterials;
+  using Line = typename IndexLanes::template Line<Row, Index>;
+  static constexpr bool kManyMaterials = kManyMaterialsOf;
 };
 
 }  // namespace runstone::rdm

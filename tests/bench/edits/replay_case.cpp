@@ -147,7 +147,7 @@ Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repeti
   meta.materials = default_material_table();
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) return Unexpected<std::string>{generator.error().what};
-  const VisibilityTable visibility(meta.materials);
+  const VisibilityTable visibility(visibilities(meta.materials));
 
   test::BuilderSession session(kSeed);
   std::vector<EditRecord> records;

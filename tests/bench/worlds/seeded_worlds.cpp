@@ -116,7 +116,7 @@ const MaterialTable& seeded_materials() {
 }
 
 std::vector<VoxelWorld> seeded_worlds() {
-  const auto visibility = std::make_shared<const VisibilityTable>(seeded_materials());
+  const auto visibility = std::make_shared<const VisibilityTable>(visibilities(seeded_materials()));
   std::vector<VoxelWorld> out;
   const auto add = [&](const char* name, auto column) {
     out.push_back({name, visibility, std::nullopt, std::move(column)});

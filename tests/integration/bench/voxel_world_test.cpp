@@ -19,7 +19,7 @@ Material material_of(VoxelPos at) {
 VoxelWorld bounded_world(const VoxelBox& bounds) {
   VoxelWorld out;
   out.name = "bounded";
-  out.visibility = std::make_shared<const VisibilityTable>(seeded_materials());
+  out.visibility = std::make_shared<const VisibilityTable>(visibilities(seeded_materials()));
   out.bounds = bounds;
   out.column = [bounds](VoxelPos at, std::span<Material> to) {
     REQUIRE(bounds.contains(at));

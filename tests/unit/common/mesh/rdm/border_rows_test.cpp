@@ -13,31 +13,31 @@ namespace runstone::test {
 namespace {
 
 constexpr unsigned kPlanes = 3;  // of materials 0 .. 7
-rdm::PaletteIndex code_of(Material material) { return material & 7u; }
+rdm::PaletteIndex to_index(Material material) { return material & 7u; }
 
 template <class Row>
 void check_layers(const RunChunk& chunk) {
   const DenseChunk dense = DenseChunk::of(chunk);
   const auto sides = chunk.extent.sides();
-  std::array<std::array<Row, rdm::kRowBits<Row>>, kPlanes> planes;
+  std::array<std::array<Row, kRowBits<Row>>, kPlanes> planes;
   for (unsigned a = 0; a < 3; ++a) {
     for (unsigned u = 0; u < 3; ++u) {
       if (u == a) continue;
       const unsigned v = 3 - a - u;
       for (const unsigned at : {0u, sides[a] / 2u, sides[a] - 1u}) {
         rdm::read_layer_rows(chunk, {static_cast<Axis>(a), static_cast<Axis>(u), at}, planes,
-                             &code_of);
+                             &to_index);
         std::size_t wrong = 0;
-        for (unsigned row = 0; row < rdm::kRowBits<Row>; ++row) {
-          for (unsigned bit = 0; bit < rdm::kRowBits<Row>; ++bit) {
+        for (unsigned row = 0; row < kRowBits<Row>; ++row) {
+          for (unsigned bit = 0; bit < kRowBits<Row>; ++bit) {
             std::array<int, 3> p{};
             p[a] = static_cast<int>(at);
             p[u] = static_cast<int>(bit);
             p[v] = static_cast<int>(row);
             const bool inside = row < sides[v] && bit < sides[u];
-            const rdm::PaletteIndex code = inside ? code_of(dense.at(p[0], p[1], p[2])) : 0;
+            const rdm::PaletteIndex index = inside ? to_index(dense.at(p[0], p[1], p[2])) : 0;
             for (unsigned k = 0; k < kPlanes; ++k)
-              wrong += (planes[k][row] >> bit & 1) != (code >> k & 1);
+              wrong += (planes[k][row] >> bit & 1) != (index >> k & 1);
           }
         }
         CAPTURE(a, u, at, chunk.order);
@@ -50,16 +50,16 @@ void check_layers(const RunChunk& chunk) {
 TEST_CASE("rows of every layer are its voxels in every orientation", "[mesh]") {
   SplitMix64 rng(41);
   for (int round = 0; round < 60; ++round) {
-    check_layers<rdm::Row64>(random_chunk(rng, random_extent(rng, 20),
-                                          kAxisOrders[static_cast<std::size_t>(round % 6)], 8));
+    check_layers<Row64>(random_chunk(rng, random_extent(rng, 20),
+                                     kAxisOrders[static_cast<std::size_t>(round % 6)], 8));
   }
   for (const Extent extent : {Extent{64, 8, 63}, Extent{9, 64, 8}, Extent{8, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders)
-      check_layers<rdm::Row64>(random_chunk(rng, extent, order, 8));
+      check_layers<Row64>(random_chunk(rng, extent, order, 8));
   }
   for (const Extent extent : {Extent{128, 8, 65}, Extent{9, 128, 127}}) {
     for (const AxisOrder order : kAxisOrders)
-      check_layers<rdm::Row128>(random_chunk(rng, extent, order, 8));
+      check_layers<Row128>(random_chunk(rng, extent, order, 8));
   }
 }
 

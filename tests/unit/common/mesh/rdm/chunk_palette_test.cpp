@@ -9,49 +9,50 @@ namespace {
 
 TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh]") {
   const VisibilityTable& v = mesh_visibility();
-  rdm::ChunkPalette codes;
+  rdm::ChunkPalette palette;
   for (int round = 0; round < 2; ++round) {  // clear() forgets everything
-    CHECK(codes.solid_count() == 0);
-    CHECK(codes.number(kDirt, v) == 1);
-    CHECK(codes.number(kEmpty, v) == 0);
-    CHECK(codes.number(kBarrier, v) == 0);
-    CHECK_FALSE(codes.has_transparent());
-    CHECK(codes.single() == kDirt);
-    CHECK(codes.number(kWater, v) == rdm::kTransparentBit);
-    CHECK(codes.has_transparent());
-    CHECK(codes.number(kStone, v) == 2);
-    CHECK(codes.number(65535, v) == 3);
-    CHECK(codes.number(kDirt, v) == 1);
-    CHECK(codes.solid_count() == 4);
-    CHECK(codes.transparent_count() == 1);
-    CHECK(codes.transparent_code(kWater) == rdm::kTransparentBit);
-    CHECK(codes.transparent_code(kDirt) == 0);
-    CHECK(codes.transparent_code(kGlass) == 0);
+    CHECK(palette.solid_count() == 0);
+    CHECK(palette.index_of(kDirt, v) == 1);
+    CHECK(palette.index_of(kEmpty, v) == 0);
+    CHECK(palette.index_of(kBarrier, v) == 0);
+    CHECK_FALSE(palette.has_transparent());
+    CHECK(palette.single() == kDirt);
+    CHECK(palette.index_of(kWater, v) == rdm::kTransparentBit);
+    CHECK(palette.has_transparent());
+    CHECK(palette.index_of(kStone, v) == 2);
+    CHECK(palette.index_of(65535, v) == 3);
+    CHECK(palette.index_of(kDirt, v) == 1);
+    CHECK(palette.solid_count() == 4);
+    CHECK(palette.transparent_count() == 1);
+    CHECK(palette.transparent_index(kWater) == rdm::kTransparentBit);
+    CHECK(palette.transparent_index(kDirt) == 0);
+    CHECK(palette.transparent_index(kGlass) == 0);
     for (const Material material : {kDirt, kStone, Material{65535}, kWater}) {
-      const rdm::PaletteIndex code = codes.number(material, v);
-      CHECK(codes.material(code) == material);
-      const auto byte = rdm::code_as<rdm::BytePaletteIndex>(code);
-      CHECK(codes.material(byte) == material);
-      CHECK(rdm::whole_code(byte) == code);
+      const rdm::PaletteIndex index = palette.index_of(material, v);
+      CHECK(palette.material(index) == material);
+      const auto byte = rdm::index_as<rdm::BytePaletteIndex>(index);
+      CHECK(palette.material(byte) == material);
+      CHECK(rdm::full_index(byte) == index);
     }
-    codes.clear();
+    palette.clear();
   }
 }
 
-TEST_CASE("codes fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
-  const VisibilityTable v(many_materials());  // 1 to 149 opaque, 150 to 299 transparent
-  rdm::ChunkPalette codes;
-  for (Material material = 1; material <= 127; ++material) codes.number(material, v);
-  for (Material material = 150; material < 278; ++material) codes.number(material, v);
-  CHECK(codes.fit_bytes());
+TEST_CASE("palette fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
+  const VisibilityTable v(
+      visibilities(many_materials()));  // 1 to 149 opaque, 150 to 299 transparent
+  rdm::ChunkPalette palette;
+  for (Material material = 1; material <= 127; ++material) palette.index_of(material, v);
+  for (Material material = 150; material < 278; ++material) palette.index_of(material, v);
+  CHECK(palette.fit_bytes());
   for (const Material material : {Material{127}, Material{277}}) {
-    CHECK(codes.material(rdm::code_as<rdm::BytePaletteIndex>(codes.number(material, v))) ==
+    CHECK(palette.material(rdm::index_as<rdm::BytePaletteIndex>(palette.index_of(material, v))) ==
           material);
   }
-  SECTION("one opaque material more") { codes.number(128, v); }
-  SECTION("one transparent material more") { codes.number(278, v); }
-  CHECK_FALSE(codes.fit_bytes());
-  CHECK(codes.material(codes.number(277, v)) == 277);
+  SECTION("one opaque material more") { palette.index_of(128, v); }
+  SECTION("one transparent material more") { palette.index_of(278, v); }
+  CHECK_FALSE(palette.fit_bytes());
+  CHECK(palette.material(palette.index_of(277, v)) == 277);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-// Codes of voxels side by side: filling a run of them, and comparing a row of them with another into bits.
+// Palette indices as vectors: fills a run with an index, and compares rows of indices into bits.
 // Included once per instruction set, inside no namespace.
-#if defined(RUNSTONE_MESH_RDM_CODE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef RUNSTONE_MESH_RDM_CODE_LANES_INL
-#undef RUNSTONE_MESH_RDM_CODE_LANES_INL
+#if defined(RUNSTONE_MESH_RDM_INDEX_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef RUNSTONE_MESH_RDM_INDEX_LANES_INL
+#undef RUNSTONE_MESH_RDM_INDEX_LANES_INL
 #else
-#define RUNSTONE_MESH_RDM_CODE_LANES_INL
+#define RUNSTONE_MESH_RDM_INDEX_LANES_INL
 #endif
 
 #include <hwy/highway.h>
@@ -21,15 +21,15 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A code at a time: the plain path.
-struct PlainCodes {
-  /// Codes that fill() may write behind `stop`.
-  template <class C>
+/// One index at a time: the plain path.
+struct PlainIndices {
+  /// Number of indices that fill() may write behind `stop`.
+  template <class Index>
   static constexpr unsigned kBehind = 0;
 
-  template <class C>
-  static void fill(C* from, const C* stop, C code) {
-    for (; from < stop; ++from) *from = code;
+  template <class Index>
+  static void fill(Index* from, const Index* stop, Index index) {
+    for (; from < stop; ++from) *from = index;
   }
 
   /// Writes `value` where a bit of the row is set.
@@ -38,51 +38,51 @@ struct PlainCodes {
     for (; row != 0; row &= row - 1) to[lowest_bit(row)] = value;
   }
 
-  /// As many codes as a row has bits.
-  template <class Row, class C>
+  /// As many indices as a row has bits.
+  template <class Row, class Index>
   class Line {
    public:
-    static Line at(const C* codes) { return Line(codes); }
-    /// Bit i: whether code i is not 0.
+    static Line at(const Index* indices) { return Line(indices); }
+    /// Returns a row in which bit i is set if index i is not 0.
     Row solid() const {
-      return gather([this](unsigned i) { return codes_[i] != 0; });
+      return gather([this](unsigned i) { return indices_[i] != 0; });
     }
-    /// Bit i: whether code i is a transparent one.
+    /// Returns a row in which bit i is set if index i is a transparent one.
     Row transparent() const {
-      return gather([this](unsigned i) { return codes_[i] >> (sizeof(C) * 8 - 1) != 0; });
+      return gather([this](unsigned i) { return indices_[i] >> (sizeof(Index) * 8 - 1) != 0; });
     }
-    /// Bit i: whether the two have another code there.
+    /// Returns a row in which bit i is set if the two indices i differ.
     friend Row differing(const Line& a, const Line& b) {
-      return gather([&](unsigned i) { return a.codes_[i] != b.codes_[i]; });
+      return gather([&](unsigned i) { return a.indices_[i] != b.indices_[i]; });
     }
 
    private:
-    explicit Line(const C* codes) : codes_(codes) {}
+    explicit Line(const Index* indices) : indices_(indices) {}
     template <class F>
     static Row gather(F&& bit) {
       Row row = 0;
       for (unsigned i = 0; i < kRowBits<Row>; ++i) row |= Row{bit(i)} << i;
       return row;
     }
-    const C* codes_;
+    const Index* indices_;
   };
 };
 
 #if HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
-/// A vector of codes at a time.
-struct VectorCodes {
-  template <class C>
-  using D = hn::CappedTag<C, 64>;
-  template <class C>
-  static constexpr unsigned kBehind = hn::MaxLanes(D<C>());
+/// A vector of indices at a time.
+struct VectorIndices {
+  template <class Index>
+  using D = hn::CappedTag<Index, 64>;
+  template <class Index>
+  static constexpr unsigned kBehind = hn::MaxLanes(D<Index>());
 
-  template <class C>
-  static HWY_INLINE void fill(C* from, const C* stop, C code) {
-    const D<C> d;
-    const auto v = hn::Set(d, code);
+  template <class Index>
+  static HWY_INLINE void fill(Index* from, const Index* stop, Index index) {
+    const D<Index> d;
+    const auto v = hn::Set(d, index);
     do {
       hn::StoreU(v, d, from);
-      from += kBehind<C>;
+      from += kBehind<Index>;
     } while (from < stop);
   }
 
@@ -98,22 +98,22 @@ struct VectorCodes {
     }
   }
 
-  template <class Row, class C>
+  template <class Row, class Index>
   class Line {
    public:
-    static HWY_INLINE Line at(const C* codes) {
+    static HWY_INLINE Line at(const Index* indices) {
       Line line;
       for (unsigned i = 0; i < kParts; ++i)
-        line.part_[i] = hn::LoadU(D<C>(), codes + i * kBehind<C>);
+        line.part_[i] = hn::LoadU(D<Index>(), indices + i * kBehind<Index>);
       return line;
     }
     HWY_INLINE Row solid() const {
-      return gather([this](unsigned i) { return hn::Ne(part_[i], hn::Zero(D<C>())); });
+      return gather([this](unsigned i) { return hn::Ne(part_[i], hn::Zero(D<Index>())); });
     }
     HWY_INLINE Row transparent() const {
-      const hn::RebindToSigned<D<C>> s;
+      const hn::RebindToSigned<D<Index>> s;
       return gather([&](unsigned i) {
-        return hn::RebindMask(D<C>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s)));
+        return hn::RebindMask(D<Index>(), hn::Lt(hn::BitCast(s, part_[i]), hn::Zero(s)));
       });
     }
     friend HWY_INLINE Row differing(const Line& a, const Line& b) {
@@ -121,24 +121,24 @@ struct VectorCodes {
     }
 
    private:
-    static constexpr unsigned kParts = kRowBits<Row> / kBehind<C>;
+    static constexpr unsigned kParts = kRowBits<Row> / kBehind<Index>;
     template <class F>
     static HWY_INLINE Row gather(F&& mask_of) {
       Row row = 0;
       for (unsigned i = 0; i < kParts; ++i) {
         std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(D<C>(), mask_of(i), bytes);
+        hn::StoreMaskBits(D<Index>(), mask_of(i), bytes);
         std::uint64_t bits = 0;
         std::memcpy(&bits, bytes, sizeof bits);
-        row |= Row{bits} << (i * kBehind<C>);
+        row |= Row{bits} << (i * kBehind<Index>);
       }
       return row;
     }
-    hn::Vec<D<C>> part_[kParts];
+    hn::Vec<D<Index>> part_[kParts];
   };
 };
 #else
-using VectorCodes = PlainCodes;
+using VectorIndices = PlainIndices;
 #endif
 
 }  // namespace HWY_NAMESPACE

@@ -4,7 +4,7 @@
 
 #include "common/core/hash.hpp"
 
-namespace runstone::rdm {
+namespace runstone {
 namespace {
 
 template <class Row>
@@ -56,4 +56,4 @@ TEST_CASE("rows of both widths are searched, summed up and transposed bit by bit
 }
 
 }  // namespace
-}  // namespace runstone::rdm
+}  // namespace runstone

@@ -1,0 +1,35 @@
+# Installs the libraries of a build into a prefix, moves the prefix, and builds the examples against it in a clean
+# folder: once by find_package(), once by pkg-config.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+file(REMOVE_RECURSE ${WORK})
+
+run(${CMAKE_COMMAND} --install ${BUILD} --component runstone --prefix ${WORK}/installed)
+file(RENAME ${WORK}/installed ${WORK}/prefix)
+
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS}
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --no-tests=error)
+expect("examples.array_to_quads" "examples.edit_layers" "100% tests passed, 0 tests failed out of 2")
+
+# No flag of this project reaches the user, and no header of the source tree does.
+file(READ ${WORK}/build/compile_commands.json output)
+expect("${WORK}/prefix/include/runstone")
+foreach(text "-Wconversion" "-Werror" "-ffp-contract" "-I${SOURCE}" "${SOURCE}/common")
+  string(FIND "${output}" "${text}" at)
+  if(NOT at EQUAL -1)
+    message(FATAL_ERROR "${text} reaches a user of the installed libraries:\n${output}")
+  endif()
+endforeach()
+
+# pkg-config names all that a compiler needs.
+find_program(PKG_CONFIG pkg-config REQUIRED)
+file(GLOB folders ${WORK}/prefix/*/pkgconfig ${WORK}/prefix/*/*/pkgconfig)
+set(ENV{PKG_CONFIG_PATH} ${folders})
+run(${PKG_CONFIG} --cflags --libs runstone-edits)
+separate_arguments(options UNIX_COMMAND "${FLAGS} ${output}")
+run(${COMPILER} -std=c++20 ${SOURCE}/examples/edit_layers.cpp -o ${WORK}/edit_layers ${options})
+run(${WORK}/edit_layers)
+expect("voxels changed")
+file(REMOVE_RECURSE ${WORK})
