@@ -3,7 +3,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -74,33 +73,32 @@ std::string default_cache_folder() {
 }
 
 struct ChunkCache::Tables {
-  using Statement = CacheDatabase::Statement;
   explicit Tables(CacheDatabase& d)
-      : find_world(d, "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1"),
-        add_world(d,
-                  "INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES "
-                  "(?1,?2,?3,?4,?5)"),
-        mark_world(d,
-                   "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1"),
-        drop_lost(d, "DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3"),
-        drop_all(d, "DELETE FROM chunk WHERE world = ?1"),
-        drop_edited(d, "DELETE FROM chunk WHERE world = ?1 AND seq > 0"),
-        find(d,
-             "SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk"
-             " WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4"),
-        use(d, "UPDATE chunk SET used = ?2 WHERE rowid = ?1"),
-        drop(d, "DELETE FROM chunk WHERE rowid = ?1"),
-        keep(d,
-             "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, "
-             "digest, data)"
-             " VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)"),
-        size(d, "SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4"),
-        oldest(d, "SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1") {}
-  Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use, drop,
-      keep, size, oldest;
+      : find_world(d.prepare(
+            "SELECT id, chunk_edge, epoch, durable, head FROM world WHERE world_id = ?1")),
+        add_world(d.prepare("INSERT INTO world (world_id, chunk_edge, epoch, durable, head) VALUES "
+                            "(?1,?2,?3,?4,?5)")),
+        mark_world(d.prepare(
+            "UPDATE world SET chunk_edge=?2, epoch=?3, durable=?4, head=?5 WHERE id = ?1")),
+        drop_lost(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > ?2 AND epoch < ?3")),
+        drop_all(d.prepare("DELETE FROM chunk WHERE world = ?1")),
+        drop_edited(d.prepare("DELETE FROM chunk WHERE world = ?1 AND seq > 0")),
+        find(d.prepare("SELECT epoch, seq, used, checksum, digest, data, rowid FROM chunk"
+                       " WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
+        use(d.prepare("UPDATE chunk SET used = ?2 WHERE rowid = ?1")),
+        drop(d.prepare("DELETE FROM chunk WHERE rowid = ?1")),
+        keep(d.prepare(
+            "INSERT OR REPLACE INTO chunk (world, x, y, z, epoch, seq, used, bytes, checksum, "
+            "digest, data)"
+            " VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11)")),
+        size(
+            d.prepare("SELECT bytes FROM chunk WHERE world = ?1 AND x = ?2 AND y = ?3 AND z = ?4")),
+        oldest(d.prepare("SELECT rowid, bytes FROM chunk ORDER BY used LIMIT ?1")) {}
+  sql::Statement find_world, add_world, mark_world, drop_lost, drop_all, drop_edited, find, use,
+      drop, keep, size, oldest;
 };
 
-ChunkCache::ChunkCache(std::string file, std::uint64_t bytes_max, FolderLock lock)
+ChunkCache::ChunkCache(std::string file, std::uint64_t bytes_max, FileLock lock)
     : file_(std::move(file)), bytes_max_(bytes_max), lock_(std::move(lock)) {}
 ChunkCache::~ChunkCache() = default;
 
@@ -110,13 +108,13 @@ Result<std::unique_ptr<ChunkCache>, std::string> ChunkCache::open(const std::str
   std::filesystem::create_directories(folder, error);
   if (error)
     return Unexpected<std::string>{"chunk cache " + folder + " cannot be made: " + error.message()};
-  auto lock = FolderLock::take(folder + "/cache.lock");
-  if (!lock && errno == EWOULDBLOCK) {
+  auto lock = FileLock::take(folder + "/cache.lock");
+  if (!lock && lock.error().is_held) {
     return Unexpected<std::string>{"chunk cache " + folder + " is in use by another client"};
   }
   if (!lock) {
     return Unexpected<std::string>{"chunk cache " + folder +
-                                   " cannot be written: " + std::generic_category().message(errno)};
+                                   " cannot be written: " + lock.error().what};
   }
   std::unique_ptr<ChunkCache> cache(
       new ChunkCache(folder + "/cache.sqlite", bytes_max, *std::move(lock)));
@@ -185,7 +183,7 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   bool is_other_size = false;
   std::optional<ServerMark> before;
   t.find_world.bind(1, world.id);
-  if (t.find_world.step()) {
+  if (database_->step(t.find_world)) {
     id = t.find_world.integer(0);
     is_other_size = t.find_world.integer(1) != world.chunk_edge;
     before = ServerMark{static_cast<Epoch>(t.find_world.integer(2)),
@@ -194,18 +192,17 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   }
   t.find_world.reset();
   if (!id) {
-    t.add_world.bind(1, world.id)
-        .bind(2, std::int64_t{world.chunk_edge})
-        .bind(3, std::int64_t{world.mark.epoch})
-        .bind(4, number(world.mark.durable))
-        .bind(5, number(world.mark.head))
-        .run();
+    database_->run(t.add_world.bind(1, world.id)
+                       .bind(2, std::int64_t{world.chunk_edge})
+                       .bind(3, std::int64_t{world.mark.epoch})
+                       .bind(4, number(world.mark.durable))
+                       .bind(5, number(world.mark.head)));
     return database_->ok() ? database_->integer("SELECT last_insert_rowid()") : 0;
   }
   if (before == world.mark && !is_other_size) return *id;
   const KeptVersions kept(before, world.mark);
-  const auto count = [&](CacheDatabase::Statement& drop) {
-    drop.run();
+  const auto count = [&](sql::Statement& drop) {
+    database_->run(drop);
     const std::int64_t dropped = database_->ok() ? database_->changes() : 0;
     counters_.not_common += static_cast<std::uint64_t>(dropped);
     if (dropped != 0)
@@ -220,12 +217,11 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
               .bind(2, number(kept.common()))
               .bind(3, std::int64_t{world.mark.epoch}));
   }
-  t.mark_world.bind(1, *id)
-      .bind(2, std::int64_t{world.chunk_edge})
-      .bind(3, std::int64_t{world.mark.epoch})
-      .bind(4, number(world.mark.durable))
-      .bind(5, number(world.mark.head))
-      .run();
+  database_->run(t.mark_world.bind(1, *id)
+                     .bind(2, std::int64_t{world.chunk_edge})
+                     .bind(3, std::int64_t{world.mark.epoch})
+                     .bind(4, number(world.mark.durable))
+                     .bind(5, number(world.mark.head)));
   return *id;
 }
 
@@ -236,7 +232,7 @@ std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t
       .bind(2, std::int64_t{key.at.x})
       .bind(3, std::int64_t{key.at.y})
       .bind(4, std::int64_t{key.at.z});
-  if (key.lod != 0 || !t.find.step()) {
+  if (key.lod != 0 || !database_->step(t.find)) {
     t.find.reset();
     ++counters_.misses;
     return std::nullopt;
@@ -262,12 +258,12 @@ std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t
   t.find.reset();
   if (!holds) {
     ++counters_.corrupt;
-    t.drop.bind(1, id).run();
+    database_->run(t.drop.bind(1, id));
     bytes_ -= std::min(bytes_, size);
     return std::nullopt;
   }
   ++counters_.hits;
-  if (is_old) t.use.bind(1, id).bind(2, stamp_).run();
+  if (is_old) database_->run(t.use.bind(1, id).bind(2, stamp_));
   return KeptChunk{key, std::move(chunk)};
 }
 
@@ -292,27 +288,26 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeptChunk> chunk
   const std::int64_t row = enter(world);
   for (const auto& [key, chunk] : chunks) {
     if (key.lod != 0 || chunk->version.seq > kSequenceMax || !database_->ok()) continue;
-    const auto at = [&](CacheDatabase::Statement& s) -> CacheDatabase::Statement& {
+    const auto at = [&](sql::Statement& s) -> sql::Statement& {
       return s.bind(1, row)
           .bind(2, std::int64_t{key.at.x})
           .bind(3, std::int64_t{key.at.y})
           .bind(4, std::int64_t{key.at.z});
     };
-    if (at(t.size).step())
+    if (database_->step(at(t.size)))
       bytes_ -= std::min(bytes_, static_cast<std::uint64_t>(t.size.integer(0)));
     t.size.reset();
     const Bytes data = encode_chunk(chunk->voxels, ChunkEncoding::packed);
     const Bytes digest = digest_bytes(chunk->digest);
     const std::uint64_t size = data.size() + kRowOverheadBytes;
-    at(t.keep)
-        .bind(5, std::int64_t{chunk->version.epoch})
-        .bind(6, static_cast<std::int64_t>(chunk->version.seq))
-        .bind(7, stamp_)
-        .bind(8, static_cast<std::int64_t>(size))
-        .bind(9, checksum_of(world.id, key, chunk->version, digest, data))
-        .bind(10, ByteView(digest))
-        .bind(11, ByteView(data))
-        .run();
+    database_->run(at(t.keep)
+                       .bind(5, std::int64_t{chunk->version.epoch})
+                       .bind(6, static_cast<std::int64_t>(chunk->version.seq))
+                       .bind(7, stamp_)
+                       .bind(8, static_cast<std::int64_t>(size))
+                       .bind(9, checksum_of(world.id, key, chunk->version, digest, data))
+                       .bind(10, ByteView(digest))
+                       .bind(11, ByteView(data)));
     bytes_ += size;
     ++counters_.kept;
   }
@@ -327,7 +322,7 @@ void ChunkCache::evict() {
     std::vector<std::pair<std::int64_t, std::uint64_t>> oldest;
     Tables& t = *tables_;
     t.oldest.bind(1, kEvictedAtATime);
-    while (t.oldest.step()) {
+    while (database_->step(t.oldest)) {
       oldest.emplace_back(t.oldest.integer(0), static_cast<std::uint64_t>(t.oldest.integer(1)));
     }
     t.oldest.reset();
@@ -337,7 +332,7 @@ void ChunkCache::evict() {
     }
     for (const auto& [id, size] : oldest) {
       if (bytes_ <= bytes_max_) return;
-      t.drop.bind(1, id).run();
+      database_->run(t.drop.bind(1, id));
       bytes_ -= std::min(bytes_, size);
       ++counters_.evicted;
     }

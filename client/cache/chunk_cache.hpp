@@ -19,7 +19,7 @@
 #include "client/cache/cache_database.hpp"
 #include "client/replica/cache_question.hpp"
 #include "common/core/result.hpp"
-#include "common/os/folder_lock.hpp"
+#include "common/os/file_lock.hpp"
 
 namespace runstone {
 
@@ -57,7 +57,7 @@ class ChunkCache {
 
  private:
   struct Tables;
-  ChunkCache(std::string file, std::uint64_t bytes_max, FolderLock lock);
+  ChunkCache(std::string file, std::uint64_t bytes_max, FileLock lock);
   void open_database();
   /// Of this world, with only common history left in it.
   std::int64_t enter(const CachedWorld& world);
@@ -69,7 +69,7 @@ class ChunkCache {
 
   const std::string file_;
   const std::uint64_t bytes_max_;
-  FolderLock lock_;
+  FileLock lock_;
   std::unique_ptr<CacheDatabase> database_;  // before the statements
   std::unique_ptr<Tables> tables_;
   std::uint64_t bytes_ = 0;  // of all rows

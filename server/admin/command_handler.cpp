@@ -89,7 +89,7 @@ void CommandHandler::players(const CommandReply& reply) {
   std::map<AuthorId, WorldServer::Present> here;
   for (WorldServer::Present& player : world_.present()) here[player.author] = std::move(player);
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
-  workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
+  workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
                [rows, here, reply](const std::string& error) {
                  if (!error.empty()) return refuse(reply, "players: " + error);
                  if (!*rows) return refuse(reply, "players: " + rows->error().message());
@@ -134,7 +134,7 @@ void CommandHandler::resolve(const CommandFilter& filter, const std::string& com
   }
   if (!has_names) return go_on(out);
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
-  workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
+  workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
                [rows, out, filter, command, reply, go_on](const std::string& error) mutable {
                  if (!error.empty()) return refuse(reply, command + ": " + error);
                  if (!*rows) return refuse(reply, command + ": " + rows->error().message());
@@ -154,32 +154,33 @@ void CommandHandler::resolve(const CommandFilter& filter, const std::string& com
 
 void CommandHandler::log(const LogCommand& command, const Clocks& now, const CommandReply& reply) {
   world_.commit(now);
-  resolve(
-      command.filter, "log", reply,
-      [this, limit = command.limit, reply](const SelectionFilter& filter) {
-        SelectionFilter on_disk = filter;
-        on_disk.last = world_.durable();
-        auto text = std::make_shared<std::string>();
-        auto wrong = std::make_shared<std::string>();
-        workers_.run(
-            [on_disk, limit, text, wrong, materials = materials_](Store& reader, const Generator&) {
-              const auto rows = reader.players();
-              const auto newest = newest_edits(reader, on_disk, limit);
-              if (!rows) *wrong = rows.error().message();
-              if (!newest) *wrong = newest.error().message();
-              if (!wrong->empty()) return;
-              const AuthorNames names(*rows);
-              for (const EditRecord& record : *newest) {
-                *text += log_line(record, names.of(record.op.author), materials) + "\n";
-              }
-            },
-            [text, wrong, reply](const std::string& error) {
-              if (!error.empty() || !wrong->empty()) return refuse(reply, "log: " + error + *wrong);
-              if (text->empty()) *text = "no edit matches\n";
-              text->pop_back();
-              reply({*text, true, true});
-            });
-      });
+  resolve(command.filter, "log", reply,
+          [this, limit = command.limit, reply](const SelectionFilter& filter) {
+            SelectionFilter on_disk = filter;
+            on_disk.last = world_.durable();
+            auto text = std::make_shared<std::string>();
+            auto wrong = std::make_shared<std::string>();
+            workers_.run(
+                [on_disk, limit, text, wrong, materials = materials_](WorldReader& reader,
+                                                                      const Generator&) {
+                  const auto rows = reader.players();
+                  const auto newest = newest_edits(reader, on_disk, limit);
+                  if (!rows) *wrong = rows.error().message();
+                  if (!newest) *wrong = newest.error().message();
+                  if (!wrong->empty()) return;
+                  const AuthorNames names(*rows);
+                  for (const EditRecord& record : *newest) {
+                    *text += log_line(record, names.of(record.op.author), materials) + "\n";
+                  }
+                },
+                [text, wrong, reply](const std::string& error) {
+                  if (!error.empty() || !wrong->empty())
+                    return refuse(reply, "log: " + error + *wrong);
+                  if (text->empty()) *text = "no edit matches\n";
+                  text->pop_back();
+                  reply({*text, true, true});
+                });
+          });
 }
 
 void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks& now,
@@ -189,7 +190,7 @@ void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks
     const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
     rollback_.preview(
         filter, now, reply, [pictures](const RestorePlan& plan) { pictures->see(plan); },
-        [pictures](Store& reader, const Generator& generator, const std::string& id) {
+        [pictures](WorldReader& reader, const Generator& generator, const std::string& id) {
           return pictures->draw(reader, generator, id);
         });
   };

@@ -26,7 +26,7 @@ std::optional<std::string> difference(const DigestCheckEntry* stored,
 
 }  // namespace
 
-StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
+StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
                   bool is_clean) {
   StopReport report;
   report.is_clean = report.digests.is_clean = is_clean;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "server/replay/digest_list.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -28,6 +28,7 @@ std::string stop_line(const StopReport& report);
 
 /// `live`: the edited chunks that were in memory, ascending. After a clean stop each has an equal snapshot;
 /// any other stop leaves chunks that are newer than theirs. Reads every snapshot.
-StopReport sum_up(Store& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean);
+StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
+                  bool is_clean);
 
 }  // namespace runstone

@@ -52,7 +52,7 @@ void PreviewPictures::see(const RestorePlan& plan) {
   }
 }
 
-std::string PreviewPictures::draw(Store& reader, const Generator& generator,
+std::string PreviewPictures::draw(WorldReader& reader, const Generator& generator,
                                   const std::string& name) {
   if (seen_.empty()) return "no picture: nothing would change";
   if (seen_.size() > kChunksMax) {
@@ -64,7 +64,8 @@ std::string PreviewPictures::draw(Store& reader, const Generator& generator,
   return "pictures " + folder_ + "/" + name + "-before.png and " + name + "-after.png";
 }
 
-Result<void, std::string> PreviewPictures::draw_both(Store& reader, const Generator& generator,
+Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
+                                                     const Generator& generator,
                                                      const std::string& name) {
   std::error_code wrong;
   std::filesystem::create_directories(folder_, wrong);

@@ -11,7 +11,7 @@
 #include "common/generate/generator.hpp"
 #include "common/runs/run_chunk.hpp"
 #include "server/rollback/restore_plan.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -27,14 +27,14 @@ class PreviewPictures {
   void see(const RestorePlan& plan);
   /// Draws NAME-before.png and NAME-after.png with the land around. Returns a line for people: where they lie, or why
   /// there are none.
-  std::string draw(Store& reader, const Generator& generator, const std::string& name);
+  std::string draw(WorldReader& reader, const Generator& generator, const std::string& name);
 
  private:
   struct Seen {
     ChunkKey key;
     RunChunk now, restored;
   };
-  Result<void, std::string> draw_both(Store& reader, const Generator& generator,
+  Result<void, std::string> draw_both(WorldReader& reader, const Generator& generator,
                                       const std::string& name);
 
   std::string folder_;

@@ -7,7 +7,8 @@
 
 namespace runstone {
 
-StoreResult<Chunk> base_chunk(Store& reader, const Generator& generator, const ChunkKey& key) {
+StoreResult<Chunk> base_chunk(ChunkReader& reader, const Generator& generator,
+                              const ChunkKey& key) {
   RUNSTONE_ASSERT(key.lod == 0);
   auto stored = reader.load_base(key);
   if (!stored) return Unexpected<StoreError>{stored.error()};

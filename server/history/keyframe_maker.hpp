@@ -10,7 +10,7 @@
 
 #include "common/generate/generator.hpp"
 #include "server/history/world_at.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -29,7 +29,7 @@ class KeyframeMaker {
   using Progress = WorldAt::Progress;
 
   /// Both must outlive the maker.
-  KeyframeMaker(Store& reader, const Generator& generator, const KeyframePolicy& policy)
+  KeyframeMaker(WorldReader& reader, const Generator& generator, const KeyframePolicy& policy)
       : reader_(reader), generator_(generator), policy_(policy) {}
 
   /// Goes on through the log, from the newest keyframe to the log's present end, and makes those that are due. May be called
@@ -46,7 +46,7 @@ class KeyframeMaker {
   /// Reads on to the next place where one is due; 0 if the log ends before.
   StoreResult<Sequence> next_due(const Progress& progress);
 
-  Store& reader_;
+  WorldReader& reader_;
   const Generator& generator_;
   const KeyframePolicy policy_;
   std::optional<Sequence> read_;  // up to here; nothing before the first call

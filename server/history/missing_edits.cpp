@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kEditOverheadBytes = 8;  // its sequence and its length, about
 
 /// Whether the log has an edit of this very version that touches the chunk: then what a client has there is its state.
-StoreResult<bool> is_in_log(Store& store, const Version& version, const VoxelBox& box) {
+StoreResult<bool> is_in_log(LogReader& store, const Version& version, const VoxelBox& box) {
   const auto range = store.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
   if (version.seq == 0)
@@ -27,7 +27,7 @@ StoreResult<bool> is_in_log(Store& store, const Version& version, const VoxelBox
 
 }  // namespace
 
-StoreResult<std::optional<ChunkEdits>> missing_edits(Store& store, const ChunkKey& key,
+StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const ChunkKey& key,
                                                      const Chunk& chunk, const Version& from,
                                                      std::size_t bytes_max) {
   std::optional<ChunkEdits> out;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/runs/chunk.hpp"
-#include "server/store/store.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 
@@ -17,7 +17,7 @@ inline constexpr std::size_t kUpdateLooksMax = 4'096;
 /// The edits that lead from version `from` of the chunk to `chunk`. Nothing if a snapshot serves better: they take more
 /// than `bytes_max` bytes, they are too many to look for, or `from` is no version of this chunk in this log (of a lost
 /// epoch, or compacted away). Requires from.seq < chunk.version.seq, which is durable.
-StoreResult<std::optional<ChunkEdits>> missing_edits(Store& store, const ChunkKey& key,
+StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const ChunkKey& key,
                                                      const Chunk& chunk, const Version& from,
                                                      std::size_t bytes_max);
 

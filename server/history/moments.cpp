@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/store/store.hpp"
+
 namespace runstone {
 namespace {
 
 /// When the edit was ordered, 0 before the first one. A moment that was opened has its edit, or is the log's head.
-StoreResult<LogEnd> edit_at(Store& reader, Sequence seq) {
+StoreResult<LogEnd> edit_at(LogReader& reader, Sequence seq) {
   auto end = reader.log_head();
   if (!end || end->version.seq == seq) return end;
   const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {

@@ -32,7 +32,7 @@ class Moments {
  private:
   struct Kept {
     std::mutex mutex;  // guards the world and its reader
-    std::unique_ptr<Store> reader;
+    std::unique_ptr<WorldReader> reader;
     std::unique_ptr<WorldAt> world;  // null until it is open
     LogEnd end;
   };

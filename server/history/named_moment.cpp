@@ -32,7 +32,7 @@ Result<NamedMoment, std::string> parse_moment(std::string_view text) {
   return NamedMoment(AtTime{*time});
 }
 
-StoreResult<Sequence> sequence_of(Store& reader, const NamedMoment& moment) {
+StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment) {
   const auto range = reader.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
   const auto refuse = [&](std::string what) {

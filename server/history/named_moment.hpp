@@ -6,7 +6,7 @@
 
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "server/store/store.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 
@@ -27,6 +27,6 @@ Result<NamedMoment, std::string> parse_moment(std::string_view text);
 
 /// The sequence that a moment means in this world: that of the last edit not later, so 0 before the first edit. Fails (bad_request) if
 /// it lies before what was compacted, or behind the end of the log where it was named by its sequence.
-StoreResult<Sequence> sequence_of(Store& reader, const NamedMoment& moment);
+StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment);
 
 }  // namespace runstone

@@ -23,7 +23,7 @@ Unexpected<StoreError> WorldAt::refuse(std::string what) const {
   return {{StoreError::Kind::bad_request, reader_->file(), "edit_log", std::move(what)}};
 }
 
-StoreResult<WorldAt> WorldAt::open(Store& reader, const Generator& generator, Sequence at,
+StoreResult<WorldAt> WorldAt::open(WorldReader& reader, const Generator& generator, Sequence at,
                                    const Progress& progress) {
   WorldAt world(reader, generator);
   const auto moment = reader.stored_moment(at);

@@ -14,7 +14,7 @@
 
 #include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -25,7 +25,7 @@ class WorldAt {
 
   /// Both must outlive the object. `at` 0 is the world before the first edit. Fails (bad_request) if `at` lies before what
   /// the log can still tell, naming where it begins, or behind its end, naming that.
-  static StoreResult<WorldAt> open(Store& reader, const Generator& generator, Sequence at,
+  static StoreResult<WorldAt> open(WorldReader& reader, const Generator& generator, Sequence at,
                                    const Progress& progress = {});
 
   Sequence at() const { return end_.version.seq; }
@@ -58,12 +58,12 @@ class WorldAt {
     std::vector<std::uint32_t> edits;   // touched it since, as indices of edits_
   };
 
-  WorldAt(Store& reader, const Generator& generator)
+  WorldAt(WorldReader& reader, const Generator& generator)
       : reader_(&reader), generator_(&generator), edge_(reader.meta().chunk_edge) {}
   StoreResult<Chunk> start_of(const ChunkKey& key, const Edited* edited);
   Unexpected<StoreError> refuse(std::string what) const;
 
-  Store* reader_;
+  WorldReader* reader_;
   const Generator* generator_;
   std::int32_t edge_;
   LogEnd end_;

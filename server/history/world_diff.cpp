@@ -27,11 +27,11 @@ struct Between {
   std::map<ChunkCoord, std::vector<std::uint32_t>> chunks;
 };
 
-StoreError cancelled(const Store& reader) {
+StoreError cancelled(const WorldReader& reader) {
   return {StoreError::Kind::cancelled, reader.file(), "edit_log", "was not read to the end"};
 }
 
-StoreResult<Between> read_between(Store& reader, Sequence from, Sequence to,
+StoreResult<Between> read_between(WorldReader& reader, Sequence from, Sequence to,
                                   const WorldAt::Progress& progress) {
   Between between;
   const std::int32_t edge = reader.meta().chunk_edge;
@@ -103,7 +103,7 @@ class ChunkDiff {
 
 }  // namespace
 
-StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from,
+StoreResult<WorldDiff> diff_world(WorldReader& reader, const Generator& generator, Sequence from,
                                   Sequence to, const WorldAt::Progress& progress) {
   const auto last = reader.last_sequence();
   if (!last) return Unexpected<StoreError>{last.error()};

@@ -8,7 +8,7 @@
 
 #include "common/generate/generator.hpp"
 #include "server/history/world_at.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -33,7 +33,7 @@ struct WorldDiff {
 };
 
 /// Requires from <= to. Errors and `progress` are those of WorldAt::open(). Memory: the edits between the moments. Blocks.
-StoreResult<WorldDiff> diff_world(Store& reader, const Generator& generator, Sequence from,
+StoreResult<WorldDiff> diff_world(WorldReader& reader, const Generator& generator, Sequence from,
                                   Sequence to, const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

@@ -22,7 +22,7 @@ Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 /// Collects chunks and writes them as base, a transaction at a time.
 class BaseWriter {
  public:
-  explicit BaseWriter(Store& store) : store_(store) {}
+  explicit BaseWriter(ImportSink& world) : world_(world) {}
   bool add(const ChunkKey& key, RunChunk&& voxels) {
     auto chunk = std::make_shared<Chunk>();
     chunk->digest = digest_of(voxels);
@@ -31,7 +31,7 @@ class BaseWriter {
     return pending_.size() < kChunksPerTransaction || flush();
   }
   bool flush() {
-    const auto saved = store_.save_base(pending_);
+    const auto saved = world_.save_base(pending_);
     if (!saved) error_ = saved.error().message();
     pending_.clear();
     return saved.has_value();
@@ -39,7 +39,7 @@ class BaseWriter {
   const std::string& error() const { return error_; }
 
  private:
-  Store& store_;
+  ImportSink& world_;
   std::vector<std::pair<ChunkKey, ChunkPtr>> pending_;
   std::string error_;
 };

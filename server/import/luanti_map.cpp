@@ -5,77 +5,63 @@
 namespace runstone {
 namespace {
 
-ByteView blob_of(sqlite3_stmt* statement, int column) {
-  // The blob first: asking for its size afterwards is the order that SQLite documents as safe.
-  const void* data = sqlite3_column_blob(statement, column);
-  const int size = sqlite3_column_bytes(statement, column);
-  return {static_cast<const std::uint8_t*>(data),
-          data == nullptr ? 0 : static_cast<std::size_t>(size)};
-}
+constexpr const char* kScan = "SELECT pos, data FROM blocks ORDER BY pos";
+constexpr const char* kFind = "SELECT data FROM blocks WHERE pos = ?1";
+// Of the layout of Luanti 5.12. Both statements of a layout exist, or none.
+constexpr const char* kScanByCoordinates =
+    "SELECT (z * 4096 + y) * 4096 + x AS pos, data FROM blocks ORDER BY z, y, x";
+constexpr const char* kFindByCoordinates =
+    "SELECT data FROM blocks WHERE x = ?1 AND y = ?2 AND z = ?3";
 
 }  // namespace
 
-LuantiMap::Statement LuantiMap::prepare(const std::string& sql) {
-  sqlite3_stmt* statement = nullptr;
-  sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &statement, nullptr);
-  return Statement(statement);
-}
-
 Result<LuantiMap, std::string> LuantiMap::open(const std::string& file) {
-  LuantiMap map;
-  sqlite3* db = nullptr;
-  const int opened = sqlite3_open_v2(file.c_str(), &db, SQLITE_OPEN_READONLY, nullptr);
-  map.db_.reset(db);
-  if (opened != SQLITE_OK) {
-    return Unexpected<std::string>{db == nullptr ? "out of memory" : map.trouble()};
+  auto database = sql::Database::open(file, sql::Database::Mode::read);
+  if (!database) return Unexpected<std::string>{database.error().what};
+  // The transaction ends with the connection.
+  if (const auto begun = database->run("BEGIN"); !begun)
+    return Unexpected<std::string>{begun.error().what};
+  const auto no_map = [](const sql::Error& error) {
+    return Unexpected<std::string>{"not a Luanti map: " + error.what};
+  };
+  const auto count = database->integer("SELECT count(*) FROM blocks");
+  if (!count) return no_map(count.error());
+  auto scan = database->prepare(kScan);
+  auto find = database->prepare(kFind);
+  if (!scan) {
+    scan = database->prepare(kScanByCoordinates);
+    find = database->prepare(kFindByCoordinates);
   }
-  sqlite3_busy_timeout(db, 5000);
-  // One read transaction for both passes; it ends with the connection.
-  if (sqlite3_exec(db, "BEGIN", nullptr, nullptr, nullptr) != SQLITE_OK) {
-    return Unexpected<std::string>{map.trouble()};
-  }
-  const Statement count = map.prepare("SELECT count(*) FROM blocks");
-  if (count == nullptr || sqlite3_step(count.get()) != SQLITE_ROW) {
-    return Unexpected<std::string>{"not a Luanti map: " + map.trouble()};
-  }
-  map.row_count_ = static_cast<std::uint64_t>(sqlite3_column_int64(count.get(), 0));
-  map.scan_ = map.prepare("SELECT pos, data FROM blocks ORDER BY pos");
-  if (map.scan_ != nullptr) {
-    map.find_ = map.prepare("SELECT data FROM blocks WHERE pos = ?1");
-  } else {
-    map.scan_ =
-        map.prepare("SELECT (z * 4096 + y) * 4096 + x AS pos, data FROM blocks ORDER BY z, y, x");
-    map.find_ = map.prepare("SELECT data FROM blocks WHERE x = ?2 AND y = ?3 AND z = ?4");
-  }
-  if (map.scan_ == nullptr || map.find_ == nullptr) {
-    return Unexpected<std::string>{"not a Luanti map: " + map.trouble()};
-  }
-  return map;
+  if (!scan) return no_map(scan.error());
+  if (!find) return no_map(find.error());
+  return LuantiMap(*std::move(database), *std::move(scan), *std::move(find),
+                   static_cast<std::uint64_t>(*count));
 }
 
 std::optional<std::string> LuantiMap::each_row(
     const std::function<void(std::int64_t pos, ByteView data)>& row) {
-  sqlite3_reset(scan_.get());
-  while (true) {
-    const int status = sqlite3_step(scan_.get());
-    if (status == SQLITE_DONE) return std::nullopt;
-    if (status != SQLITE_ROW) return trouble();
-    row(sqlite3_column_int64(scan_.get(), 0), blob_of(scan_.get(), 1));
+  scan_.rewind();
+  for (;;) {
+    const auto more = scan_.step();
+    if (!more) return more.error().what;
+    if (!*more) return std::nullopt;
+    row(scan_.integer(0), scan_.blob(1));
   }
 }
 
 std::optional<ByteView> LuantiMap::find(std::int64_t pos) {
-  sqlite3_reset(find_.get());
-  const ChunkCoord block = luanti_block_coord(pos);
-  if (sqlite3_bind_parameter_count(find_.get()) == 1) {
-    sqlite3_bind_int64(find_.get(), 1, pos);
+  find_.rewind();
+  if (find_.parameter_count() == 1) {
+    find_.bind(1, pos);
   } else {
-    sqlite3_bind_int(find_.get(), 2, block.x);
-    sqlite3_bind_int(find_.get(), 3, block.y);
-    sqlite3_bind_int(find_.get(), 4, block.z);
+    const ChunkCoord block = luanti_block_coord(pos);
+    find_.bind(1, std::int64_t{block.x})
+        .bind(2, std::int64_t{block.y})
+        .bind(3, std::int64_t{block.z});
   }
-  if (sqlite3_step(find_.get()) != SQLITE_ROW) return std::nullopt;
-  return blob_of(find_.get(), 0);
+  const auto found = find_.step();
+  if (!found || !*found) return std::nullopt;
+  return find_.blob(0);
 }
 
 }  // namespace runstone

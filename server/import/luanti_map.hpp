@@ -1,48 +1,46 @@
-// LuantiMap: the rows of another program's map.sqlite, read-only. Knows both layouts of its one table:
-// blocks(pos, data), and blocks(x, y, z, data) of Luanti 5.12 and later.
+// LuantiMap: the rows of a Luanti world's map.sqlite, for reading only. Its one table has two layouts:
+// blocks(pos, data), and blocks(x, y, z, data) since Luanti 5.12.
 #pragma once
-#include <sqlite3.h>
-
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/core/bytes.hpp"
 #include "common/core/result.hpp"
+#include "common/sqlite/database.hpp"
 
 namespace runstone {
 
 class LuantiMap {
  public:
-  /// The error is one line of text. All reads see the map as it is now, even while its owner writes to it.
+  /// Opens a map. The error is one line of text. One read transaction lasts as long as the object, so all calls read the
+  /// same state of the map, even while Luanti writes to it.
   static Result<LuantiMap, std::string> open(const std::string& file);
 
   std::uint64_t row_count() const { return row_count_; }
 
-  /// Calls `row` for every block in ascending key. The bytes live for the call. Returns what went wrong, if
-  /// anything.
+  /// Calls `row` for every block, ascending by key. `data` is valid during that call. Returns the error, or nullopt if all
+  /// rows were read.
   std::optional<std::string> each_row(
       const std::function<void(std::int64_t pos, ByteView data)>& row);
 
-  /// One block's bytes, which live until the next call; none if there is no such row. An I/O error reads as
-  /// none: the caller has seen the row in each_row() and reports its absence.
+  /// Returns the bytes of one block, or nullopt if the row is missing or cannot be read. The bytes are valid until the
+  /// next call. The caller knows from each_row() which rows exist, so both cases mean damage.
   std::optional<ByteView> find(std::int64_t pos);
 
  private:
-  struct Close {
-    void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-  };
-  using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+  LuantiMap(sql::Database database, sql::Statement scan, sql::Statement find,
+            std::uint64_t row_count)
+      : database_(std::move(database)),
+        scan_(std::move(scan)),
+        find_(std::move(find)),
+        row_count_(row_count) {}
 
-  Statement prepare(const std::string& sql);
-  std::string trouble() const { return sqlite3_errmsg(db_.get()); }
-
-  std::unique_ptr<sqlite3, Close> db_;
-  Statement scan_, find_;
-  std::uint64_t row_count_ = 0;
+  sql::Database database_;  // before its statements
+  sql::Statement scan_, find_;
+  std::uint64_t row_count_;
 };
 
 }  // namespace runstone

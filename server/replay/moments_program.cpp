@@ -57,7 +57,7 @@ std::string name_of(const std::map<AuthorId, std::string>& names, AuthorId autho
 Result<void, std::string> write_moment(const ReplayOptions& options, std::ostream& out) {
   auto opened = open(options);
   if (!opened) return Unexpected<std::string>{opened.error()};
-  Store& store = *opened->store;
+  WorldReader& store = *opened->store;
   const auto last = store.last_sequence();
   if (!last) return Unexpected<std::string>{last.error().message()};
   const Sequence at = std::min(options.at, *last);
@@ -84,7 +84,7 @@ Result<void, std::string> write_moment(const ReplayOptions& options, std::ostrea
 Result<void, std::string> diff_moments(const ReplayOptions& options, std::ostream& out) {
   auto opened = open(options);
   if (!opened) return Unexpected<std::string>{opened.error()};
-  Store& store = *opened->store;
+  WorldReader& store = *opened->store;
   const auto from = sequence_of(store, options.diff->first);
   if (!from) return Unexpected<std::string>{from.error().message()};
   const auto to = sequence_of(store, options.diff->second);

@@ -24,7 +24,7 @@ std::string ReplayDifference::message() const {
   return line + " digest=" + to_hex(expected) + ", replay gives digest=" + to_hex(rebuilt);
 }
 
-Replayer::Replayer(Store& store, const Generator& generator)
+Replayer::Replayer(WorldReader& store, const Generator& generator)
     : store_(store), generator_(generator), edge_(store.meta().chunk_edge) {}
 
 void Replayer::expect(const std::string& source, const DigestList& list) {

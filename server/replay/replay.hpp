@@ -12,7 +12,7 @@
 #include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/replay/digest_list.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -46,7 +46,7 @@ struct ReplayReport {
 class Replayer {
  public:
   /// Both must outlive the replayer. The store may be open for reading only, with a server writing meanwhile.
-  Replayer(Store& store, const Generator& generator);
+  Replayer(WorldReader& store, const Generator& generator);
 
   /// Compares each listed chunk when (and if) the replay brings it to the listed version. Versions newer than
   /// the end of the replay are left out; versions that the log passed without meeting them are differences.
@@ -81,7 +81,7 @@ class Replayer {
   void count(const Expected& expected);
   void differs(ReplayDifference difference);
 
-  Store& store_;
+  WorldReader& store_;
   const Generator& generator_;
   const std::int32_t edge_;
   std::map<ChunkKey, ReplayedChunk> chunks_;

@@ -32,8 +32,8 @@ std::ostream& row(std::ostream& out, const char* name) {
   return out << std::left << std::setw(12) << name << std::right;
 }
 
-void print_table(std::ostream& out, const Store& store, const ReplayReport& report, double seconds,
-                 bool verified) {
+void print_table(std::ostream& out, const WorldInfo& store, const ReplayReport& report,
+                 double seconds, bool verified) {
   const WorldMeta& meta = store.meta();
   out << std::fixed;
   row(out, "world") << to_hex(meta.world_id) << "  " << store.file() << '\n';
@@ -60,7 +60,7 @@ void print_table(std::ostream& out, const Store& store, const ReplayReport& repo
 }
 
 /// A digest list that also says what the replay found.
-std::string report_json(const Store& store, const ReplayReport& report, double seconds) {
+std::string report_json(const WorldInfo& store, const ReplayReport& report, double seconds) {
   const DigestList list{store.meta().world_id, report.seq, report.digests};
   nlohmann::ordered_json more = {{"edits", report.edits},
                                  {"chunks", report.digests.size()},
@@ -130,7 +130,7 @@ int import_log(const ReplayOptions& options, std::ostream& out, std::ostream& er
 int run(const ReplayOptions& options, std::ostream& out, std::ostream& err) {
   auto opened = open_world(options.world, StoreAccess::read_only);
   if (!opened) return cannot_read(err, opened.error().message());
-  Store& store = **opened;
+  WorldReader& store = **opened;
   const WorldMeta& meta = store.meta();
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {

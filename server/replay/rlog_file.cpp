@@ -67,7 +67,7 @@ class File {
   int descriptor_;
 };
 
-Result<RlogWorld, std::string> world_of(Store& store, const LogEnd& head) {
+Result<RlogWorld, std::string> world_of(ChunkReader& store, const LogEnd& head) {
   const auto has_base = store.has_base();
   if (!has_base) return failure(has_base.error().message());
   const WorldMeta& meta = store.meta();
@@ -83,7 +83,7 @@ Result<RlogWorld, std::string> world_of(Store& store, const LogEnd& head) {
   return world;
 }
 
-Result<std::vector<RlogPlayer>, std::string> players_of(Store& store) {
+Result<std::vector<RlogPlayer>, std::string> players_of(WorldReader& store) {
   const auto rows = store.players();
   if (!rows) return failure(rows.error().message());
   std::vector<RlogPlayer> players;
@@ -97,8 +97,9 @@ Result<std::vector<RlogPlayer>, std::string> players_of(Store& store) {
   return players;
 }
 
-Result<RlogExport, std::string> write_rlog(Store& store, const File& out, const std::string& file,
-                                           Sequence at, RlogOptions options) {
+Result<RlogExport, std::string> write_rlog(WorldReader& store, const File& out,
+                                           const std::string& file, Sequence at,
+                                           RlogOptions options) {
   const auto bad = [&](const RlogError& error) { return failure(file + ": " + error.message()); };
   const auto head = store.log_head();
   if (!head) return failure(head.error().message());
@@ -252,8 +253,8 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
 
 }  // namespace
 
-Result<RlogExport, std::string> export_rlog(Store& store, const std::string& file, Sequence at,
-                                            RlogOptions options) {
+Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
+                                            Sequence at, RlogOptions options) {
   const std::string unfinished = file + ".exporting";
   const auto written = [&]() -> Result<RlogExport, std::string> {
     const File out(unfinished, O_WRONLY | O_CREAT | O_TRUNC);

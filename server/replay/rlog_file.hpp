@@ -18,8 +18,8 @@ struct RlogExport {
 
 /// Writes the log up to min(at, last) beside `file` and moves it there when it is complete and on disk; replaces
 /// what stood there. The store may be open for reading only, with a server writing meanwhile. The error is one line.
-Result<RlogExport, std::string> export_rlog(Store& store, const std::string& file, Sequence at,
-                                            RlogOptions options = {});
+Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
+                                            Sequence at, RlogOptions options = {});
 
 struct RlogImport {
   bool made_world = false;  // the folder held none

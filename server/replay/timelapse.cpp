@@ -26,7 +26,7 @@ constexpr std::size_t kPathBytesMax = 4 << 20;
 Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
 /// The moments to draw: ascending, the first and the last among them.
-Result<std::vector<Sequence>, std::string> moments_of(Store& reader,
+Result<std::vector<Sequence>, std::string> moments_of(WorldReader& reader,
                                                       const TimelapseOptions& options,
                                                       Sequence at) {
   const auto range = reader.log_range();
@@ -102,7 +102,7 @@ std::string frame_name(std::uint64_t number) {
 }
 
 Result<TimelapseReport, std::string> make_timelapse(
-    Store& reader, const Generator& generator, const TimelapseOptions& options, Sequence at,
+    WorldReader& reader, const Generator& generator, const TimelapseOptions& options, Sequence at,
     const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
   const auto start = std::chrono::steady_clock::now();
   const auto moments = moments_of(reader, options, at);

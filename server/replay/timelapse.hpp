@@ -10,7 +10,7 @@
 #include "common/core/result.hpp"
 #include "common/generate/generator.hpp"
 #include "server/replay/timelapse_options.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -34,7 +34,7 @@ std::string frame_name(std::uint64_t number);
 /// `progress` is called after each frame, with the frames done and all of them. Errors are one line of text. Blocks
 /// on the disk and on the child.
 Result<TimelapseReport, std::string> make_timelapse(
-    Store& reader, const Generator& generator, const TimelapseOptions& options, Sequence at,
+    WorldReader& reader, const Generator& generator, const TimelapseOptions& options, Sequence at,
     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 
 }  // namespace runstone

@@ -18,7 +18,7 @@ std::ostream& row(std::ostream& out, const char* name) {
   return out << std::left << std::setw(12) << name << std::right;
 }
 
-std::string report_json(const Store& store, const TimelapseReport& report, bool has_video) {
+std::string report_json(const WorldInfo& store, const TimelapseReport& report, bool has_video) {
   const nlohmann::ordered_json json = {{"world_id", to_hex(store.meta().world_id)},
                                        {"frames", report.frames},
                                        {"first_seq", report.first},

@@ -25,7 +25,7 @@ bool is_empty(const RunChunk& chunk) {
 
 }  // namespace
 
-StoreResult<TimelapseWorld> TimelapseWorld::open(Store& reader, const Generator& generator,
+StoreResult<TimelapseWorld> TimelapseWorld::open(WorldReader& reader, const Generator& generator,
                                                  Sequence from, Sequence to, std::uint32_t radius,
                                                  std::span<const ChunkCoord> eyes) {
   RUNSTONE_ASSERT(from <= to);

@@ -16,7 +16,7 @@
 #include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
 #include "server/history/world_at.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -29,8 +29,8 @@ class TimelapseWorld {
   /// surface around what is edited, and around the chunks `eyes`, from which is looked. Fails with what the
   /// store says of rows it cannot read, and (bad_request) if the log does not reach so far back, or the stage is
   /// larger than kChunksMax.
-  static StoreResult<TimelapseWorld> open(Store& reader, const Generator& generator, Sequence from,
-                                          Sequence to, std::uint32_t radius,
+  static StoreResult<TimelapseWorld> open(WorldReader& reader, const Generator& generator,
+                                          Sequence from, Sequence to, std::uint32_t radius,
                                           std::span<const ChunkCoord> eyes);
 
   /// Smallest box that holds the geometry of all edits on the way; of all before it, if there are none on the
@@ -50,7 +50,7 @@ class TimelapseWorld {
  private:
   using Column = std::pair<std::int32_t, std::int32_t>;  // x, z of its chunks
 
-  TimelapseWorld(Store& reader, const Generator& generator, WorldAt start)
+  TimelapseWorld(WorldReader& reader, const Generator& generator, WorldAt start)
       : reader_(&reader),
         generator_(&generator),
         edge_(reader.meta().chunk_edge),
@@ -62,7 +62,7 @@ class TimelapseWorld {
   void add_surface(const Column& column);
   Unexpected<StoreError> too_large() const;
 
-  Store* reader_;
+  WorldReader* reader_;
   const Generator* generator_;
   std::int32_t edge_;
   WorldAt start_;

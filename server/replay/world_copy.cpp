@@ -18,7 +18,7 @@ constexpr std::size_t kSliceChunks = 256;
 
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
-Result<WorldCopy, std::string> fill(Store& source, WorldAt& world, const std::string& folder,
+Result<WorldCopy, std::string> fill(WorldReader& source, WorldAt& world, const std::string& folder,
                                     const WorldAt::Progress& progress) {
   WorldMeta meta = source.meta();
   draw_identity(meta);
@@ -50,8 +50,8 @@ Result<WorldCopy, std::string> fill(Store& source, WorldAt& world, const std::st
 
 }  // namespace
 
-Result<WorldCopy, std::string> copy_world(Store& source, const Generator& generator, Sequence at,
-                                          const std::string& folder,
+Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator,
+                                          Sequence at, const std::string& folder,
                                           const WorldAt::Progress& progress) {
   namespace fs = std::filesystem;
   if (sodium_init() < 0) return failure("libsodium cannot start");

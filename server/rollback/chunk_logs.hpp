@@ -9,7 +9,7 @@
 
 #include "common/core/coords.hpp"
 #include "server/rollback/goes_on.hpp"
-#include "server/store/store.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 
@@ -17,7 +17,7 @@ class ChunkLogs {
  public:
   /// Keeps up to about `kept_bytes_max` bytes of records; a chunk whose log does not fit is read each time. The reader
   /// must outlive it.
-  explicit ChunkLogs(Store& reader, GoesOn goes_on = {}, std::size_t kept_bytes_max = 0)
+  explicit ChunkLogs(LogReader& reader, GoesOn goes_on = {}, std::size_t kept_bytes_max = 0)
       : reader_(reader), goes_on_(std::move(goes_on)), kept_bytes_max_(kept_bytes_max) {}
 
   using Each = std::function<void(const EditRecord&)>;
@@ -36,7 +36,7 @@ class ChunkLogs {
   /// Widens what is kept until it holds first..last.
   StoreResult<void> keep(const ChunkKey& key, Kept& kept, Sequence first, Sequence last);
 
-  Store& reader_;
+  LogReader& reader_;
   GoesOn goes_on_;
   std::size_t kept_bytes_max_;
   std::size_t kept_bytes_ = 0;

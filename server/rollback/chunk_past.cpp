@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const ChunkKey& key,
+StoreResult<Chunk> stored_form(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                                Sequence at) {
   auto newest = reader.load_kept(key, at);
   if (!newest) return Unexpected<StoreError>{newest.error()};
@@ -34,13 +34,13 @@ StoreResult<Chunk> stored_form(Store& reader, const Generator& generator, const 
 
 }  // namespace
 
-StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, const ChunkKey& key,
+StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                               Sequence at, FollowScratch& scratch) {
   ChunkLogs logs(reader);
   return chunk_past(reader, generator, logs, key, at, scratch);
 }
 
-StoreResult<Chunk> chunk_past(Store& reader, const Generator& generator, ChunkLogs& logs,
+StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
                               const ChunkKey& key, Sequence at, FollowScratch& scratch) {
   auto start = stored_form(reader, generator, key, at);
   if (!start || start->version.seq >= at) return start;

@@ -2,7 +2,8 @@
 #pragma once
 #include <functional>
 
-#include "server/store/store.hpp"
+#include "server/store/store_error.hpp"
+#include "server/store/world_info.hpp"
 
 namespace runstone {
 
@@ -10,7 +11,7 @@ namespace runstone {
 using GoesOn = std::function<bool()>;
 
 /// What a read ends with that is not wanted any more.
-inline Unexpected<StoreError> cancelled(const Store& reader) {
+inline Unexpected<StoreError> cancelled(const WorldInfo& reader) {
   return {{StoreError::Kind::cancelled, reader.file(), "edit_log", "cancelled"}};
 }
 

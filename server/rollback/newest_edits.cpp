@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-StoreResult<std::vector<EditRecord>> newest_edits(Store& reader, const SelectionFilter& filter,
+StoreResult<std::vector<EditRecord>> newest_edits(LogReader& reader, const SelectionFilter& filter,
                                                   std::size_t count_max) {
   const auto range = reader.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};

@@ -8,7 +8,7 @@ namespace runstone {
 
 /// The newest `count_max` edits, ascending. The log is asked in windows from its end, each twice as wide as the one
 /// before, so that a question with many answers reads few of them.
-StoreResult<std::vector<EditRecord>> newest_edits(Store& reader, const SelectionFilter& filter,
+StoreResult<std::vector<EditRecord>> newest_edits(LogReader& reader, const SelectionFilter& filter,
                                                   std::size_t count_max);
 
 }  // namespace runstone

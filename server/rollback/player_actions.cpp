@@ -23,8 +23,8 @@ struct PlayerEdit {
 };
 
 /// The author's records up to `end`, ascending, from about the kUndoActionsMax newest actions on.
-StoreResult<std::vector<PlayerEdit>> player_edits(Store& reader, AuthorId author, Sequence end,
-                                                  const GoesOn& goes_on) {
+StoreResult<std::vector<PlayerEdit>> player_edits(WorldReader& reader, AuthorId author,
+                                                  Sequence end, const GoesOn& goes_on) {
   // The index is read upward only, so the log is taken in windows from its end, each twice as wide as the one
   // before; one with too much in it is left for half of it.
   const std::int32_t edge = reader.meta().chunk_edge;
@@ -106,7 +106,7 @@ Selection selection_of(const std::vector<PlayerEdit>& edited, const std::vector<
 
 }  // namespace
 
-StoreResult<PlayerActionSearch> next_player_change(Store& reader, const Generator& generator,
+StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Generator& generator,
                                                    AuthorId author, Cause cause, Sequence end,
                                                    const GoesOn& goes_on) {
   RUNSTONE_ASSERT(cause == Cause::undo || cause == Cause::redo);

@@ -7,7 +7,7 @@
 #include "common/generate/generator.hpp"
 #include "server/rollback/own_actions.hpp"
 #include "server/rollback/selection.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -32,7 +32,7 @@ struct PlayerActionSearch {
 /// The undo (or redo) that is next: the first of OwnActions::undoable() (redoable()) that changes a voxel, since
 /// what others have built over entirely is passed by. Reads the log up to `end`, which must be durable, and reads it
 /// once for all that it looks at. Fails with what the store says, and with cancelled once `goes_on` says no.
-StoreResult<PlayerActionSearch> next_player_change(Store& reader, const Generator& generator,
+StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Generator& generator,
                                                    AuthorId author, Cause cause, Sequence end,
                                                    const GoesOn& goes_on = {});
 

@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
+std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& generator,
                                           const RestoreWork& work, const GoesOn& goes_on) {
   RestorePlanner planner(reader, generator, goes_on);
   std::vector<RestoredChunk> out;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "server/rollback/selection.hpp"
+#include "server/store/world_reader.hpp"
 #include "server/world/world_server.hpp"
 
 namespace runstone {
@@ -55,7 +56,7 @@ struct RestoredChunk {
   std::string error;                  // not empty: the chunk cannot be planned, and why
 };
 /// Does the work. Any thread that owns the reader. Chunks that are not wanted any more come back with an error.
-std::vector<RestoredChunk> restore_chunks(Store& reader, const Generator& generator,
+std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& generator,
                                           const RestoreWork& work, const GoesOn& goes_on = {});
 
 struct RestoreLimits {

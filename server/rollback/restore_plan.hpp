@@ -13,7 +13,7 @@
 #include "common/edits/restore/restore.hpp"
 #include "common/generate/generator.hpp"
 #include "server/rollback/chunk_logs.hpp"
-#include "server/store/store.hpp"
+#include "server/store/world_reader.hpp"
 
 namespace runstone {
 
@@ -32,7 +32,7 @@ class RestorePlanner {
  public:
   /// All must outlive the planner. One thread, which alone uses the reader.
   /// `kept_bytes_max`: as in ChunkLogs, for who plans a chunk several times.
-  RestorePlanner(Store& reader, const Generator& generator, GoesOn goes_on = {},
+  RestorePlanner(WorldReader& reader, const Generator& generator, GoesOn goes_on = {},
                  std::size_t kept_bytes_max = 0)
       : reader_(reader),
         generator_(generator),
@@ -46,7 +46,7 @@ class RestorePlanner {
                                 const std::optional<VoxelBox>& box, Sequence end);
 
  private:
-  Store& reader_;
+  WorldReader& reader_;
   const Generator& generator_;
   GoesOn goes_on_;
   ChunkLogs logs_;

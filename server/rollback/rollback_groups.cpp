@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id) {
+StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id) {
   RollbackGroup group;
   bool begins = false;
   const auto first = reader.read_log(id, id, [&](const EditRecord& record) {
@@ -38,7 +38,7 @@ StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id) {
   return group;
 }
 
-StoreResult<std::vector<RollbackGroup>> rollback_groups(Store& reader, std::size_t count_max) {
+StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max) {
   std::map<std::pair<AuthorId, ClientInstance>, RollbackGroup> by_instance;
   std::map<Sequence, std::pair<AuthorId, ClientInstance>> group_of;  // by edit
   LogQuery query;

@@ -4,7 +4,7 @@
 #pragma once
 #include <vector>
 
-#include "server/store/store.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 
@@ -22,9 +22,9 @@ struct RollbackGroup {
 };
 
 /// The group whose id this is. bad_request if that edit begins none. O(edits with its cause since).
-StoreResult<RollbackGroup> rollback_group(Store& reader, Sequence id);
+StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id);
 
 /// The newest `count_max` groups with cause rollback, oldest first. O(edits with cause rollback or undo).
-StoreResult<std::vector<RollbackGroup>> rollback_groups(Store& reader, std::size_t count_max);
+StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max);
 
 }  // namespace runstone

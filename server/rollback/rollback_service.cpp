@@ -103,7 +103,7 @@ void RollbackService::change_player_actions(AuthorId author, Cause cause, const 
     auto found = std::make_shared<StoreResult<PlayerActionSearch>>(PlayerActionSearch());
     workers_.run(
         [found, author, cause, end = world_.durable(), goes_on = goes_on()](
-            Store& reader, const Generator& generator) {
+            WorldReader& reader, const Generator& generator) {
           *found = next_player_change(reader, generator, author, cause, end, goes_on);
         },
         [this, found, author, cause, name, reply](const std::string& error) {
@@ -153,7 +153,7 @@ void RollbackService::preview(const SelectionFilter& filter, const Clocks& now, 
     SelectionFilter until_now = filter;
     until_now.last = std::min(filter.last, world_.durable());
     const auto work = [preview, until_now, see, seen, end = world_.durable()](
-                          Store& reader, const Generator& generator) {
+                          WorldReader& reader, const Generator& generator) {
       const auto goes_on = [preview] { return preview->is_wanted->load(); };
       auto selection = select_edits(reader, until_now, goes_on);
       if (!selection) {
@@ -292,7 +292,7 @@ void RollbackService::undo_rollback(const std::string& id, AuthorId author, cons
       return refuse(reply, "rollback undo: there is no edit " + std::to_string(seq));
     auto found = std::make_shared<StoreResult<Selection>>(Selection());
     workers_.run(
-        [found, seq, goes_on = goes_on()](Store& reader, const Generator&) {
+        [found, seq, goes_on = goes_on()](WorldReader& reader, const Generator&) {
           const auto group = rollback_group(reader, seq);
           *found = group ? select_edits(reader, group->edits, goes_on)
                          : StoreResult<Selection>(Unexpected<StoreError>{group.error()});
@@ -330,7 +330,9 @@ void RollbackService::list(CommandReply reply) {
   auto groups =
       std::make_shared<StoreResult<std::vector<RollbackGroup>>>(std::vector<RollbackGroup>());
   workers_.run(
-      [groups](Store& reader, const Generator&) { *groups = rollback_groups(reader, kListedMax); },
+      [groups](WorldReader& reader, const Generator&) {
+        *groups = rollback_groups(reader, kListedMax);
+      },
       [groups, text, reply](const std::string& error) {
         if (!error.empty()) return refuse(reply, "rollback list: " + error);
         if (!*groups) return refuse(reply, "rollback list: " + groups->error().message());
@@ -372,7 +374,7 @@ void RollbackService::step(Job& job, const Clocks& now) {
       std::find_if(jobs_.begin(), jobs_.end(), [&](const auto& j) { return j.get() == &job; });
   auto chunks = std::make_shared<std::vector<RestoredChunk>>();
   workers_.run(
-      [chunks, work = *std::move(work), goes_on = goes_on()](Store& reader,
+      [chunks, work = *std::move(work), goes_on = goes_on()](WorldReader& reader,
                                                              const Generator& generator) {
         *chunks = restore_chunks(reader, generator, work, goes_on);
       },

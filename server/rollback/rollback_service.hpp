@@ -28,7 +28,7 @@ class RollbackService {
   class Workers {
    public:
     virtual ~Workers() = default;
-    using Work = std::function<void(Store& reader, const Generator& generator)>;
+    using Work = std::function<void(WorldReader& reader, const Generator& generator)>;
     /// Runs `work` soon, elsewhere, with a reader of its own; then `then` on the world strand. The text is
     /// empty, or says why there was no reader, when `work` did not run.
     virtual void run(Work work, std::function<void(std::string)> then) = 0;
@@ -36,8 +36,8 @@ class RollbackService {
   /// Sees the chunks of a preview, on a worker, one after another: now and restored.
   using Viewer = std::function<void(const RestorePlan&)>;
   /// Has seen them all: returns lines to be added to the answer about the preview of this id.
-  using Seen =
-      std::function<std::string(Store& reader, const Generator& generator, const std::string& id)>;
+  using Seen = std::function<std::string(WorldReader& reader, const Generator& generator,
+                                         const std::string& id)>;
 
   /// All must outlive the desk.
   RollbackService(WorldServer& world, Workers& workers, RandomBytes random);

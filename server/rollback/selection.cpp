@@ -11,7 +11,8 @@ namespace {
 /// Puts records into a selection, in any order.
 class Collector {
  public:
-  explicit Collector(const Store& reader) : file_(reader.file()), edge_(reader.meta().chunk_edge) {
+  explicit Collector(const LogReader& reader)
+      : file_(reader.file()), edge_(reader.meta().chunk_edge) {
     selection_.chunk_edge = edge_;
   }
 
@@ -72,7 +73,7 @@ std::optional<VoxelBox> Selection::area() const {
   return all && box ? intersect(*all, *box) : all;
 }
 
-StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter,
+StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& filter,
                                     const GoesOn& goes_on) {
   LogQuery query;
   query.from_us = filter.from_us;
@@ -105,7 +106,7 @@ StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter
   return collector.finish();
 }
 
-StoreResult<Selection> select_edits(Store& reader, const std::vector<Sequence>& edits,
+StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequence>& edits,
                                     const GoesOn& goes_on) {
   Collector collector(reader);
   bool has_room = true;

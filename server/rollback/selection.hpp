@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/rollback/goes_on.hpp"
-#include "server/store/store.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 
@@ -39,11 +39,11 @@ inline constexpr std::uint64_t kSelectionTouchesMax = 16'000'000;
 
 /// Asks the log. Fails with what the store says, with bad_request if the selection is too large, and with
 /// cancelled once `goes_on` says no. O(edits of the answer * chunks they touch).
-StoreResult<Selection> select_edits(Store& reader, const SelectionFilter& filter,
+StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& filter,
                                     const GoesOn& goes_on = {});
 
 /// Exactly these edits, ascending; those that the log does not hold are left out. Fails likewise.
-StoreResult<Selection> select_edits(Store& reader, const std::vector<Sequence>& edits,
+StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequence>& edits,
                                     const GoesOn& goes_on = {});
 
 }  // namespace runstone

@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-StoreResult<std::unique_ptr<Store>> ChunkSource::borrow() {
+StoreResult<std::unique_ptr<WorldReader>> ChunkSource::borrow() {
   {
     const std::lock_guard lock(mutex_);
     if (!idle_.empty()) {
@@ -17,15 +17,17 @@ StoreResult<std::unique_ptr<Store>> ChunkSource::borrow() {
       return reader;
     }
   }
-  return open_world(folder_, StoreAccess::read_only);
+  auto opened = open_world(folder_, StoreAccess::read_only);
+  if (!opened) return Unexpected<StoreError>{opened.error()};
+  return *std::move(opened);
 }
 
-void ChunkSource::give_back(std::unique_ptr<Store> reader) {
+void ChunkSource::give_back(std::unique_ptr<WorldReader> reader) {
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(reader));
 }
 
-StoreResult<void> ChunkSource::with_reader(const std::function<void(Store&)>& use) {
+StoreResult<void> ChunkSource::with_reader(const std::function<void(WorldReader&)>& use) {
   auto reader = borrow();
   if (!reader) return Unexpected<StoreError>{reader.error()};
   use(**reader);
@@ -41,7 +43,7 @@ StoreResult<Chunk> ChunkSource::load(const ChunkKey& key) {
   return chunk;
 }
 
-StoreResult<Chunk> ChunkSource::load(Store& reader, const ChunkKey& key) const {
+StoreResult<Chunk> ChunkSource::load(ChunkReader& reader, const ChunkKey& key) const {
   auto stored = reader.load_snapshot(key);
   if (!stored) return Unexpected<StoreError>{stored.error()};
   if (!stored->has_value()) return base_chunk(reader, generator_, key);

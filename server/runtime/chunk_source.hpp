@@ -23,17 +23,17 @@ class ChunkSource {
   /// and row.
   StoreResult<Chunk> load(const ChunkKey& key);
   /// Lends a reader to `use`, which alone has it for that long.
-  StoreResult<void> with_reader(const std::function<void(Store&)>& use);
+  StoreResult<void> with_reader(const std::function<void(WorldReader&)>& use);
 
  private:
-  StoreResult<std::unique_ptr<Store>> borrow();
-  void give_back(std::unique_ptr<Store> reader);
-  StoreResult<Chunk> load(Store& reader, const ChunkKey& key) const;
+  StoreResult<std::unique_ptr<WorldReader>> borrow();
+  void give_back(std::unique_ptr<WorldReader> reader);
+  StoreResult<Chunk> load(ChunkReader& reader, const ChunkKey& key) const;
 
   const std::string folder_;
   const Generator& generator_;
   std::mutex mutex_;  // a leaf: guards the pool
-  std::vector<std::unique_ptr<Store>> idle_;
+  std::vector<std::unique_ptr<WorldReader>> idle_;
 };
 
 }  // namespace runstone

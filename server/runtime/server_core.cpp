@@ -349,7 +349,7 @@ void ServerCore::command(SessionId session, AuthorId author, const PublicKey& ke
 
 void ServerCore::run(Work work, std::function<void(std::string)> then) {
   asio::post(log_readers_, [this, work = std::move(work), then = std::move(then)] {
-    const auto read = chunks_->with_reader([&](Store& reader) { work(reader, generator_); });
+    const auto read = chunks_->with_reader([&](WorldReader& reader) { work(reader, generator_); });
     asio::post(strand_, [this, then, error = read ? std::string() : read.error().message()] {
       then(error);
       rollback_->tick(now());
@@ -443,7 +443,7 @@ bool ServerCore::send_update(SessionId session, const ChunkKey& key, const Chunk
   asio::post(workers_, [this, net = found->second, key, chunk, held, place = *place] {
     const ChunkEncoding encoding = net->encoding();
     std::optional<ChunkEdits> edits;
-    const auto read = chunks_->with_reader([&](Store& reader) {
+    const auto read = chunks_->with_reader([&](WorldReader& reader) {
       auto missing =
           missing_edits(reader, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding));
       if (missing) {

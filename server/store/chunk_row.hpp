@@ -5,9 +5,10 @@
 #include <string_view>
 
 #include "common/core/bytes.hpp"
+#include "common/core/ids.hpp"
 #include "common/core/result.hpp"
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
+#include "common/runs/chunk.hpp"
+#include "common/sqlite/database.hpp"
 
 namespace runstone {
 

@@ -5,6 +5,7 @@
 #include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -30,12 +31,12 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
   const std::string table = kind == Kind::snapshot ? "snapshot" : "base";
   const std::string where = " FROM " + table + " WHERE lod = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
   auto load = database.prepare("SELECT epoch, seq, digest0, digest1, checksum, data" + where);
-  if (!load) return Unexpected<StoreError>{load.error()};
+  if (!load) return failed(load.error());
   auto rows = database.prepare("SELECT lod, x, y, z, epoch, seq, digest0, digest1 FROM " + table +
                                " ORDER BY lod, x, y, z");
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   auto version = database.prepare("SELECT epoch, seq" + where);
-  if (!version) return Unexpected<StoreError>{version.error()};
+  if (!version) return failed(version.error());
   auto save = database.prepare(
       "INSERT INTO " + table +
       "(lod, x, y, z, epoch, seq, digest0, digest1, checksum, data) "
@@ -43,7 +44,7 @@ StoreResult<ChunkTable> ChunkTable::open(sql::Database& database, Kind kind) {
       "epoch = excluded.epoch, seq = excluded.seq, digest0 = excluded.digest0, digest1 = "
       "excluded.digest1, "
       "checksum = excluded.checksum, data = excluded.data");
-  if (!save) return Unexpected<StoreError>{save.error()};
+  if (!save) return failed(save.error());
   return ChunkTable(database.file(), kind, table, *std::move(load), *std::move(rows),
                     *std::move(version), *std::move(save));
 }
@@ -57,7 +58,7 @@ StoreResult<std::optional<Chunk>> ChunkTable::load(const ChunkKey& key, std::uin
   const sql::ResetAtEnd reset_at_end(load_);
   bind_key(load_, key);
   const auto found = load_.step();
-  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!found) return failed(found.error());
   if (!*found) return std::optional<Chunk>();
   auto chunk = chunk_of(
       table_, {key, version_at(load_, 0), digest_at(load_, 2), load_.integer(4), load_.blob(5)},
@@ -72,7 +73,7 @@ StoreResult<std::vector<StoredChunk>> ChunkTable::rows(const RowFold& expected) 
   RowFold fold;
   for (;;) {
     const auto more = rows_.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) break;
     ++fold.count;
     fold.sum += fold_term({rows_.integer(0), rows_.integer(1), rows_.integer(2), rows_.integer(3),
@@ -98,7 +99,7 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
     const sql::ResetAtEnd reset_at_end(version_);
     bind_key(version_, key);
     const auto found = version_.step();
-    if (!found) return Unexpected<StoreError>{found.error()};
+    if (!found) return failed(found.error());
     if (*found) stored = version_at(version_, 0);
   }
   if (stored && kind_ == Kind::base && chunk.version == *stored) {
@@ -116,7 +117,7 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
       .bind(8, static_cast<std::int64_t>(chunk.digest.lane[1]))
       .bind(9, checksum_of(table_, {key, chunk.version, chunk.digest, 0, data}))
       .bind(10, ByteView(data));
-  if (auto saved = save_.run(); !saved) return saved;
+  if (auto saved = save_.run(); !saved) return failed(saved.error());
   if (stored) fold.sum -= fold_term(key, *stored);
   fold.count += stored ? 0 : 1;
   fold.sum += fold_term(key, chunk.version);

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/sqlite/database.hpp"
+#include "server/store/chunk_reader.hpp"
 #include "server/store/meta_table.hpp"
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
 
 namespace runstone {
 

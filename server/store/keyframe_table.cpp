@@ -6,6 +6,7 @@
 #include "common/core/key_text.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "server/store/chunk_row.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -39,8 +40,8 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
   StoreResult<void> prepared;
   const auto prepare = [&](std::string_view text) {
     auto statement = database.prepare(text);
-    if (!statement && prepared) prepared = Unexpected<StoreError>{statement.error()};
-    return statement ? *std::move(statement) : sql::Statement(nullptr);
+    if (!statement && prepared) prepared = failed(statement.error());
+    return statement ? *std::move(statement) : sql::Statement();
   };
   Statements statements{
       prepare("SELECT seq, epoch, time_us, chunks, digest0, digest1, checksum FROM keyframe ORDER "
@@ -60,7 +61,7 @@ StoreResult<KeyframeTable> KeyframeTable::open(sql::Database& database) {
               "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
       prepare("DELETE FROM keyframe_chunk WHERE seq <= ?1"),
       prepare("DELETE FROM keyframe WHERE seq <= ?1")};
-  if (!prepared) return Unexpected<StoreError>{prepared.error()};
+  if (!prepared) return failed(prepared.error());
   return KeyframeTable(database.file(), std::move(statements));
 }
 
@@ -73,7 +74,7 @@ StoreResult<std::vector<Keyframe>> KeyframeTable::all() {
   std::vector<Keyframe> keyframes;
   for (;;) {
     const auto more = s_.all.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) return keyframes;
     const Keyframe keyframe{
         {{static_cast<Epoch>(s_.all.integer(1)), static_cast<Sequence>(s_.all.integer(0))},
@@ -92,7 +93,7 @@ StoreResult<std::vector<StoredChunk>> KeyframeTable::rows(Sequence last) {
   std::vector<StoredChunk> rows;
   for (;;) {
     const auto more = s_.rows.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) return rows;
     rows.push_back({key_at(s_.rows, 0), version_at(s_.rows, 4), digest_at(s_.rows, 6), false});
   }
@@ -113,7 +114,7 @@ StoreResult<std::optional<Chunk>> KeyframeTable::read(sql::Statement& row, const
   const sql::ResetAtEnd reset_at_end(row);
   bind_key(row, key);
   const auto found = row.bind(5, static_cast<std::int64_t>(seq)).step();
-  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!found) return failed(found.error());
   if (!*found) return std::optional<Chunk>();
   const Version version = version_at(row, 0);
   auto chunk =
@@ -129,37 +130,38 @@ StoreResult<void> KeyframeTable::save(const ChunkKey& key, const Chunk& chunk,
     return Unexpected<StoreError>{{StoreError::Kind::bad_request, file_, place_of(key, seq), what}};
   }
   const auto stored = load(key, seq, chunk_edge);
-  if (!stored) return Unexpected<StoreError>{stored.error()};
+  if (!stored) return failed(stored.error());
   if (stored->has_value()) {
     if ((*stored)->version == chunk.version && (*stored)->digest == chunk.digest) return {};
     return corrupt(place_of(key, seq), "holds other voxels than base and log make");
   }
   const Bytes data = encode_chunk(chunk.voxels, ChunkEncoding::packed);
   bind_key(s_.save_chunk, key);
-  return s_.save_chunk.bind(5, static_cast<std::int64_t>(seq))
-      .bind(6, std::int64_t{chunk.version.epoch})
-      .bind(7, static_cast<std::int64_t>(chunk.digest.lane[0]))
-      .bind(8, static_cast<std::int64_t>(chunk.digest.lane[1]))
-      .bind(9, runstone::checksum_of(kChunks, {key, chunk.version, chunk.digest, 0, data}))
-      .bind(10, ByteView(data))
-      .run();
+  return store_result(
+      s_.save_chunk.bind(5, static_cast<std::int64_t>(seq))
+          .bind(6, std::int64_t{chunk.version.epoch})
+          .bind(7, static_cast<std::int64_t>(chunk.digest.lane[0]))
+          .bind(8, static_cast<std::int64_t>(chunk.digest.lane[1]))
+          .bind(9, runstone::checksum_of(kChunks, {key, chunk.version, chunk.digest, 0, data}))
+          .bind(10, ByteView(data))
+          .run());
 }
 
 StoreResult<void> KeyframeTable::save(const Keyframe& keyframe) {
-  return s_.save.bind(1, static_cast<std::int64_t>(keyframe.at.version.seq))
-      .bind(2, std::int64_t{keyframe.at.version.epoch})
-      .bind(3, keyframe.at.time_us)
-      .bind(4, static_cast<std::int64_t>(keyframe.chunks))
-      .bind(5, static_cast<std::int64_t>(keyframe.world_digest.lane[0]))
-      .bind(6, static_cast<std::int64_t>(keyframe.world_digest.lane[1]))
-      .bind(7, checksum_of(keyframe))
-      .run();
+  return store_result(s_.save.bind(1, static_cast<std::int64_t>(keyframe.at.version.seq))
+                          .bind(2, std::int64_t{keyframe.at.version.epoch})
+                          .bind(3, keyframe.at.time_us)
+                          .bind(4, static_cast<std::int64_t>(keyframe.chunks))
+                          .bind(5, static_cast<std::int64_t>(keyframe.world_digest.lane[0]))
+                          .bind(6, static_cast<std::int64_t>(keyframe.world_digest.lane[1]))
+                          .bind(7, checksum_of(keyframe))
+                          .run());
 }
 
 StoreResult<void> KeyframeTable::remove(Sequence last) {
   for (sql::Statement* statement : {&s_.remove_chunks, &s_.remove}) {
     if (auto removed = statement->bind(1, static_cast<std::int64_t>(last)).run(); !removed)
-      return removed;
+      return failed(removed.error());
   }
   return {};
 }

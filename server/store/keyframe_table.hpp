@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/keyframe_reader.hpp"
 
 namespace runstone {
 

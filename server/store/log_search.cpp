@@ -1,4 +1,5 @@
 #include "server/store/log_search.hpp"
+#include "server/store/sqlite_result.hpp"
 
 #include <algorithm>
 
@@ -7,12 +8,12 @@ namespace runstone {
 StoreResult<TimeUs> LogSearch::time_of(Sequence seq) {
   if (!time_) {
     auto prepared = database_.prepare("SELECT time_us FROM edit_log WHERE log = 0 AND seq = ?1");
-    if (!prepared) return Unexpected<StoreError>{prepared.error()};
+    if (!prepared) return failed(prepared.error());
     time_ = *std::move(prepared);
   }
   const sql::ResetAtEnd reset_at_end(*time_);
   const auto row = time_->bind(1, static_cast<std::int64_t>(seq)).step();
-  if (!row) return Unexpected<StoreError>{row.error()};
+  if (!row) return failed(row.error());
   if (!*row) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, database_.file(),
                                    "edit_log seq=" + std::to_string(seq), "is missing"}};
@@ -25,7 +26,7 @@ StoreResult<Sequence> LogSearch::first_at(TimeUs time, Sequence first, Sequence 
   while (first < end) {
     const Sequence middle = first + (end - first) / 2;
     const auto there = time_of(middle);
-    if (!there) return Unexpected<StoreError>{there.error()};
+    if (!there) return failed(there.error());
     if (*there < time) {
       first = middle + 1;
     } else {
@@ -53,7 +54,7 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
         "?10";
   }
   auto rows = database_.prepare(text + " ORDER BY seq");
-  if (!rows) return rows;
+  if (!rows) return failed(rows.error());
   if (author) rows->bind(3, std::int64_t{*author});
   if (query.cause) rows->bind(4, static_cast<std::int64_t>(*query.cause));
   if (query.box) {
@@ -62,17 +63,17 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
     rows->bind(7, std::int64_t{box.max.y}).bind(8, std::int64_t{box.min.y});
     rows->bind(9, std::int64_t{box.max.z}).bind(10, std::int64_t{box.min.z});
   }
-  return rows;
+  return *std::move(rows);
 }
 
 StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query, Sequence first,
                                                           Sequence last) {
   std::vector<Sequence> found;
   const auto segments = segments_.find(query.box, query.author, first, last);
-  if (!segments) return Unexpected<StoreError>{segments.error()};
+  if (!segments) return failed(segments.error());
   // Any author stands for the one that each segment names.
   auto rows = matching(query, query.author.value_or(0));
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   for (const LogSegment& segment : *segments) {
     rows->rewind();
     rows->bind(1, static_cast<std::int64_t>(std::max(first, segment.first)))
@@ -80,7 +81,7 @@ StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query,
         .bind(3, std::int64_t{segment.author});
     for (;;) {
       const auto more = rows->step();
-      if (!more) return Unexpected<StoreError>{more.error()};
+      if (!more) return failed(more.error());
       if (!*more) break;
       found.push_back(static_cast<Sequence>(rows->integer(0)));
     }
@@ -95,29 +96,29 @@ StoreResult<void> LogSearch::run(const LogQuery& query, const std::function<bool
   if (first > last || query.from_us > query.until_us) return {};
   if (query.from_us != std::numeric_limits<TimeUs>::min()) {
     const auto from = first_at(query.from_us, first, last);
-    if (!from) return Unexpected<StoreError>{from.error()};
+    if (!from) return failed(from.error());
     first = *from;
   }
   if (query.until_us != std::numeric_limits<TimeUs>::max()) {
     const auto behind = first_at(query.until_us + 1, first, last);
-    if (!behind) return Unexpected<StoreError>{behind.error()};
+    if (!behind) return failed(behind.error());
     last = *behind - 1;
   }
   if (first > last) return {};
   if (query.box) {
     const auto found = in_segments(query, first, last);
-    if (!found) return Unexpected<StoreError>{found.error()};
+    if (!found) return failed(found.error());
     for (const Sequence seq : *found) {
       if (!each(seq)) break;
     }
     return {};
   }
   auto rows = matching(query, query.author);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   rows->bind(1, static_cast<std::int64_t>(first)).bind(2, static_cast<std::int64_t>(last));
   for (;;) {
     const auto more = rows->step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more || !each(static_cast<Sequence>(rows->integer(0)))) return {};
   }
 }

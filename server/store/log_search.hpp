@@ -5,9 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "common/sqlite/database.hpp"
 #include "server/store/log_query.hpp"
+#include "server/store/log_reader.hpp"
 #include "server/store/segment_table.hpp"
-#include "server/store/sql.hpp"
 
 namespace runstone {
 

@@ -6,6 +6,7 @@
 
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/record_checksum.hpp"
+#include "server/store/sqlite_result.hpp"
 
 namespace runstone {
 
@@ -64,22 +65,22 @@ StoreResult<LogTable> LogTable::open(sql::Database& database) {
   const auto strangers = database.integer(
       "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE "
       "log > 0)");
-  if (!strangers) return Unexpected<StoreError>{strangers.error()};
+  if (!strangers) return failed(strangers.error());
   if (*strangers != 0) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, database.file(), "edit_log",
                                    "holds rows of a log other than 0"}};
   }
   auto first = database.prepare("SELECT seq FROM edit_log WHERE log = 0 ORDER BY seq LIMIT 1");
-  if (!first) return Unexpected<StoreError>{first.error()};
+  if (!first) return failed(first.error());
   auto last = database.prepare(
       "SELECT seq, epoch, time_us FROM edit_log WHERE log = 0 ORDER BY seq DESC LIMIT 1");
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failed(last.error());
   auto insert = database.prepare(
       "INSERT INTO edit_log(log, seq, epoch, author, instance, client_seq, time_us, cause, "
       "subject, "
       "min_x, min_y, min_z, max_x, max_y, max_z, descriptor, checksum) "
       "VALUES(0, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)");
-  if (!insert) return Unexpected<StoreError>{insert.error()};
+  if (!insert) return failed(insert.error());
   return LogTable(database, *std::move(first), *std::move(last), *std::move(insert));
 }
 
@@ -92,7 +93,7 @@ StoreResult<LogRange> LogTable::range(const LogEnd& head) {
   const LogRange compacted{head.version.seq + 1, head};
   const sql::ResetAtEnd reset_first_at_end(first_);
   auto found = first_.step();
-  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!found) return failed(found.error());
   if (!*found) return compacted;
   const std::int64_t first = first_.integer(0);
   if (first < 1 || static_cast<Sequence>(first) < compacted.first) {
@@ -102,7 +103,7 @@ StoreResult<LogRange> LogTable::range(const LogEnd& head) {
   if (static_cast<Sequence>(first) > compacted.first) return corrupt(compacted.first, "is missing");
   const sql::ResetAtEnd reset_last_at_end(last_);
   found = last_.step();
-  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!found) return failed(found.error());
   const auto last = static_cast<Sequence>(last_.integer(0));
   const std::int64_t epoch = last_.integer(1);
   if (!*found || !in_range(epoch, std::numeric_limits<Epoch>::max())) {
@@ -114,32 +115,32 @@ StoreResult<LogRange> LogTable::range(const LogEnd& head) {
 StoreResult<void> LogTable::insert(const EditRecord& record) {
   const VoxelBox box = bounding_box(record.edit);
   const Bytes descriptor = encode(record.edit);
-  return insert_.bind(1, static_cast<std::int64_t>(record.version.seq))
-      .bind(2, std::int64_t{record.version.epoch})
-      .bind(3, std::int64_t{record.op.author})
-      .bind(4, static_cast<std::int64_t>(record.op.instance))
-      .bind(5, static_cast<std::int64_t>(record.op.seq))
-      .bind(6, record.time_us)
-      .bind(7, static_cast<std::int64_t>(record.cause))
-      .bind(8, static_cast<std::int64_t>(record.subject))
-      .bind(9, std::int64_t{box.min.x})
-      .bind(10, std::int64_t{box.min.y})
-      .bind(11, std::int64_t{box.min.z})
-      .bind(12, std::int64_t{box.max.x})
-      .bind(13, std::int64_t{box.max.y})
-      .bind(14, std::int64_t{box.max.z})
-      .bind(15, ByteView(descriptor))
-      .bind(16, static_cast<std::int64_t>(record_checksum(record)))
-      .run();
+  return store_result(insert_.bind(1, static_cast<std::int64_t>(record.version.seq))
+                          .bind(2, std::int64_t{record.version.epoch})
+                          .bind(3, std::int64_t{record.op.author})
+                          .bind(4, static_cast<std::int64_t>(record.op.instance))
+                          .bind(5, static_cast<std::int64_t>(record.op.seq))
+                          .bind(6, record.time_us)
+                          .bind(7, static_cast<std::int64_t>(record.cause))
+                          .bind(8, static_cast<std::int64_t>(record.subject))
+                          .bind(9, std::int64_t{box.min.x})
+                          .bind(10, std::int64_t{box.min.y})
+                          .bind(11, std::int64_t{box.min.z})
+                          .bind(12, std::int64_t{box.max.x})
+                          .bind(13, std::int64_t{box.max.y})
+                          .bind(14, std::int64_t{box.max.z})
+                          .bind(15, ByteView(descriptor))
+                          .bind(16, static_cast<std::int64_t>(record_checksum(record)))
+                          .run());
 }
 
-StoreResult<sql::Statement> LogTable::reader() { return database_->prepare(kSelect); }
+StoreResult<sql::Statement> LogTable::reader() { return store_result(database_->prepare(kSelect)); }
 
 StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq) {
   const sql::ResetAtEnd reset_at_end(reader);
   const auto there =
       reader.bind(1, static_cast<std::int64_t>(seq)).bind(2, static_cast<std::int64_t>(seq)).step();
-  if (!there) return Unexpected<StoreError>{there.error()};
+  if (!there) return failed(there.error());
   if (!*there) return corrupt(seq, "is missing");
   const auto record = record_of(reader);
   if (!record) return corrupt(seq, "checksum is wrong");
@@ -151,14 +152,14 @@ StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence
   const Sequence until = std::min(last_wanted, range.last.version.seq);
   // A statement of its own: `each` may read the log too.
   auto rows = database_->prepare(kSelect);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   Sequence next = std::max(first, range.first);
   Epoch epoch = 0;
   if (next <= until)
     rows->bind(1, static_cast<std::int64_t>(next)).bind(2, static_cast<std::int64_t>(until));
   for (; next <= until; ++next) {
     const auto more = rows->step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more || static_cast<Sequence>(rows->integer(0)) != next)
       return corrupt(next, "is missing");
     const auto record = record_of(*rows);

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 

@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-LogWriter::LogWriter(Store& store, Callbacks callbacks, Limits limits)
-    : store_(store),
+LogWriter::LogWriter(WorldSink& world, Callbacks callbacks, Limits limits)
+    : world_(world),
       callbacks_(std::move(callbacks)),
       limits_(limits),
       thread_([this] { run(); }) {}
@@ -118,7 +118,7 @@ void LogWriter::run() {
 
 StoreResult<void> LogWriter::write(const Batch& group) {
   if (group.room == 0) return {};
-  if (auto appended = store_.append(group.players, group.records); !appended) return appended;
+  if (auto appended = world_.append(group.players, group.records); !appended) return appended;
   {
     const std::lock_guard guard(mutex_);
     room_taken_ -= group.room;
@@ -132,11 +132,10 @@ StoreResult<void> LogWriter::write(const Batch& group) {
 
 StoreResult<void> LogWriter::write_slice(Job& job) {
   const std::size_t count = std::min(limits_.slice_chunks_max, job.chunks.size() - job.written);
-  const std::span<const std::pair<ChunkKey, ChunkPtr>> slice(job.chunks.data() + job.written,
-                                                             count);
+  const ChunkSpan slice(job.chunks.data() + job.written, count);
   const bool last = job.written + count == job.chunks.size();
   if (job.done) {
-    const auto saved = store_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
+    const auto saved = world_.save_keyframe(slice, last ? job.keyframe : std::nullopt);
     job.written = saved ? job.written + count : job.chunks.size();  // an error ends the job
     if (saved && last && job.keyframe) {
       const std::lock_guard guard(mutex_);
@@ -145,7 +144,7 @@ StoreResult<void> LogWriter::write_slice(Job& job) {
     if (job.is_over()) job.done(saved);
     return {};
   }
-  if (auto saved = store_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved)
+  if (auto saved = world_.save_snapshots(slice, last ? job.checkpoint : std::nullopt); !saved)
     return saved;
   job.written += count;
   const std::lock_guard guard(mutex_);

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/store.hpp"
+#include "server/store/world_sink.hpp"
 
 namespace runstone {
 
@@ -44,9 +44,10 @@ class LogWriter {
     std::size_t queued_records = 0;                                        // now
   };
 
-  /// Starts the thread, which alone uses `store` from now until stop() has returned.
-  LogWriter(Store& store, Callbacks callbacks, Limits limits);
-  LogWriter(Store& store, Callbacks callbacks) : LogWriter(store, std::move(callbacks), Limits{}) {}
+  /// Starts the thread, which alone uses `world` from now until stop() has returned.
+  LogWriter(WorldSink& world, Callbacks callbacks, Limits limits);
+  LogWriter(WorldSink& world, Callbacks callbacks)
+      : LogWriter(world, std::move(callbacks), Limits{}) {}
   /// stop().
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
@@ -63,7 +64,7 @@ class LogWriter {
   /// taken.
   bool save_snapshots(SnapshotChunks chunks, std::optional<Sequence> checkpoint);
   using KeyframeDone = std::function<void(StoreResult<void>)>;
-  /// Queues a job that calls Store::save_keyframe(), in slices, the keyframe with the last one. `done` is called from the
+  /// Queues a job that calls WorldSink::save_keyframe(), in slices, the keyframe with the last one. `done` is called from the
   /// writer thread when it is on disk or cannot be. False as above; `done` is not called then.
   bool save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> keyframe, KeyframeDone done);
   /// Writes everything that is queued, with all its callbacks, then ends the thread. May be called again. Not
@@ -98,7 +99,7 @@ class LogWriter {
   /// `job`: the one in hand, if any.
   void fail(const StoreError& error, Job* job);
 
-  Store& store_;
+  WorldSink& world_;
   const Callbacks callbacks_;
   const Limits limits_;
   mutable std::mutex mutex_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "server/store/sqlite_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -124,12 +125,12 @@ Result<WorldMeta, std::string> meta_of(const MetaRows& rows) {
 
 StoreResult<MetaTable> MetaTable::open(sql::Database& database) {
   auto all = database.prepare("SELECT key, value, checksum FROM meta ORDER BY key");
-  if (!all) return Unexpected<StoreError>{all.error()};
+  if (!all) return failed(all.error());
   auto one = database.prepare("SELECT key, value, checksum FROM meta WHERE key = ?1");
-  if (!one) return Unexpected<StoreError>{one.error()};
+  if (!one) return failed(one.error());
   auto write =
       database.prepare("INSERT OR REPLACE INTO meta(key, value, checksum) VALUES(?1, ?2, ?3)");
-  if (!write) return Unexpected<StoreError>{write.error()};
+  if (!write) return failed(write.error());
   return MetaTable(database.file(), *std::move(all), *std::move(one), *std::move(write));
 }
 
@@ -161,11 +162,11 @@ StoreResult<MetaRows> MetaTable::read_all() {
   MetaRows rows;
   for (;;) {
     const auto more = all_.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) return rows;
     const std::string key(all_.text(0));
     auto value = read_row(all_, key);
-    if (!value) return Unexpected<StoreError>{value.error()};
+    if (!value) return failed(value.error());
     rows.insert_or_assign(key, *std::move(value));
   }
 }
@@ -179,20 +180,20 @@ StoreResult<void> MetaTable::put(const std::string& key, const MetaValue& value)
   } else {
     write_.bind(2, ByteView(*std::get_if<Bytes>(&value)));
   }
-  return write_.bind(3, checksum_of(key, value)).run();
+  return store_result(write_.bind(3, checksum_of(key, value)).run());
 }
 
 StoreResult<MetaValue> MetaTable::get(const std::string& key) {
   const sql::ResetAtEnd reset_at_end(one_);
   const auto found = one_.bind(1, std::string_view(key)).step();
-  if (!found) return Unexpected<StoreError>{found.error()};
+  if (!found) return failed(found.error());
   if (!*found) return corrupt(key, "is missing");
   return read_row(one_, key);
 }
 
 StoreResult<std::uint64_t> MetaTable::counter(const std::string& key) {
   const auto value = get(key);
-  if (!value) return Unexpected<StoreError>{value.error()};
+  if (!value) return failed(value.error());
   const auto* integer = std::get_if<std::int64_t>(&*value);
   if (integer == nullptr || *integer < 0) return corrupt(key, "is no counter");
   return static_cast<std::uint64_t>(*integer);
@@ -200,7 +201,7 @@ StoreResult<std::uint64_t> MetaTable::counter(const std::string& key) {
 
 StoreResult<RowFold> MetaTable::fold(const std::string& key) {
   const auto value = get(key);
-  if (!value) return Unexpected<StoreError>{value.error()};
+  if (!value) return failed(value.error());
   const auto* bytes = std::get_if<Bytes>(&*value);
   if (bytes == nullptr || bytes->size() != 16) return corrupt(key, "is no fold");
   ByteReader reader(*bytes);
@@ -219,7 +220,7 @@ StoreResult<void> MetaTable::put_fold(const std::string& key, const RowFold& fol
 StoreResult<LogEnd> MetaTable::log_head() {
   const std::string key = "log_head";
   const auto value = get(key);
-  if (!value) return Unexpected<StoreError>{value.error()};
+  if (!value) return failed(value.error());
   const auto* bytes = std::get_if<Bytes>(&*value);
   if (bytes == nullptr || bytes->size() != 20) return corrupt(key, "is no place in a log");
   ByteReader reader(*bytes);

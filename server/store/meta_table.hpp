@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/log_reader.hpp"
 
 namespace runstone {
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "server/store/sqlite_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
@@ -28,25 +29,25 @@ std::int64_t checksum_of(std::int64_t author, std::int64_t instance, std::int64_
 
 StoreResult<PlayerTable> PlayerTable::open(sql::Database& database) {
   auto players = database.prepare("SELECT author, key, name, checksum FROM player ORDER BY author");
-  if (!players) return Unexpected<StoreError>{players.error()};
+  if (!players) return failed(players.error());
   const std::string mark_row =
       "SELECT author, instance, decided, last_us, checksum FROM player_instance";
   auto marks = database.prepare(mark_row + " ORDER BY author, instance");
-  if (!marks) return Unexpected<StoreError>{marks.error()};
+  if (!marks) return failed(marks.error());
   auto mark = database.prepare(mark_row + " WHERE author = ?1 AND instance = ?2");
-  if (!mark) return Unexpected<StoreError>{mark.error()};
+  if (!mark) return failed(mark.error());
   auto put = database.prepare(
       "INSERT INTO player(author, key, name, checksum) VALUES(?1, ?2, ?3, ?4) "
       "ON CONFLICT(author) DO UPDATE SET key = excluded.key, name = excluded.name, checksum = "
       "excluded.checksum");
-  if (!put) return Unexpected<StoreError>{put.error()};
+  if (!put) return failed(put.error());
   auto raise = database.prepare(
       "INSERT INTO player_instance(author, instance, decided, last_us, checksum) VALUES(?1, ?2, "
       "?3, ?4, ?5) "
       "ON CONFLICT(author, instance) DO UPDATE SET decided = excluded.decided, last_us = "
       "excluded.last_us, "
       "checksum = excluded.checksum");
-  if (!raise) return Unexpected<StoreError>{raise.error()};
+  if (!raise) return failed(raise.error());
   return PlayerTable(database.file(), *std::move(players), *std::move(marks), *std::move(mark),
                      *std::move(put), *std::move(raise));
 }
@@ -56,7 +57,7 @@ StoreResult<std::vector<PlayerRow>> PlayerTable::players() {
   std::vector<PlayerRow> rows;
   for (;;) {
     const auto more = players_.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) return rows;
     const std::int64_t author = players_.integer(0);
     const ByteView key = players_.blob(1);
@@ -79,10 +80,10 @@ StoreResult<std::vector<HighWater>> PlayerTable::high_waters() {
   std::vector<HighWater> rows;
   for (;;) {
     const auto more = marks_.step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) return rows;
     const auto mark = mark_of(marks_);
-    if (!mark) return Unexpected<StoreError>{mark.error()};
+    if (!mark) return failed(mark.error());
     rows.push_back(*mark);
   }
 }
@@ -105,11 +106,11 @@ StoreResult<HighWater> PlayerTable::mark_of(const sql::Statement& row) const {
 }
 
 StoreResult<void> PlayerTable::put(const PlayerRow& player) {
-  return put_.bind(1, std::int64_t{player.author})
-      .bind(2, ByteView(player.key))
-      .bind(3, std::string_view(player.name))
-      .bind(4, checksum_of(player.author, player.key, player.name))
-      .run();
+  return store_result(put_.bind(1, std::int64_t{player.author})
+                          .bind(2, ByteView(player.key))
+                          .bind(3, std::string_view(player.name))
+                          .bind(4, checksum_of(player.author, player.key, player.name))
+                          .run());
 }
 
 StoreResult<void> PlayerTable::raise(HighWater mark) {
@@ -117,21 +118,21 @@ StoreResult<void> PlayerTable::raise(HighWater mark) {
   {
     const sql::ResetAtEnd reset_at_end(mark_);
     const auto found = mark_.bind(1, std::int64_t{mark.author}).bind(2, instance).step();
-    if (!found) return Unexpected<StoreError>{found.error()};
+    if (!found) return failed(found.error());
     if (*found) {
       const auto stored = mark_of(mark_);
-      if (!stored) return Unexpected<StoreError>{stored.error()};
+      if (!stored) return failed(stored.error());
       mark.resolved = std::max(mark.resolved, stored->resolved);
       mark.last_us = std::max(mark.last_us, stored->last_us);
     }
   }
   const auto resolved = static_cast<std::int64_t>(mark.resolved);
-  return raise_.bind(1, std::int64_t{mark.author})
-      .bind(2, instance)
-      .bind(3, resolved)
-      .bind(4, mark.last_us)
-      .bind(5, checksum_of(mark.author, instance, resolved, mark.last_us))
-      .run();
+  return store_result(raise_.bind(1, std::int64_t{mark.author})
+                          .bind(2, instance)
+                          .bind(3, resolved)
+                          .bind(4, mark.last_us)
+                          .bind(5, checksum_of(mark.author, instance, resolved, mark.last_us))
+                          .run());
 }
 
 }  // namespace runstone

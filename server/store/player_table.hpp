@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "server/store/sql.hpp"
-#include "server/store/store.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/store_error.hpp"
+#include "server/world/player_rows.hpp"
 
 namespace runstone {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/sqlite_result.hpp"
 
 namespace runstone {
 namespace {
@@ -59,21 +60,21 @@ StoreResult<void> SegmentTable::write(Open& open) {
         "last_seq, "
         "author) "
         "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
-    if (!put) return Unexpected<StoreError>{put.error()};
+    if (!put) return failed(put.error());
     put_ = *std::move(put);
   }
   const LogSegment& segment = open.segment;
   open.is_written = true;
-  return put_->bind(1, static_cast<std::int64_t>(segment.first))
-      .bind(2, std::int64_t{segment.box.min.x})
-      .bind(3, std::int64_t{segment.box.max.x})
-      .bind(4, std::int64_t{segment.box.min.y})
-      .bind(5, std::int64_t{segment.box.max.y})
-      .bind(6, std::int64_t{segment.box.min.z})
-      .bind(7, std::int64_t{segment.box.max.z})
-      .bind(8, static_cast<std::int64_t>(segment.last))
-      .bind(9, std::int64_t{segment.author})
-      .run();
+  return store_result(put_->bind(1, static_cast<std::int64_t>(segment.first))
+                          .bind(2, std::int64_t{segment.box.min.x})
+                          .bind(3, std::int64_t{segment.box.max.x})
+                          .bind(4, std::int64_t{segment.box.min.y})
+                          .bind(5, std::int64_t{segment.box.max.y})
+                          .bind(6, std::int64_t{segment.box.min.z})
+                          .bind(7, std::int64_t{segment.box.max.z})
+                          .bind(8, static_cast<std::int64_t>(segment.last))
+                          .bind(9, std::int64_t{segment.author})
+                          .run());
 }
 
 StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<VoxelBox>& box,
@@ -89,7 +90,7 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
         " AND min_x < ?4 AND max_x > ?5 AND min_y < ?6 AND max_y > ?7 AND min_z < ?8 AND max_z > "
         "?9";
   auto rows = database_->prepare(text);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   rows->bind(1, static_cast<std::int64_t>(last)).bind(2, static_cast<std::int64_t>(first));
   if (author) rows->bind(3, std::int64_t{*author});
   if (box) {
@@ -103,7 +104,7 @@ StoreResult<std::vector<LogSegment>> SegmentTable::find(const std::optional<Voxe
   std::vector<LogSegment> segments;
   for (;;) {
     const auto more = rows->step();
-    if (!more) return Unexpected<StoreError>{more.error()};
+    if (!more) return failed(more.error());
     if (!*more) break;
     segments.push_back({static_cast<Sequence>(rows->integer(0)),
                         static_cast<Sequence>(rows->integer(1)),

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "common/edits/descriptor/edit_record.hpp"
-#include "server/store/sql.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/store_error.hpp"
 
 namespace runstone {
 

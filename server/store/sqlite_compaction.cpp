@@ -4,23 +4,24 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
 
 namespace runstone {
 
 StoreResult<void> SqliteStore::delete_up_to(const char* text, Sequence last) {
   auto statement = database_->prepare(text);
-  if (!statement) return Unexpected<StoreError>{statement.error()};
-  return statement->bind(1, static_cast<std::int64_t>(last)).run();
+  if (!statement) return failed(statement.error());
+  return store_result(statement->bind(1, static_cast<std::int64_t>(last)).run());
 }
 
 StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
   auto base_fold = meta_table_.fold(base_.fold_key());
-  if (!base_fold) return Unexpected<StoreError>{base_fold.error()};
+  if (!base_fold) return failed(base_fold.error());
   auto snapshot_fold = meta_table_.fold(snapshots_.fold_key());
-  if (!snapshot_fold) return Unexpected<StoreError>{snapshot_fold.error()};
+  if (!snapshot_fold) return failed(snapshot_fold.error());
   const auto snapshots = rows_of(snapshots_);
-  if (!snapshots) return Unexpected<StoreError>{snapshots.error()};
+  if (!snapshots) return failed(snapshots.error());
   std::map<ChunkKey, Version> saved_at;
   for (const StoredChunk& snapshot : *snapshots) saved_at[snapshot.key] = snapshot.version;
   for (const StoredChunk& stored : moment.chunks) {
@@ -29,7 +30,7 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
     const bool needs_snapshot = snapshot == saved_at.end() || snapshot->second < stored.version;
     if (stored.is_base && !needs_snapshot) continue;
     const auto chunk = load_stored(stored);
-    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!chunk) return failed(chunk.error());
     if (!chunk->has_value()) {
       return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
                                      "keyframe_chunk chunk=" + text_of(stored.key), "is missing"}};
@@ -51,20 +52,20 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
 StoreResult<void> SqliteStore::compact(Sequence keyframe) {
   auto compacted = write([&]() -> StoreResult<void> {
     const auto table = keyframe_table();
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     const auto moment = stored_moment(keyframe);  // proved
-    if (!moment) return Unexpected<StoreError>{moment.error()};
+    if (!moment) return failed(moment.error());
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     const auto range = log_.range(*head);
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     if (moment->at.version.seq != keyframe || keyframe < range->first) {
       return refuse("keyframe seq=" + std::to_string(keyframe), "is not there");
     }
     if (auto fits = check_keyframe({moment->at, 0, {}}, *range); !fits) return fits;
     if (auto completed = complete_base(*moment); !completed) return completed;
     const auto checkpoint = meta_table_.counter("checkpoint");
-    if (!checkpoint) return Unexpected<StoreError>{checkpoint.error()};
+    if (!checkpoint) return failed(checkpoint.error());
     if (*checkpoint < keyframe) {
       if (auto put = meta_table_.put("checkpoint", static_cast<std::int64_t>(keyframe)); !put)
         return put;
@@ -84,8 +85,8 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
 
 StoreResult<void> SqliteStore::shrink() {
   if (access_ == StoreAccess::read_only) return refuse("", "is open for reading only");
-  if (auto done = database_->run("VACUUM"); !done) return done;
-  return database_->run("PRAGMA wal_checkpoint(TRUNCATE)");
+  if (auto done = database_->run("VACUUM"); !done) return failed(done.error());
+  return store_result(database_->run("PRAGMA wal_checkpoint(TRUNCATE)"));
 }
 
 }  // namespace runstone

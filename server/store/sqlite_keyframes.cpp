@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "common/core/key_text.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -10,10 +11,10 @@ namespace runstone {
 StoreResult<KeyframeTable*> SqliteStore::keyframe_table() {
   if (!keyframes_) {
     const auto version = database_->integer("PRAGMA user_version");
-    if (!version) return Unexpected<StoreError>{version.error()};
+    if (!version) return failed(version.error());
     if (*version < kKeyframeFormat) return nullptr;
     auto table = KeyframeTable::open(*database_);
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     keyframes_ = *std::move(table);
   }
   return &*keyframes_;
@@ -21,13 +22,13 @@ StoreResult<KeyframeTable*> SqliteStore::keyframe_table() {
 
 StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() {
   const auto table = keyframe_table();
-  if (!table) return Unexpected<StoreError>{table.error()};
+  if (!table) return failed(table.error());
   return *table == nullptr ? std::vector<Keyframe>() : (*table)->all();
 }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::keyframe_chunks() {
   const auto table = keyframe_table();
-  if (!table) return Unexpected<StoreError>{table.error()};
+  if (!table) return failed(table.error());
   return *table == nullptr ? std::vector<StoredChunk>() : (*table)->rows(kSequenceMax);
 }
 
@@ -44,7 +45,7 @@ StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head)
 StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
   return at_one_moment<StoredMoment>([&]() -> StoreResult<StoredMoment> {
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     if (at < head->version.seq) {
       return refuse("edit_log", "begins at seq=" + std::to_string(head->version.seq + 1) +
                                     ": the world at seq=" + std::to_string(at) +
@@ -52,18 +53,18 @@ StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
                                     std::to_string(head->version.seq));
     }
     auto start = completed(*head);
-    if (!start) return Unexpected<StoreError>{start.error()};
+    if (!start) return failed(start.error());
     const auto table = keyframe_table();
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     auto all = keyframes();
-    if (!all) return Unexpected<StoreError>{all.error()};
+    if (!all) return failed(all.error());
     while (!all->empty() && all->back().at.version.seq > at) all->pop_back();
     if (all->empty()) return StoredMoment{*head, *std::move(start)};
     const Keyframe& newest = all->back();
     const auto rows = (*table)->rows(newest.at.version.seq);
-    if (!rows) return Unexpected<StoreError>{rows.error()};
+    if (!rows) return failed(rows.error());
     if (auto proved = (*table)->prove({newest}, *start, *rows); !proved)
-      return Unexpected<StoreError>{proved.error()};
+      return failed(proved.error());
     return StoredMoment{newest.at, newest_of(*std::move(start), *rows)};
   });
 }
@@ -72,7 +73,7 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
   KeyframeTable* keyframes = nullptr;
   if (!chunk.is_base) {
     const auto table = keyframe_table();
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     if (*table == nullptr) return std::optional<Chunk>();
     keyframes = *table;
   }
@@ -89,7 +90,7 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_kept(const ChunkKey& key, Sequence at) {
   const auto table = keyframe_table();
-  if (!table) return Unexpected<StoreError>{table.error()};
+  if (!table) return failed(table.error());
   if (*table == nullptr) return std::optional<Chunk>();
   return (*table)->newest(key, at, meta_.chunk_edge);
 }
@@ -101,9 +102,9 @@ StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const Lo
     what = "is not within the log";
   } else {
     auto reader = log_.reader();
-    if (!reader) return Unexpected<StoreError>{reader.error()};
+    if (!reader) return failed(reader.error());
     const auto record = log_.read_one(*reader, seq);
-    if (!record) return Unexpected<StoreError>{record.error()};
+    if (!record) return failed(record.error());
     if (LogEnd{record->version, record->time_us} != keyframe.at)
       what = "has another epoch or time than its edit";
   }
@@ -112,15 +113,15 @@ StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const Lo
       {StoreError::Kind::corrupt, file(), "keyframe seq=" + std::to_string(seq), std::move(what)}};
 }
 
-StoreResult<void> SqliteStore::save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+StoreResult<void> SqliteStore::save_keyframe(ChunkSpan chunks,
                                              const std::optional<Keyframe>& keyframe) {
   return write([&]() -> StoreResult<void> {
     const auto table = keyframe_table();
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     const auto range = log_.range(*head);
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version <= head->version || chunk->version > range->last.version) {
         return refuse("keyframe_chunk chunk=" + text_of(key), "its version is not within the log");
@@ -132,9 +133,9 @@ StoreResult<void> SqliteStore::save_keyframe(std::span<const std::pair<ChunkKey,
       return refuse(fits.error().where, fits.error().what);
     }
     const auto start = completed(*head);
-    if (!start) return Unexpected<StoreError>{start.error()};
+    if (!start) return failed(start.error());
     const auto rows = (*table)->rows(keyframe->at.version.seq);
-    if (!rows) return Unexpected<StoreError>{rows.error()};
+    if (!rows) return failed(rows.error());
     if (auto proved = (*table)->prove({*keyframe}, *start, *rows); !proved) {
       return refuse(proved.error().where, proved.error().what);
     }

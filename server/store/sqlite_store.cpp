@@ -1,4 +1,5 @@
 #include "server/store/sqlite_store.hpp"
+#include "common/sqlite/transaction.hpp"
 
 #include <algorithm>
 #include <map>
@@ -6,13 +7,14 @@
 
 #include "common/core/key_text.hpp"
 #include "server/store/log_search.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/world_schema.hpp"
 
 namespace runstone {
 
-SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock,
-                         StoreAccess access, MetaTable meta_table, PlayerTable player_table,
-                         LogTable log_table, ChunkTable base, ChunkTable snapshots)
+SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
+                         MetaTable meta_table, PlayerTable player_table, LogTable log_table,
+                         ChunkTable base, ChunkTable snapshots)
     : lock_(std::move(lock)),
       database_(std::move(database)),
       meta_table_(std::move(meta_table)),
@@ -34,12 +36,12 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
         {StoreError::Kind::io, file(), "", "an earlier commit failed; open the world again"}};
   }
   auto transaction = sql::Transaction::begin(*database_);
-  if (!transaction) return Unexpected<StoreError>{transaction.error()};
+  if (!transaction) return failed(transaction.error());
   if (auto done = body(); !done) {
     segments_.forget();
     return done;
   }
-  auto committed = transaction->commit();
+  auto committed = store_result(transaction->commit());
   broken_ = !committed.has_value();
   return committed;
 }
@@ -47,7 +49,7 @@ StoreResult<void> SqliteStore::write(const std::function<StoreResult<void>()>& b
 StoreResult<Epoch> SqliteStore::raise_epoch() {
   const Epoch next = epoch_ + 1;
   const auto written = write([&] { return meta_table_.put("epoch", std::int64_t{next}); });
-  if (!written) return Unexpected<StoreError>{written.error()};
+  if (!written) return failed(written.error());
   epoch_ = next;
   return epoch_;
 }
@@ -55,22 +57,16 @@ StoreResult<Epoch> SqliteStore::raise_epoch() {
 StoreResult<LogRange> SqliteStore::log_range() {
   return at_one_moment<LogRange>([&]() -> StoreResult<LogRange> {
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     return log_.range(*head);
   });
-}
-
-StoreResult<Sequence> SqliteStore::last_sequence() {
-  const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
-  return range->last.version.seq;
 }
 
 StoreResult<Sequence> SqliteStore::checkpoint() {
   const auto checkpoint = meta_table_.counter("checkpoint");
   if (!checkpoint) return checkpoint;
   const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failed(range.error());
   const Sequence last = range->last.version.seq;
   if (*checkpoint <= last && *checkpoint + 1 >= range->first) return checkpoint;
   const std::string log = *checkpoint > last
@@ -90,13 +86,13 @@ StoreResult<LogEnd> SqliteStore::log_head() { return meta_table_.log_head(); }
 
 StoreResult<bool> SqliteStore::has_base() {
   const auto fold = meta_table_.fold(base_.fold_key());
-  if (!fold) return Unexpected<StoreError>{fold.error()};
+  if (!fold) return failed(fold.error());
   return fold->count != 0;
 }
 
 StoreResult<void> SqliteStore::check_continues(std::span<const EditRecord> records, bool history) {
   const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failed(range.error());
   Sequence expected = range->last.version.seq;
   Epoch epoch = range->last.version.epoch;
   for (const EditRecord& record : records) {
@@ -158,22 +154,21 @@ StoreResult<void> SqliteStore::insert(std::span<const PlayerRow> players,
   return segments_.flush();
 }
 
-StoreResult<void> SqliteStore::save_chunks(ChunkTable& table,
-                                           std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) {
+StoreResult<void> SqliteStore::save_chunks(ChunkTable& table, ChunkSpan chunks) {
   if (chunks.empty()) return {};
   auto fold = meta_table_.fold(table.fold_key());
-  if (!fold) return Unexpected<StoreError>{fold.error()};
+  if (!fold) return failed(fold.error());
   for (const auto& [key, chunk] : chunks) {
     if (auto saved = table.save(key, *chunk, meta_.chunk_edge, *fold); !saved) return saved;
   }
   return meta_table_.put_fold(table.fold_key(), *fold);
 }
 
-StoreResult<void> SqliteStore::save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+StoreResult<void> SqliteStore::save_snapshots(ChunkSpan chunks,
                                               std::optional<Sequence> checkpoint) {
   return write([&]() -> StoreResult<void> {
     const auto range = log_range();
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     const Version durable = range->last.version;
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version > durable) {
@@ -183,17 +178,17 @@ StoreResult<void> SqliteStore::save_snapshots(std::span<const std::pair<ChunkKey
     if (auto saved = save_chunks(snapshots_, chunks); !saved) return saved;
     if (!checkpoint) return {};
     const auto before = meta_table_.counter("checkpoint");
-    if (!before) return Unexpected<StoreError>{before.error()};
+    if (!before) return failed(before.error());
     if (*checkpoint > durable.seq) return refuse("meta key=checkpoint", "is ahead of the log");
     if (*checkpoint < *before) return refuse("meta key=checkpoint", "may not move back");
     return meta_table_.put("checkpoint", static_cast<std::int64_t>(*checkpoint));
   });
 }
 
-StoreResult<void> SqliteStore::save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) {
+StoreResult<void> SqliteStore::save_base(ChunkSpan chunks) {
   return write([&]() -> StoreResult<void> {
     const auto last = last_sequence();
-    if (!last) return Unexpected<StoreError>{last.error()};
+    if (!last) return failed(last.error());
     if (*last != 0) return refuse("base", "cannot change once the log has edits");
     for (const auto& [key, chunk] : chunks) {
       if (chunk->version != Version{})
@@ -211,30 +206,28 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_base(const ChunkKey& key) {
   return base_.load(key, meta_.chunk_edge);
 }
 
-StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last,
-                                        const std::function<bool(const EditRecord&)>& each) {
+StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last, const EachRecord& each) {
   const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failed(range.error());
   return log_.read(*range, first, last, each);
 }
 
-StoreResult<void> SqliteStore::query_log(const LogQuery& query,
-                                         const std::function<bool(const EditRecord&)>& each) {
+StoreResult<void> SqliteStore::query_log(const LogQuery& query, const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
     const auto version = database_->integer("PRAGMA user_version");
-    if (!version) return Unexpected<StoreError>{version.error()};
+    if (!version) return failed(version.error());
     if (*version < kIndexedFormat)
       return refuse("edit_log", "has no indexes until it was opened for writing");
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     const auto range = log_.range(*head);
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     auto reader = log_.reader();
-    if (!reader) return Unexpected<StoreError>{reader.error()};
+    if (!reader) return failed(reader.error());
     StoreResult<void> read;
     auto searched = LogSearch(*database_, segments_, *range).run(query, [&](Sequence seq) {
       const auto record = log_.read_one(*reader, seq);
-      if (!record) read = Unexpected<StoreError>{record.error()};
+      if (!record) read = failed(record.error());
       return record.has_value() && each(*record);
     });
     return read ? searched : read;
@@ -244,9 +237,9 @@ StoreResult<void> SqliteStore::query_log(const LogQuery& query,
 StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
   return at_one_moment<Sequence>([&]() -> StoreResult<Sequence> {
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     const auto range = log_.range(*head);
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     if (head->version.seq > 0 && time_us < head->time_us) {
       return refuse("edit_log", "begins at seq=" + std::to_string(range->first) +
                                     ": what was before that time was compacted away");
@@ -261,7 +254,7 @@ StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
 
 StoreResult<void> SqliteStore::upgrade(std::uint32_t in_file) {
   const auto version = database_->integer("PRAGMA user_version");
-  if (!version) return Unexpected<StoreError>{version.error()};
+  if (!version) return failed(version.error());
   if (*version >= kStoreFormatVersion && in_file >= kStoreFormatVersion) return {};
   const auto upgraded = write([&]() -> StoreResult<void> {
     if (*version < kIndexedFormat) {
@@ -282,20 +275,20 @@ StoreResult<void> SqliteStore::upgrade(std::uint32_t in_file) {
   });
   if (!upgraded) return upgraded;
   // The mark must stand in the main file, where check_marks() of older programs looks.
-  return database_->run("PRAGMA wal_checkpoint(TRUNCATE)");
+  return store_result(database_->run("PRAGMA wal_checkpoint(TRUNCATE)"));
 }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::rows_of(ChunkTable& table) {
   return at_one_moment<std::vector<StoredChunk>>([&]() -> StoreResult<std::vector<StoredChunk>> {
     const auto fold = meta_table_.fold(table.fold_key());
-    if (!fold) return Unexpected<StoreError>{fold.error()};
+    if (!fold) return failed(fold.error());
     return table.rows(*fold);
   });
 }
 
 StoreResult<std::vector<std::pair<ChunkKey, Version>>> SqliteStore::snapshot_keys() {
   const auto rows = rows_of(snapshots_);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   std::vector<std::pair<ChunkKey, Version>> keys;
   keys.reserve(rows->size());
   for (const StoredChunk& row : *rows) keys.emplace_back(row.key, row.version);

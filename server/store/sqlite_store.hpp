@@ -4,15 +4,16 @@
 #include <memory>
 #include <string>
 
+#include "common/os/file_lock.hpp"
+#include "common/sqlite/database.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/keyframe_table.hpp"
 #include "server/store/log_table.hpp"
 #include "server/store/meta_table.hpp"
 #include "server/store/player_table.hpp"
 #include "server/store/segment_table.hpp"
-#include "server/store/sql.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/store.hpp"
-#include "server/store/writer_lock.hpp"
 
 namespace runstone {
 
@@ -34,49 +35,64 @@ class SqliteStore final : public Store {
   /// Everything is checked before the object exists: marks, meta rows, log ids. `in_file`: as of check_marks().
   static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder,
                                                         StoreAccess access,
-                                                        const SqliteOptions& options,
-                                                        WriterLock lock, std::uint32_t in_file);
+                                                        const SqliteOptions& options, FileLock lock,
+                                                        std::uint32_t in_file);
 
+  // WorldInfo
   const WorldMeta& meta() const override { return meta_; }
   const std::string& file() const override { return database_->file(); }
-  StoreResult<Epoch> raise_epoch() override;
-  Epoch epoch() const override { return epoch_; }
+
+  // LogReader
   StoreResult<LogRange> log_range() override;
   StoreResult<LogEnd> log_head() override;
-  StoreResult<bool> has_base() override;
-  StoreResult<Sequence> last_sequence() override;
-  StoreResult<Sequence> checkpoint() override;
-  StoreResult<std::vector<PlayerRow>> players() override;
-  StoreResult<std::vector<HighWater>> high_waters() override;
-  StoreResult<void> append(std::span<const PlayerRow> players,
-                           std::span<const EditRecord> records) override;
-  StoreResult<void> append_history(std::span<const PlayerRow> players,
-                                   std::span<const EditRecord> records) override;
-  StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
-                                   std::optional<Sequence> checkpoint) override;
-  StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
-                                  const std::optional<Keyframe>& keyframe) override;
-  StoreResult<void> compact(Sequence keyframe) override;
-  StoreResult<void> shrink() override;
-  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks) override;
-  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
-  StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
   StoreResult<Sequence> sequence_at(TimeUs time_us) override;
+  StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) override;
+  StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) override;
+
+  // ChunkReader
+  StoreResult<bool> has_base() override;
+  StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) override;
   StoreResult<std::vector<StoredChunk>> base_chunks() override;
-  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override;
+  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) override;
+  StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
+  StoreResult<Sequence> checkpoint() override;
+
+  // KeyframeReader
   StoreResult<std::vector<Keyframe>> keyframes() override;
+  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override;
   StoreResult<StoredMoment> stored_moment(Sequence at) override;
   StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) override;
   StoreResult<std::optional<Chunk>> load_kept(const ChunkKey& key, Sequence at) override;
-  StoreResult<void> read_log(Sequence first, Sequence last,
-                             const std::function<bool(const EditRecord&)>& each) override;
-  StoreResult<void> query_log(const LogQuery& query,
-                              const std::function<bool(const EditRecord&)>& each) override;
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override;
+
+  // PlayerReader
+  StoreResult<std::vector<PlayerRow>> players() override;
+  StoreResult<std::vector<HighWater>> high_waters() override;
+
+  // WorldReader
   StoreResult<void> check() override;
 
+  // WorldSink
+  StoreResult<void> append(std::span<const PlayerRow> players,
+                           std::span<const EditRecord> records) override;
+  StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override;
+  StoreResult<void> save_keyframe(ChunkSpan chunks,
+                                  const std::optional<Keyframe>& keyframe) override;
+
+  // ImportSink
+  StoreResult<void> save_base(ChunkSpan chunks) override;
+  StoreResult<void> append_history(std::span<const PlayerRow> players,
+                                   std::span<const EditRecord> records) override;
+
+  // Maintenance
+  StoreResult<void> compact(Sequence keyframe) override;
+  StoreResult<void> shrink() override;
+
+  // Store
+  StoreResult<Epoch> raise_epoch() override;
+  Epoch epoch() const override { return epoch_; }
+
  private:
-  SqliteStore(std::unique_ptr<sql::Database> database, WriterLock lock, StoreAccess access,
+  SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
               MetaTable meta_table, PlayerTable player_table, LogTable log_table, ChunkTable base,
               ChunkTable snapshots);
   /// Calls `body` in one transaction and commits. After a commit that failed nobody knows what is on disk, so
@@ -93,8 +109,7 @@ class SqliteStore final : public Store {
   StoreResult<void> complete_base(const StoredMoment& moment);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
-  StoreResult<void> save_chunks(ChunkTable& table,
-                                std::span<const std::pair<ChunkKey, ChunkPtr>> chunks);
+  StoreResult<void> save_chunks(ChunkTable& table, ChunkSpan chunks);
   /// Also that they are of the epoch of now or, for history, that epochs do not fall.
   StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
   /// In the caller's transaction.
@@ -111,7 +126,7 @@ class SqliteStore final : public Store {
 
   // Order matters: statements die before their database, and the database is closed before the lock is let
   // go.
-  WriterLock lock_;
+  FileLock lock_;
   std::unique_ptr<sql::Database> database_;
   MetaTable meta_table_;
   PlayerTable player_table_;
@@ -129,11 +144,11 @@ class SqliteStore final : public Store {
 template <class T>
 StoreResult<T> SqliteStore::at_one_moment(const std::function<StoreResult<T>()>& body) {
   if (const auto begun = database_->run("SAVEPOINT moment"); !begun) {
-    return Unexpected<StoreError>{begun.error()};
+    return failed(begun.error());
   }
   auto result = body();
   if (const auto ended = database_->run("RELEASE moment"); !ended && result) {
-    return Unexpected<StoreError>{ended.error()};
+    return failed(ended.error());
   }
   return result;
 }

@@ -1,7 +1,6 @@
 // Making and opening a world: files, lock, marks and pragmas. What happens with it afterwards is
 // sqlite_store.cpp.
 #include <fcntl.h>
-#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "common/sqlite/transaction.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -23,16 +24,15 @@ Unexpected<StoreError> failure(StoreError::Kind kind, const std::string& file, s
   return {{kind, file, "", std::move(what)}};
 }
 
-/// Asked through the VFS, because a test's files need not be the system's.
-StoreResult<bool> exists(const std::string& file, const std::string& vfs) {
-  sqlite3_vfs* system = sqlite3_vfs_find(vfs.empty() ? nullptr : vfs.c_str());
-  if (system == nullptr)
-    return failure(StoreError::Kind::bad_request, file, "no SQLite VFS is called " + vfs);
-  int there = 0;
-  if (system->xAccess(system, file.c_str(), SQLITE_ACCESS_EXISTS, &there) != SQLITE_OK) {
-    return failure(StoreError::Kind::io, file, "cannot be looked up");
-  }
-  return there != 0;
+/// Takes FOLDER/world.lock, so that at most one process writes the world. `file` names the world in the error.
+StoreResult<FileLock> take_lock(const std::string& folder, const std::string& file) {
+  const std::string path = folder + "/world.lock";
+  auto lock = FileLock::take(path);
+  if (lock) return *std::move(lock);
+  if (lock.error().is_held)
+    return failure(StoreError::Kind::locked, file,
+                   "another program is writing this world (it holds world.lock)");
+  return failure(StoreError::Kind::io, path, "cannot be written: " + lock.error().what);
 }
 
 /// The world's secret key is in the file, so nobody but its owner may read it. SQLite gives WAL and shared
@@ -81,28 +81,28 @@ const char* sync_pragma(bool sync) {
 
 StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool sync) {
   if (access == StoreAccess::read_only)
-    return database.run("PRAGMA query_only = ON; PRAGMA trusted_schema = OFF;");
-  if (auto set = database.run(sync_pragma(sync)); !set) return set;
+    return store_result(database.run("PRAGMA query_only = ON; PRAGMA trusted_schema = OFF;"));
+  if (auto set = database.run(sync_pragma(sync)); !set) return failed(set.error());
   const auto mode = database.text("PRAGMA journal_mode = WAL");
-  if (!mode) return Unexpected<StoreError>{mode.error()};
+  if (!mode) return failed(mode.error());
   if (*mode != "wal")
     return failure(StoreError::Kind::io, database.file(),
                    "the file system has no shared memory for WAL");
   // Overwritten rows of the log's tree hold nothing secret, so freed pages need not be zeroed.
-  return database.run(
-      "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
+  return store_result(database.run(
+      "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;"));
 }
 
 StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta, bool sync) {
   // The schema is committed in rollback mode and WAL comes afterwards: marks and tables then stand in the
   // main file itself, where check_marks() looks, and a crash before the commit leaves a file without them.
-  if (auto set = database.run("PRAGMA journal_mode = DELETE"); !set) return set;
-  if (auto set = database.run(sync_pragma(sync)); !set) return set;
+  if (auto set = database.run("PRAGMA journal_mode = DELETE"); !set) return failed(set.error());
+  if (auto set = database.run(sync_pragma(sync)); !set) return failed(set.error());
   auto transaction = sql::Transaction::begin(database);
-  if (!transaction) return Unexpected<StoreError>{transaction.error()};
+  if (!transaction) return failed(transaction.error());
   if (auto made = create_schema(database); !made) return made;
   auto table = MetaTable::open(database);
-  if (!table) return Unexpected<StoreError>{table.error()};
+  if (!table) return failed(table.error());
   MetaRows rows = rows_of(meta);
   rows["epoch"] = std::int64_t{0};
   rows["checkpoint"] = std::int64_t{0};
@@ -113,7 +113,7 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
     if (auto put = table->put_fold(key, {}); !put) return put;
   }
   if (auto put = table->put_log_head({}); !put) return put;
-  return transaction->commit();
+  return store_result(transaction->commit());
 }
 
 }  // namespace
@@ -121,43 +121,42 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
                                                             StoreAccess access,
                                                             const SqliteOptions& options,
-                                                            WriterLock lock,
-                                                            std::uint32_t in_file) {
+                                                            FileLock lock, std::uint32_t in_file) {
   const std::string file = file_in(folder);
   const auto mode =
       access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
   auto opened = sql::Database::open(file, mode, options.vfs);
-  if (!opened) return Unexpected<StoreError>{opened.error()};
+  if (!opened) return failed(opened.error());
   auto database = std::make_unique<sql::Database>(*std::move(opened));
   if (const auto set = set_pragmas(*database, access, options.sync); !set)
-    return Unexpected<StoreError>{set.error()};
+    return failed(set.error());
   // The marks may be those of a creation that was cut and has only now been rolled back.
   const auto id = database->integer("PRAGMA application_id");
-  if (!id) return Unexpected<StoreError>{id.error()};
+  if (!id) return failed(id.error());
   if (*id != std::int64_t{kApplicationId}) {
     return failure(StoreError::Kind::not_a_world, file,
                    "its creation was interrupted; delete it and create the world again");
   }
   auto meta_table = MetaTable::open(*database);
-  if (!meta_table) return Unexpected<StoreError>{meta_table.error()};
+  if (!meta_table) return failed(meta_table.error());
   auto players = PlayerTable::open(*database);
-  if (!players) return Unexpected<StoreError>{players.error()};
+  if (!players) return failed(players.error());
   auto log = LogTable::open(*database);
-  if (!log) return Unexpected<StoreError>{log.error()};
+  if (!log) return failed(log.error());
   auto base = ChunkTable::open(*database, ChunkTable::Kind::base);
-  if (!base) return Unexpected<StoreError>{base.error()};
+  if (!base) return failed(base.error());
   auto snapshots = ChunkTable::open(*database, ChunkTable::Kind::snapshot);
-  if (!snapshots) return Unexpected<StoreError>{snapshots.error()};
+  if (!snapshots) return failed(snapshots.error());
 
   const auto rows = meta_table->read_all();
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   auto meta = meta_of(*rows);
   if (!meta) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
                                    "is missing or has an impossible value"}};
   }
   const auto epoch = meta_table->counter("epoch");
-  if (!epoch) return Unexpected<StoreError>{epoch.error()};
+  if (!epoch) return failed(epoch.error());
 
   std::unique_ptr<SqliteStore> store(new SqliteStore(
       std::move(database), std::move(lock), access, *std::move(meta_table), *std::move(players),
@@ -165,8 +164,7 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   store->meta_ = *std::move(meta);
   store->epoch_ = static_cast<Epoch>(*epoch);
   if (access == StoreAccess::read_write) {
-    if (const auto upgraded = store->upgrade(in_file); !upgraded)
-      return Unexpected<StoreError>{upgraded.error()};
+    if (const auto upgraded = store->upgrade(in_file); !upgraded) return failed(upgraded.error());
   }
   return store;
 }
@@ -179,45 +177,44 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
     return failure(StoreError::Kind::bad_request, file,
                    "a new world cannot have this " + readable.error());
   }
-  if (const auto made = make_folder(folder, file); !made)
-    return Unexpected<StoreError>{made.error()};
-  auto lock = WriterLock::take(folder, file);
-  if (!lock) return Unexpected<StoreError>{lock.error()};
-  const auto there = exists(file, options.vfs);
-  if (!there) return Unexpected<StoreError>{there.error()};
+  if (const auto made = make_folder(folder, file); !made) return failed(made.error());
+  auto lock = take_lock(folder, file);
+  if (!lock) return failed(lock.error());
+  const auto there = sql::file_exists(file, options.vfs);
+  if (!there) return failed(there.error());
   if (*there) return failure(StoreError::Kind::exists, file, "is there already");
   if (options.vfs.empty()) {  // another VFS keeps its files where it likes
-    if (const auto made = make_file(file); !made) return Unexpected<StoreError>{made.error()};
+    if (const auto made = make_file(file); !made) return failed(made.error());
   }
   {
     auto database = sql::Database::open(file, sql::Database::Mode::create, options.vfs);
-    if (!database) return Unexpected<StoreError>{database.error()};
+    if (!database) return failed(database.error());
     if (const auto written = write_new_world(*database, meta, options.sync); !written) {
-      return Unexpected<StoreError>{written.error()};
+      return failed(written.error());
     }
   }
   auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock),
                                  kStoreFormatVersion);
-  if (!store) return Unexpected<StoreError>{store.error()};
+  if (!store) return failed(store.error());
   return std::unique_ptr<Store>(*std::move(store));
 }
 
 StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder, StoreAccess access,
                                                       const SqliteOptions& options) {
   const std::string file = file_in(folder);
-  const auto there = exists(file, options.vfs);
-  if (!there) return Unexpected<StoreError>{there.error()};
+  const auto there = sql::file_exists(file, options.vfs);
+  if (!there) return failed(there.error());
   if (!*there) return failure(StoreError::Kind::not_a_world, file, "is not there");
   const auto marked = check_marks(file, options.vfs);
-  if (!marked) return Unexpected<StoreError>{marked.error()};
-  WriterLock lock;
+  if (!marked) return failed(marked.error());
+  FileLock lock;
   if (access == StoreAccess::read_write) {
-    auto taken = WriterLock::take(folder, file);
-    if (!taken) return Unexpected<StoreError>{taken.error()};
+    auto taken = take_lock(folder, file);
+    if (!taken) return failed(taken.error());
     lock = *std::move(taken);
   }
   auto store = SqliteStore::open(folder, access, options, std::move(lock), *marked);
-  if (!store) return Unexpected<StoreError>{store.error()};
+  if (!store) return failed(store.error());
   return std::unique_ptr<Store>(*std::move(store));
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/core/key_text.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "server/store/world_schema.hpp"
 
@@ -11,18 +12,18 @@ namespace runstone {
 
 StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   const auto rows = rows_of(table);
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   // Both after the rows: a server that runs meanwhile only moves them on.
   const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failed(range.error());
   const auto head = meta_table_.log_head();
-  if (!head) return Unexpected<StoreError>{head.error()};
+  if (!head) return failed(head.error());
   // A base that held an edit of the log would have it applied twice.
   const bool is_base = &table == &base_;
   const Version newest = is_base ? head->version : range->last.version;
   for (const auto& [key, version, digest, completed] : *rows) {
     const auto chunk = table.load(key, meta_.chunk_edge);
-    if (!chunk) return Unexpected<StoreError>{chunk.error()};
+    if (!chunk) return failed(chunk.error());
     if (version > newest) {
       return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(),
                                      table.name() + " chunk=" + text_of(key),
@@ -36,9 +37,9 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
 StoreResult<void> SqliteStore::check_marks_cover_log() {
   // Before the marks: a server that runs meanwhile moves both on.
   const auto last = last_sequence();
-  if (!last) return Unexpected<StoreError>{last.error()};
+  if (!last) return failed(last.error());
   const auto rows = player_table_.high_waters();
-  if (!rows) return Unexpected<StoreError>{rows.error()};
+  if (!rows) return failed(rows.error());
   std::map<std::pair<AuthorId, ClientInstance>, HighWater> marks;
   for (const HighWater& row : *rows) marks[{row.author, row.instance}] = row;
   std::optional<OperationId> uncovered;
@@ -60,13 +61,13 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
 
 StoreResult<void> SqliteStore::check_segments_cover_log() {
   const auto version = database_->integer("PRAGMA user_version");
-  if (!version) return Unexpected<StoreError>{version.error()};
+  if (!version) return failed(version.error());
   if (*version < kIndexedFormat) return {};
   // Before the segments: a server that runs meanwhile moves both on.
   const auto range = log_range();
-  if (!range) return Unexpected<StoreError>{range.error()};
+  if (!range) return failed(range.error());
   const auto segments = segments_.find(std::nullopt, std::nullopt, 1, kSequenceMax);
-  if (!segments) return Unexpected<StoreError>{segments.error()};
+  if (!segments) return failed(segments.error());
   std::map<AuthorId, const LogSegment*> open;
   auto next = segments->begin();
   Sequence uncovered = 0;
@@ -90,21 +91,21 @@ StoreResult<void> SqliteStore::check_keyframes() {
   // All at one moment: a server that runs meanwhile adds rows and keyframes.
   return at_one_moment<void>([&]() -> StoreResult<void> {
     const auto table = keyframe_table();
-    if (!table) return Unexpected<StoreError>{table.error()};
+    if (!table) return failed(table.error());
     if (*table == nullptr) return {};
     const auto head = meta_table_.log_head();
-    if (!head) return Unexpected<StoreError>{head.error()};
+    if (!head) return failed(head.error());
     const auto range = log_.range(*head);
-    if (!range) return Unexpected<StoreError>{range.error()};
+    if (!range) return failed(range.error());
     const auto keyframes = (*table)->all();
-    if (!keyframes) return Unexpected<StoreError>{keyframes.error()};
+    if (!keyframes) return failed(keyframes.error());
     const auto start = completed(*head);
-    if (!start) return Unexpected<StoreError>{start.error()};
+    if (!start) return failed(start.error());
     const auto rows = (*table)->rows(kSequenceMax);
-    if (!rows) return Unexpected<StoreError>{rows.error()};
+    if (!rows) return failed(rows.error());
     for (const StoredChunk& row : *rows) {
       const auto loaded = load_stored(row);
-      if (!loaded) return Unexpected<StoreError>{loaded.error()};
+      if (!loaded) return failed(loaded.error());
       if (!loaded->has_value() || row.version <= head->version ||
           row.version > range->last.version) {
         return Unexpected<StoreError>{
@@ -123,12 +124,12 @@ StoreResult<void> SqliteStore::check_keyframes() {
 
 StoreResult<void> SqliteStore::check() {
   const auto verdict = database_->text("PRAGMA integrity_check(1)");
-  if (!verdict) return Unexpected<StoreError>{verdict.error()};
+  if (!verdict) return failed(verdict.error());
   if (*verdict != "ok")
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file(), "database", *verdict}};
-  if (const auto rows = meta_table_.read_all(); !rows) return Unexpected<StoreError>{rows.error()};
-  if (const auto rows = player_table_.players(); !rows) return Unexpected<StoreError>{rows.error()};
-  if (const auto seq = checkpoint(); !seq) return Unexpected<StoreError>{seq.error()};
+  if (const auto rows = meta_table_.read_all(); !rows) return failed(rows.error());
+  if (const auto rows = player_table_.players(); !rows) return failed(rows.error());
+  if (const auto seq = checkpoint(); !seq) return failed(seq.error());
   if (auto marks = check_marks_cover_log(); !marks) return marks;
   if (auto segments = check_segments_cover_log(); !segments) return segments;
   if (auto chunks = check_chunks(base_); !chunks) return chunks;

@@ -55,11 +55,11 @@ void draw_identity(WorldMeta& meta) {
   randombytes_buf(meta.server_key_seed.data(), meta.server_key_seed.size());
 }
 
-Result<std::unique_ptr<Generator>, std::string> generator_of(const Store& store) {
-  const WorldMeta& meta = store.meta();
+Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& world) {
+  const WorldMeta& meta = world.meta();
   auto generator = make_generator(meta.generator, meta.materials);
   if (!generator) {
-    return failure(store.file() + ": meta generator=" + meta.generator.name + " version=" +
+    return failure(world.file() + ": meta generator=" + meta.generator.name + " version=" +
                    std::to_string(meta.generator.version) + ": " + generator.error().what);
   }
   return *std::move(generator);

@@ -39,6 +39,6 @@ void draw_identity(WorldMeta& meta);
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
                                                       const WorldCreation& creation);
 /// The generator a world pins.
-Result<std::unique_ptr<Generator>, std::string> generator_of(const Store& store);
+Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& world);
 
 }  // namespace runstone

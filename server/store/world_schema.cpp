@@ -6,6 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "server/store/sqlite_result.hpp"
+#include "server/store/store.hpp"
+
 namespace runstone {
 
 namespace {
@@ -97,18 +100,24 @@ static_assert(kIndexedFormat == 2 && kKeyframeFormat == 3 && kStoreFormatVersion
 
 StoreResult<void> create_schema(sql::Database& database) {
   const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
-  if (auto set = database.run(mark.c_str()); !set) return set;
-  if (auto made = database.run(kTables); !made) return made;
+  if (auto set = database.run(mark.c_str()); !set) return failed(set.error());
+  if (auto made = database.run(kTables); !made) return failed(made.error());
   if (auto made = create_indexes(database); !made) return made;
   if (auto made = create_keyframes(database); !made) return made;
   return mark_newest(database);
 }
 
-StoreResult<void> create_indexes(sql::Database& database) { return database.run(kIndexes); }
+StoreResult<void> create_indexes(sql::Database& database) {
+  return store_result(database.run(kIndexes));
+}
 
-StoreResult<void> create_keyframes(sql::Database& database) { return database.run(kKeyframes); }
+StoreResult<void> create_keyframes(sql::Database& database) {
+  return store_result(database.run(kKeyframes));
+}
 
-StoreResult<void> mark_newest(sql::Database& database) { return database.run(kNewest); }
+StoreResult<void> mark_newest(sql::Database& database) {
+  return store_result(database.run(kNewest));
+}
 
 StoreResult<std::uint32_t> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {

@@ -5,7 +5,8 @@
 #include <string_view>
 
 #include "common/core/bytes.hpp"
-#include "server/store/sql.hpp"
+#include "common/sqlite/database.hpp"
+#include "server/store/store_error.hpp"
 
 namespace runstone {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/sqlite/transaction.hpp"
 #include "server/store/chunk_table.hpp"
 #include "server/store/meta_table.hpp"
-#include "server/store/sql.hpp"
 
 namespace runstone::test {
 

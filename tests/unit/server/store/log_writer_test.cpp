@@ -12,8 +12,8 @@ using namespace runstone::test;
 
 namespace {
 
-/// A store that keeps what it is given and can be held in the middle of a write.
-class FakeStore final : public Store {
+/// A sink that records its calls. A test can hold it in the middle of a write.
+class FakeSink final : public WorldSink {
  public:
   struct Commit {
     std::vector<PlayerRow> players;
@@ -27,12 +27,7 @@ class FakeStore final : public Store {
                            std::span<const EditRecord> records) override {
     return commit({{players.begin(), players.end()}, {records.begin(), records.end()}, 0, {}});
   }
-  StoreResult<void> append_history(std::span<const PlayerRow>,
-                                   std::span<const EditRecord>) override {
-    return {};
-  }
-  StoreResult<void> save_snapshots(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
-                                   std::optional<Sequence> checkpoint) override {
+  StoreResult<void> save_snapshots(ChunkSpan chunks, std::optional<Sequence> checkpoint) override {
     return commit({{}, {}, chunks.size(), checkpoint});
   }
   StoreResult<void> commit(Commit commit) {
@@ -51,70 +46,17 @@ class FakeStore final : public Store {
     return seq;
   }
 
-  const WorldMeta& meta() const override { return meta_; }
-  const std::string& file() const override { return file_; }
-  StoreResult<Epoch> raise_epoch() override { return Epoch{1}; }
-  Epoch epoch() const override { return 1; }
-  StoreResult<LogRange> log_range() override { return LogRange{1, {{1, last()}, 0}}; }
-  StoreResult<LogEnd> log_head() override { return LogEnd{}; }
-  StoreResult<bool> has_base() override { return false; }
-  StoreResult<Sequence> last_sequence() override { return last(); }
-  StoreResult<Sequence> checkpoint() override { return Sequence{0}; }
-  StoreResult<std::vector<PlayerRow>> players() override { return std::vector<PlayerRow>(); }
-  StoreResult<std::vector<HighWater>> high_waters() override { return std::vector<HighWater>(); }
-  StoreResult<void> save_keyframe(std::span<const std::pair<ChunkKey, ChunkPtr>> chunks,
+  StoreResult<void> save_keyframe(ChunkSpan chunks,
                                   const std::optional<Keyframe>& keyframe) override {
     if (refuse_keyframes)
       return Unexpected<StoreError>{{StoreError::Kind::full, "w", "keyframe", "disk full"}};
     return commit({{}, {}, chunks.size(), {}, keyframe});
   }
-  StoreResult<void> compact(Sequence) override { return {}; }
-  StoreResult<void> shrink() override { return {}; }
-  StoreResult<void> save_base(std::span<const std::pair<ChunkKey, ChunkPtr>>) override {
-    return {};
-  }
-  StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey&) override {
-    return std::optional<Chunk>();
-  }
-  StoreResult<std::optional<Chunk>> load_base(const ChunkKey&) override {
-    return std::optional<Chunk>();
-  }
-  StoreResult<Sequence> sequence_at(TimeUs) override { return last(); }
-  StoreResult<std::vector<StoredChunk>> base_chunks() override {
-    return std::vector<StoredChunk>();
-  }
-  StoreResult<std::vector<StoredChunk>> keyframe_chunks() override {
-    return std::vector<StoredChunk>();
-  }
-  StoreResult<std::vector<Keyframe>> keyframes() override { return std::vector<Keyframe>(); }
-  StoreResult<StoredMoment> stored_moment(Sequence) override { return StoredMoment(); }
-  StoreResult<std::optional<Chunk>> load_kept(const ChunkKey&, Sequence) override {
-    return std::optional<Chunk>();
-  }
-  StoreResult<std::optional<Chunk>> load_stored(const StoredChunk&) override {
-    return std::optional<Chunk>();
-  }
-  StoreResult<void> read_log(Sequence, Sequence,
-                             const std::function<bool(const EditRecord&)>&) override {
-    return {};
-  }
-  StoreResult<void> query_log(const LogQuery&,
-                              const std::function<bool(const EditRecord&)>&) override {
-    return {};
-  }
-  StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() override {
-    return std::vector<std::pair<ChunkKey, Version>>();
-  }
-  StoreResult<void> check() override { return {}; }
 
   std::counting_semaphore<> entered{0}, gate{0};
   std::size_t fail_at = ~std::size_t{0};
   bool refuse_keyframes = false;
   std::vector<Commit> commits;  // read it after stop(), or while the writer waits at the gate
-
- private:
-  WorldMeta meta_;
-  std::string file_ = "w";
 };
 
 LogWriter::SnapshotChunks chunks(std::size_t count) {
@@ -129,21 +71,21 @@ LogWriter::SnapshotChunks chunks(std::size_t count) {
 }  // namespace
 
 TEST_CASE("everything that queued during one commit goes into the next", "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   SplitMix64 rng(1);
   std::vector<Sequence> durable;
-  LogWriter writer(store, {[&](Sequence seq) { durable.push_back(seq); }, {}, {}});
+  LogWriter writer(sink, {[&](Sequence seq) { durable.push_back(seq); }, {}, {}});
   writer.append({}, sample_records(rng, 1, 1, 1));
-  store.entered.acquire();  // the first commit is "on its way to the disk"
+  sink.entered.acquire();  // the first commit is "on its way to the disk"
   for (Sequence seq = 2; seq <= 10; ++seq)
     writer.append({sample_player(static_cast<AuthorId>(seq))}, sample_records(rng, 1, seq, 1));
   CHECK(writer.counters().queued_records == 10);
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
-  REQUIRE(store.commits.size() == 2);
-  CHECK(store.commits[0].records.size() == 1);
-  CHECK(store.commits[1].records.size() == 9);
-  CHECK(store.commits[1].players.size() == 9);
+  REQUIRE(sink.commits.size() == 2);
+  CHECK(sink.commits[0].records.size() == 1);
+  CHECK(sink.commits[1].records.size() == 9);
+  CHECK(sink.commits[1].players.size() == 9);
   CHECK(durable == std::vector<Sequence>{1, 10});
   CHECK(writer.counters().commits == 2);
   CHECK(writer.counters().records == 10);
@@ -151,83 +93,83 @@ TEST_CASE("everything that queued during one commit goes into the next", "[store
 }
 
 TEST_CASE("a group ends before its limit, and a batch is never divided", "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   SplitMix64 rng(2);
   LogWriter::Limits limits;
   limits.commit_records_max = 10;
-  LogWriter writer(store, {}, limits);
+  LogWriter writer(sink, {}, limits);
   writer.append({}, sample_records(rng, 1, 1, 1));
-  store.entered.acquire();
+  sink.entered.acquire();
   writer.append({}, sample_records(rng, 1, 2, 6));
   writer.append({}, sample_records(rng, 1, 8, 4));
   writer.append({}, sample_records(rng, 1, 12, 25));
   writer.append({}, sample_records(rng, 1, 37, 1));
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
   std::vector<std::size_t> sizes;
-  for (const auto& commit : store.commits) sizes.push_back(commit.records.size());
+  for (const auto& commit : sink.commits) sizes.push_back(commit.records.size());
   CHECK(sizes == std::vector<std::size_t>{1, 10, 25, 1});
 }
 
 TEST_CASE("a full queue says so until a commit has made room", "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   SplitMix64 rng(3);
   LogWriter::Limits limits;
   limits.queued_records_max = 8;
   std::counting_semaphore<> durable{0};
-  LogWriter writer(store, {[&](Sequence) { durable.release(); }, {}, {}}, limits);
+  LogWriter writer(sink, {[&](Sequence) { durable.release(); }, {}, {}}, limits);
   CHECK(writer.has_room(8));
   CHECK_FALSE(writer.has_room(9));
   writer.append({}, sample_records(rng, 1, 1, 3));
-  store.entered.acquire();
+  sink.entered.acquire();
   CHECK(writer.has_room(5));  // what is being written still takes room
   CHECK_FALSE(writer.has_room(6));
   writer.append({}, sample_records(rng, 1, 4, 5));
   CHECK(writer.has_room(0));
   CHECK_FALSE(writer.has_room(1));
-  store.gate.release();
+  sink.gate.release();
   durable.acquire();
   CHECK(writer.has_room(3));
   CHECK_FALSE(writer.has_room(4));
-  store.open_gate();
+  sink.open_gate();
   durable.acquire();
   CHECK(writer.has_room(8));
   writer.stop();
   CHECK_FALSE(writer.has_room(1));
-  CHECK(store.last() == 8);
+  CHECK(sink.last() == 8);
 }
 
 TEST_CASE("players without records are written, and take the room of one record until then",
           "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   LogWriter::Limits limits;
   limits.queued_records_max = 2;
-  LogWriter writer(store, {}, limits);
+  LogWriter writer(sink, {}, limits);
   writer.append({}, {});  // nothing: takes no room and makes no commit
   CHECK(writer.has_room(2));
   writer.append({sample_player(1), sample_player(2)}, {});
-  store.entered.acquire();
+  sink.entered.acquire();
   CHECK(writer.has_room(1));
   writer.append({sample_player(3)}, {});
   CHECK_FALSE(writer.has_room(1));
-  store.open_gate();
-  store.entered.acquire();  // the second commit: the first one's room is free again
+  sink.open_gate();
+  sink.entered.acquire();  // the second commit: the first one's room is free again
   CHECK(writer.has_room(1));
   writer.stop();
-  REQUIRE(store.commits.size() == 2);
-  CHECK(store.commits[0].players.size() == 2);
-  CHECK(store.commits[1].players.size() == 1);
+  REQUIRE(sink.commits.size() == 2);
+  CHECK(sink.commits[0].players.size() == 2);
+  CHECK(sink.commits[1].players.size() == 1);
   CHECK(writer.counters().queued_records == 0);
 }
 
 TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   SplitMix64 rng(4);
   LogWriter::Limits limits;
   limits.slice_chunks_max = 4;
   std::size_t saved = 0;
   std::optional<Sequence> checkpoint;
-  LogWriter writer(store,
+  LogWriter writer(sink,
                    {{},
                     [&](LogWriter::SnapshotChunks job, std::optional<Sequence> upto) {
                       saved += job.size();
@@ -236,18 +178,18 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
                     {}},
                    limits);
   REQUIRE(writer.save_snapshots(chunks(10), 77));
-  store.entered.acquire();  // in the first slice
+  sink.entered.acquire();  // in the first slice
   writer.append({}, sample_records(rng, 1, 1, 2));
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
-  REQUIRE(store.commits.size() == 4);
-  CHECK(store.commits[0].chunks == 4);
-  CHECK(store.commits[1].records.size() == 2);
-  CHECK(store.commits[2].chunks == 4);
-  CHECK(store.commits[3].chunks == 2);
-  CHECK_FALSE(store.commits[0].checkpoint.has_value());  // only the whole job moves the checkpoint
-  CHECK_FALSE(store.commits[2].checkpoint.has_value());
-  CHECK(store.commits[3].checkpoint == Sequence{77});
+  REQUIRE(sink.commits.size() == 4);
+  CHECK(sink.commits[0].chunks == 4);
+  CHECK(sink.commits[1].records.size() == 2);
+  CHECK(sink.commits[2].chunks == 4);
+  CHECK(sink.commits[3].chunks == 2);
+  CHECK_FALSE(sink.commits[0].checkpoint.has_value());  // only the whole job moves the checkpoint
+  CHECK_FALSE(sink.commits[2].checkpoint.has_value());
+  CHECK(sink.commits[3].checkpoint == Sequence{77});
   CHECK(saved == 10);
   CHECK(checkpoint == Sequence{77});
   CHECK(writer.counters().snapshots == 10);
@@ -255,74 +197,74 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
 
 TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing",
           "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   LogWriter::Limits limits;
   limits.jobs_max = 2;
   std::vector<std::size_t> saved;
   LogWriter writer(
-      store, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
+      sink, {{}, [&](LogWriter::SnapshotChunks job, auto) { saved.push_back(job.size()); }, {}},
       limits);
   REQUIRE(writer.save_snapshots(chunks(1), {}));
-  store.entered.acquire();
+  sink.entered.acquire();
   CHECK(writer.save_snapshots({}, 5));  // a job of no chunks moves the checkpoint alone
   CHECK_FALSE(writer.save_snapshots(chunks(3), {}));
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
   CHECK(saved == std::vector<std::size_t>{1, 0});
-  REQUIRE(store.commits.size() == 2);
-  CHECK(store.commits[1].checkpoint == Sequence{5});
+  REQUIRE(sink.commits.size() == 2);
+  CHECK(sink.commits[1].checkpoint == Sequence{5});
 }
 
 TEST_CASE("after a failure nothing more is written or acknowledged", "[store][log-writer]") {
-  FakeStore store;
-  store.fail_at = 1;
+  FakeSink sink;
+  sink.fail_at = 1;
   SplitMix64 rng(5);
   std::vector<Sequence> durable;
   std::vector<std::string> failures;
   std::counting_semaphore<> failed{0};
-  LogWriter writer(store, {[&](Sequence seq) { durable.push_back(seq); },
-                           {},
-                           [&](StoreError error) {
-                             failures.push_back(error.message());
-                             failed.release();
-                           }});
+  LogWriter writer(sink, {[&](Sequence seq) { durable.push_back(seq); },
+                          {},
+                          [&](StoreError error) {
+                            failures.push_back(error.message());
+                            failed.release();
+                          }});
   writer.append({}, sample_records(rng, 1, 1, 2));
-  store.entered.acquire();
+  sink.entered.acquire();
   writer.append({}, sample_records(rng, 1, 3, 2));
   REQUIRE(writer.save_snapshots(chunks(2), {}));
-  store.open_gate();
+  sink.open_gate();
   failed.acquire();
   CHECK_FALSE(writer.has_room(0));
   writer.append({}, sample_records(rng, 1, 5, 2));  // dropped: it will never be acknowledged
   CHECK_FALSE(writer.save_snapshots(chunks(1), {}));
   writer.stop();
-  CHECK(store.commits.size() == 1);
+  CHECK(sink.commits.size() == 1);
   CHECK(durable == std::vector<Sequence>{2});
   CHECK(failures == std::vector<std::string>{"w: disk full"});
 }
 
 TEST_CASE("a keyframe comes with the last slice of its chunks, behind records",
           "[store][log-writer]") {
-  FakeStore store;
+  FakeSink sink;
   SplitMix64 rng(7);
   LogWriter::Limits limits;
   limits.slice_chunks_max = 4;
-  LogWriter writer(store, {}, limits);
+  LogWriter writer(sink, {}, limits);
   std::vector<bool> done;
   const Keyframe keyframe{{{1, 2}, 3}, 10, {}};
   REQUIRE(writer.save_keyframe(
       chunks(6), keyframe, [&](StoreResult<void> result) { done.push_back(result.has_value()); }));
-  store.entered.acquire();
+  sink.entered.acquire();
   writer.append({}, sample_records(rng, 1, 1, 2));
   CHECK(done.empty());
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
-  REQUIRE(store.commits.size() == 3);
-  CHECK(store.commits[0].chunks == 4);
-  CHECK_FALSE(store.commits[0].keyframe.has_value());
-  CHECK(store.commits[1].records.size() == 2);
-  CHECK(store.commits[2].chunks == 2);
-  CHECK(store.commits[2].keyframe == keyframe);
+  REQUIRE(sink.commits.size() == 3);
+  CHECK(sink.commits[0].chunks == 4);
+  CHECK_FALSE(sink.commits[0].keyframe.has_value());
+  CHECK(sink.commits[1].records.size() == 2);
+  CHECK(sink.commits[2].chunks == 2);
+  CHECK(sink.commits[2].keyframe == keyframe);
   CHECK(done == std::vector<bool>{true});
   CHECK(writer.counters().keyframes == 1);
   CHECK(writer.counters().snapshots == 0);
@@ -330,15 +272,15 @@ TEST_CASE("a keyframe comes with the last slice of its chunks, behind records",
 
 TEST_CASE("a keyframe that cannot be written ends its job and nothing else",
           "[store][log-writer]") {
-  FakeStore store;
-  store.refuse_keyframes = true;
-  store.open_gate();
+  FakeSink sink;
+  sink.refuse_keyframes = true;
+  sink.open_gate();
   SplitMix64 rng(8);
   LogWriter::Limits limits;
   limits.slice_chunks_max = 1;
   bool failed = false;
   std::vector<std::string> done;
-  LogWriter writer(store, {{}, {}, [&](StoreError) { failed = true; }}, limits);
+  LogWriter writer(sink, {{}, {}, [&](StoreError) { failed = true; }}, limits);
   REQUIRE(writer.save_keyframe(chunks(3), Keyframe{}, [&](StoreResult<void> result) {
     done.push_back(result.error().message());
   }));
@@ -347,14 +289,14 @@ TEST_CASE("a keyframe that cannot be written ends its job and nothing else",
   writer.stop();
   CHECK(done == std::vector<std::string>{"w: keyframe: disk full"});
   CHECK_FALSE(failed);
-  CHECK(store.last() == 2);
+  CHECK(sink.last() == 2);
   CHECK(writer.counters().snapshots == 1);
   CHECK(writer.counters().keyframes == 0);
 }
 
 TEST_CASE("who waits for a keyframe is told when the writer fails", "[store][log-writer]") {
-  FakeStore store;
-  store.fail_at = 1;
+  FakeSink sink;
+  sink.fail_at = 1;
   SplitMix64 rng(9);
   LogWriter::Limits limits;
   limits.slice_chunks_max = 1;
@@ -362,12 +304,12 @@ TEST_CASE("who waits for a keyframe is told when the writer fails", "[store][log
   const auto tell = [&](StoreResult<void> result) {
     done.push_back(result ? "fine" : result.error().message());
   };
-  LogWriter writer(store, {}, limits);
+  LogWriter writer(sink, {}, limits);
   REQUIRE(writer.save_keyframe(chunks(3), Keyframe{}, tell));
-  store.entered.acquire();  // in its first slice, which succeeds
+  sink.entered.acquire();  // in its first slice, which succeeds
   REQUIRE(writer.save_keyframe(chunks(1), Keyframe{}, tell));
   writer.append({}, sample_records(rng, 1, 1, 2));  // fails
-  store.open_gate();
+  sink.open_gate();
   writer.stop();
   CHECK(done == std::vector<std::string>{"w: disk full", "w: disk full"});
   CHECK_FALSE(writer.save_keyframe(chunks(1), Keyframe{}, tell));

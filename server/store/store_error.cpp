@@ -1,4 +1,4 @@
-#include "server/store/store.hpp"
+#include "server/store/store_error.hpp"
 
 namespace runstone {
 

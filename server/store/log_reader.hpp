@@ -1,0 +1,49 @@
+// LogReader: reading of the edit log.
+// A compaction moves the beginning of the log: edits before it are in the base alone.
+#pragma once
+#include <functional>
+
+#include "common/core/ids.hpp"
+#include "common/edits/descriptor/edit_record.hpp"
+#include "server/store/log_query.hpp"
+#include "server/store/store_error.hpp"
+#include "server/store/world_info.hpp"
+
+namespace runstone {
+
+/// A place in the log. It is version (0, 0) and time 0 before the first edit.
+struct LogEnd {
+  Version version;
+  TimeUs time_us = 0;  // UTC, of that edit
+  friend bool operator==(const LogEnd&, const LogEnd&) = default;
+};
+
+/// The extent of the log: the edits first .. last.version.seq. It is empty if `first` is greater.
+struct LogRange {
+  Sequence first = 1;
+  LogEnd last;  // the last edit ever ordered, compacted or not
+  friend bool operator==(const LogRange&, const LogRange&) = default;
+};
+
+class LogReader : public virtual WorldInfo {
+ public:
+  using EachRecord = std::function<bool(const EditRecord&)>;
+
+  /// Returns the extent of the log. All of it is durable.
+  virtual StoreResult<LogRange> log_range() = 0;
+  /// Returns the last edit that was compacted away; the log begins after it. It is (0, 0) and 0 if there is none.
+  virtual StoreResult<LogEnd> log_head() = 0;
+  /// Returns the last sequence ever logged, compacted or not, or 0 if there is none.
+  StoreResult<Sequence> last_sequence();
+  /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the sequence before
+  /// the first edit of the log. Fails (bad_request) if all are later and one of them was compacted away.
+  virtual StoreResult<Sequence> sequence_at(TimeUs time_us) = 0;
+  /// Calls `each` for the records first..last (both included) in order, until it returns false. Records outside
+  /// log_range() are left out. Each checksum is verified, and so is that no sequence is missing.
+  virtual StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) = 0;
+  /// Calls `each` for the records that answer the query, in order, until it returns false. Fails (bad_request) if
+  /// the world has format 1 and is open for reading only: that format has no indexes.
+  virtual StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) = 0;
+};
+
+}  // namespace runstone

@@ -1,0 +1,20 @@
+// PlayerReader: reading of players and of the watermarks of their operations.
+#pragma once
+#include <vector>
+
+#include "server/store/store_error.hpp"
+#include "server/world/player_rows.hpp"
+
+namespace runstone {
+
+class PlayerReader {
+ public:
+  virtual ~PlayerReader() = default;
+
+  /// Returns all players, ascending by author.
+  virtual StoreResult<std::vector<PlayerRow>> players() = 0;
+  /// Returns the watermarks of all client instances. Compactions keep them.
+  virtual StoreResult<std::vector<HighWater>> high_waters() = 0;
+};
+
+}  // namespace runstone

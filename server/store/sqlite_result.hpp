@@ -1,0 +1,25 @@
+// Conversions from errors of the database to errors of the store, for the tables and SqliteStore.
+#pragma once
+#include <utility>
+
+#include "common/sqlite/sql_error.hpp"
+#include "server/store/store_error.hpp"
+
+namespace runstone {
+
+/// Shortens `return Unexpected<StoreError>{...}`.
+Unexpected<StoreError> failed(const sql::Error& error);
+inline Unexpected<StoreError> failed(const StoreError& error) { return {error}; }
+
+inline StoreResult<void> store_result(const sql::Result<void>& result) {
+  if (!result) return failed(result.error());
+  return {};
+}
+
+template <class T>
+StoreResult<T> store_result(sql::Result<T> result) {
+  if (!result) return failed(result.error());
+  return *std::move(result);
+}
+
+}  // namespace runstone

@@ -1,0 +1,33 @@
+// StoreError: the failure of a call to a store, and StoreResult.
+#pragma once
+#include <string>
+
+#include "common/core/result.hpp"
+
+namespace runstone {
+
+struct StoreError {
+  enum class Kind {
+    io,
+    not_a_world,
+    newer_version,
+    corrupt,
+    exists,
+    full,
+    bad_request,
+    locked,
+    cancelled
+  };
+  Kind kind = Kind::io;
+  std::string file;  // the database
+  std::string
+      where;  // table and row, e.g. "edit_log seq=9120" or "snapshot chunk=1,0,-3"; may be empty
+  std::string what;
+  /// Returns one line: "FILE: WHERE: WHAT".
+  std::string message() const;
+};
+
+template <class T>
+using StoreResult = Result<T, StoreError>;
+
+}  // namespace runstone

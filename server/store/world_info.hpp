@@ -1,0 +1,34 @@
+// WorldInfo: what every reader of a world knows: the values that are pinned when a world is created, and its name.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "common/core/coords.hpp"
+#include "common/core/ids.hpp"
+#include "common/generate/generator.hpp"
+#include "common/materials/material_table.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+/// The values that `meta` pins when a world is created. None of them changes afterwards.
+struct WorldMeta {
+  WorldId world_id{};
+  std::uint16_t chunk_edge = 32;
+  GeneratorPin generator;
+  MaterialTable materials;
+  std::array<std::uint8_t, 32> server_key_seed{};  // Ed25519 identity of this world's server
+  WorldPos spawn;
+};
+
+class WorldInfo {
+ public:
+  virtual ~WorldInfo() = default;
+
+  virtual const WorldMeta& meta() const = 0;
+  /// Returns the name of the database, as errors show it.
+  virtual const std::string& file() const = 0;
+};
+
+}  // namespace runstone

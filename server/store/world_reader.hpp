@@ -1,0 +1,19 @@
+// WorldReader: everything that can be read of a world. A function that needs less takes one of the smaller interfaces.
+#pragma once
+#include "server/store/chunk_reader.hpp"
+#include "server/store/keyframe_reader.hpp"
+#include "server/store/log_reader.hpp"
+#include "server/store/player_reader.hpp"
+
+namespace runstone {
+
+class WorldReader : public LogReader,
+                    public ChunkReader,
+                    public KeyframeReader,
+                    public PlayerReader {
+ public:
+  /// Reads and verifies every row of every table, and runs the database's own check. It is slow: use it for audits.
+  virtual StoreResult<void> check() = 0;
+};
+
+}  // namespace runstone
