@@ -57,7 +57,7 @@ void build(RawClient& client, ClientSequence seq, const EditShape& shape, Materi
 
 /// Voxels of the world by its log alone.
 std::string replayed(const std::string& world) {
-  const auto replay = run_replay({"--world", world, "--verify"});
+  const auto replay = run_replay({"verify", "--world", world});
   INFO(replay.out << replay.err);
   REQUIRE(replay.code == 0);
   return replay.out;
