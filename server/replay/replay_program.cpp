@@ -79,6 +79,16 @@ bool lacks_subcommand(int argc, const char* const* argv) {
   return first.starts_with('-') && first != "--help" && first != "-h";
 }
 
+/// Returns "" if the program has the subcommand, otherwise a line that lists the subcommands.
+std::string unknown_subcommand(const std::vector<Subcommand>& all, std::string_view name) {
+  std::string names;
+  for (const Subcommand& subcommand : all) {
+    if (subcommand.name == name) return {};
+    names += (names.empty() ? "" : ", ") + std::string(subcommand.name);
+  }
+  return "\"" + std::string(name) + "\" is no subcommand: " + names;
+}
+
 int cannot_read(std::ostream& err, const std::string& message) {
   err << "runstone-replay: " << message << '\n';
   return kReplayCannotRead;
@@ -88,6 +98,11 @@ int cannot_read(std::ostream& err, const std::string& message) {
 
 int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   if (lacks_subcommand(argc, argv)) return cannot_read(err, new_spelling(argc, argv));
+  const std::vector<Subcommand> all = subcommands();
+  const bool wants_help = std::string_view(argv[1]).starts_with('-');
+  if (const std::string wrong = unknown_subcommand(all, argv[1]); !wants_help && !wrong.empty()) {
+    return cannot_read(err, wrong);
+  }
   CLI::App program(
       "Rebuilds a world from base and edit log. Exit code 0: done, and equal; 1: different; 2: "
       "cannot read.",
@@ -99,13 +114,16 @@ int replay_program(int argc, const char* const* argv, std::ostream& out, std::os
     std::function<Result<int, std::string>(std::ostream&)> run;
   };
   std::vector<Entry> entries;
-  for (const Subcommand& subcommand : subcommands()) {
+  for (const Subcommand& subcommand : all) {
     CLI::App* const app = program.add_subcommand(subcommand.name, subcommand.help);
     SubcommandOptions options(*app);
     entries.push_back({app, subcommand.add(options)});
   }
   try {
     program.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    // CLI11 lists the arguments in reverse order.
+    return cannot_read(err, "unexpected argument \"" + program.remaining(true).front() + "\"");
   } catch (const CLI::ParseError& error) {
     return program.exit(error, out, err) == 0 ? 0 : kReplayCannotRead;
   }

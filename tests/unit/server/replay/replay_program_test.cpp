@@ -60,7 +60,14 @@ TEST_CASE("a flag of the old command line fails and names its subcommand", "[ser
 
 TEST_CASE("a subcommand that does not exist, or lacks its world, exits with 2",
           "[server][replay]") {
-  CHECK(run_replay({"undo", "--world", "w"}).code == 2);
+  const ReplayOutcome unknown = run_replay({"verfy", "--world", "w"});
+  CHECK(unknown.code == 2);
+  CHECK(unknown.err ==
+        "runstone-replay: \"verfy\" is no subcommand: verify, diff, copy, export, import, play, "
+        "timelapse, keyframes, bench\n");
+  const ReplayOutcome extra = run_replay({"verify", "--world", "w", "--fast", "now"});
+  CHECK(extra.code == 2);
+  CHECK(extra.err == "runstone-replay: unexpected argument \"--fast\"\n");
   CHECK(run_replay({"verify"}).code == 2);
   CHECK(run_replay({"export", "--world", "w"}).code == 2);  // no file
   CHECK(run_replay({"verify", "--world", "w", "diff", "--world", "w"}).code == 2);
