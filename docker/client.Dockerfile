@@ -10,7 +10,6 @@ WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./
 COPY cmake cmake
 COPY common common
-COPY process process
 COPY protocol protocol
 COPY server server
 COPY client client

@@ -9,7 +9,6 @@ WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./
 COPY cmake cmake
 COPY common common
-COPY process process
 COPY protocol protocol
 COPY server server
 RUN cmake --preset release -DRUNSTONE_CLIENT=OFF -DRUNSTONE_TESTS=OFF && \
@@ -25,4 +24,4 @@ USER runstone
 VOLUME /world
 EXPOSE 4747
 STOPSIGNAL SIGTERM
-ENTRYPOINT ["runstone-server", "--world", "/world", "--listen", "0.0.0.0:4747"]
+ENTRYPOINT ["runstone-server", "--world", "/world", "--create", "--listen", "0.0.0.0:4747"]

@@ -54,13 +54,13 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
-/// Takes the words of a command one after another; remembers the first mistake.
+/// Reads the words of a command one after another and keeps the first error.
 class Reader {
  public:
   Reader(const Words& words, std::size_t next, TimeUs now_us)
       : words_(words), next_(next), now_us_(now_us) {}
 
-  /// Whether the next word is this one, which is taken then.
+  /// Takes the next word if it is `word`. Returns true if it was.
   bool take_word(std::string_view word) {
     if (at_end() || peek() != word) return false;
     ++next_;
@@ -68,7 +68,7 @@ class Reader {
   }
   bool at_end() const { return next_ == words_.size() || !error_.empty(); }
   const std::string& peek() const { return words_[next_]; }
-  /// The next word; an empty one, and the mistake, if there is none.
+  /// Returns the next word. If there is none, returns an empty word and records an error.
   std::string take(const std::string& after, const std::string& what) {
     if (next_ < words_.size()) return words_[next_++];
     wrong(after + ": " + what + " is missing");
@@ -114,7 +114,7 @@ CommandFilter::Author author_of(const std::string& word, Reader& reader) {
   return {word, std::nullopt};
 }
 
-/// Takes one filter word with what belongs to it; false if the next word is none.
+/// Reads one filter with its values. Returns false if the next word is no filter.
 bool take_filter(Reader& reader, CommandFilter& filter) {
   const std::string word = reader.peek();
   if (word == "author") {
@@ -177,7 +177,7 @@ Result<Command, std::string> preview_command(Reader reader) {
                    "\": author, since, until, box, cause or picture");
   }
   if (!reader.error().empty()) return mistake("rollback preview " + reader.error());
-  // A slip of the finger must not select the whole world.
+  // A preview without filters would select the whole world, most likely by mistake.
   if (preview.filter == CommandFilter{}) {
     return mistake(
         "rollback preview: say whose edits, when, where or why: author, since, until, box or "
@@ -221,6 +221,12 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
   const std::string& name = words->front();
   if (name == "log") return log_command(Reader(*words, 1, now_us));
   if (name == "rollback") return rollback_command(*words, now_us);
+  if (name == "materials") {
+    if (words->size() > 2) {
+      return mistake("materials \"" + (*words)[2] + "\": at most one word comes after materials");
+    }
+    return Command(MaterialsCommand{words->size() == 2 ? (*words)[1] : std::string()});
+  }
   std::optional<Command> plain;
   if (name == "help") plain = HelpCommand{};
   if (name == "status") plain = StatusCommand{};
@@ -236,23 +242,29 @@ Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us)
 
 bool is_for_everybody(const Command& command) {
   return std::holds_alternative<HelpCommand>(command) ||
+         std::holds_alternative<MaterialsCommand>(command) ||
          std::holds_alternative<UndoCommand>(command);
 }
 
 std::string command_help(bool is_operator) {
   std::string text =
       "help                      this list\n"
+      "materials [PART]          the materials of this world; with PART those whose name contains "
+      "it\n"
       "undo                      take back your last edit; what others built there since stays\n"
       "redo                      do again what you undid last";
   if (!is_operator) return text;
   return text +
          "\nstatus                    what the server does\n"
-         "players                   who is here, and who has ever built\n"
+         "players                   who is here, who has ever built, and who else was here since "
+         "the "
+         "server started\n"
          "log FILTERS [limit N]     the newest edits, the last one at the bottom\n"
          "rollback preview FILTERS [picture]\n"
-         "                          what taking these edits back would do; draws the area before "
-         "and after\n"
-         "rollback apply ID         do it; people go on playing, and what they built since stays\n"
+         "                          what a rollback of these edits would do; `picture` draws the "
+         "area before and after\n"
+         "rollback apply ID         do it, while people go on playing; what others built since "
+         "stays\n"
          "rollback cancel ID        stop it, or forget a preview\n"
          "rollback undo ID          take a rollback back\n"
          "rollback list             previews, and the rollbacks so far\n"

@@ -1,6 +1,6 @@
-// Command: one line of the console, of `runstone-server control` or of a client, as a value. Parsing knows
-// neither world nor clock: names stay names, and the time now is an argument. A mistake is answered with the
-// word that is wrong and what is allowed in its place.
+// Command: one line of the console, of `runstone-server control` or of a client, as a value. Parsing knows neither world
+// nor clock: names stay names, and the current time is an argument. An error names the wrong word and lists what is
+// allowed in its place.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace runstone {
 
-/// Whose edits, when, where and why; what is left open asks for everything.
+/// Selects edits by author, time, place and cause. A field that is not set selects all edits.
 struct CommandFilter {
   /// A player, by name or by author number ("#3").
   struct Author {
@@ -24,8 +24,8 @@ struct CommandFilter {
     std::optional<AuthorId> number;
     friend bool operator==(const Author&, const Author&) = default;
   };
-  std::vector<Author> authors;              // any of them
-  std::optional<TimeUs> from_us, until_us;  // UTC, included
+  std::vector<Author> authors;              // edits of any of them; empty: of everybody
+  std::optional<TimeUs> from_us, until_us;  // UTC, both included
   std::optional<VoxelBox> box;
   std::optional<Cause> cause;
   friend bool operator==(const CommandFilter&, const CommandFilter&) = default;
@@ -39,6 +39,10 @@ struct StatusCommand {
 };
 struct PlayersCommand {
   friend bool operator==(const PlayersCommand&, const PlayersCommand&) = default;
+};
+struct MaterialsCommand {
+  std::string part;  // lists the names that contain it; empty: all
+  friend bool operator==(const MaterialsCommand&, const MaterialsCommand&) = default;
 };
 struct StopCommand {
   friend bool operator==(const StopCommand&, const StopCommand&) = default;
@@ -55,7 +59,7 @@ struct LogCommand {
 };
 struct RollbackPreviewCommand {
   CommandFilter filter;
-  bool picture = false;  // draw the area, before and after
+  bool picture = false;  // draw the area before and after the rollback
   friend bool operator==(const RollbackPreviewCommand&, const RollbackPreviewCommand&) = default;
 };
 struct RollbackCommand {
@@ -67,21 +71,22 @@ struct RollbackListCommand {
   friend bool operator==(const RollbackListCommand&, const RollbackListCommand&) = default;
 };
 
-using Command =
-    std::variant<HelpCommand, StatusCommand, PlayersCommand, StopCommand, UndoCommand, LogCommand,
-                 RollbackPreviewCommand, RollbackCommand, RollbackListCommand>;
+using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, MaterialsCommand,
+                             StopCommand, UndoCommand, LogCommand, RollbackPreviewCommand,
+                             RollbackCommand, RollbackListCommand>;
 
-/// One line without its line break, kCommandBytesMax at most. Words are parted by blanks; a word with blanks in it stands in double
-/// quotes. `now_us`: UTC, what "since 1h" counts from. The error is one line for whoever typed it.
+/// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate words; a word that contains
+/// blanks stands in double quotes. `now_us` (UTC) is the time to which ages such as "since 1h" refer. The error is one
+/// line of text for the person who typed the command.
 Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us);
 
-/// Whether every player may give it; the others are for operators.
+/// Returns true if every player may give the command. The others are for operators.
 bool is_for_everybody(const Command& command);
 
-/// The commands, one a line: for everybody, or all of them.
+/// Returns a text that lists the commands: all of them for operators, otherwise those for everybody.
 std::string command_help(bool is_operator);
 
-/// As filters and answers spell it: "player", "rollback", ...
+/// Returns the name that filters and answers use: "player", "rollback", ...
 std::string_view name_of(Cause cause);
 
 }  // namespace runstone

@@ -1,21 +1,25 @@
 #include "server/admin/command_handler.hpp"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <utility>
 
-#include "common/core/hex.hpp"
-#include "common/core/key_text.hpp"
 #include "server/admin/author_names.hpp"
 #include "server/admin/log_line.hpp"
+#include "server/admin/material_list.hpp"
+#include "server/admin/player_list.hpp"
 #include "server/draw/preview_pictures.hpp"
 #include "server/rollback/newest_edits.hpp"
 
 namespace runstone {
 namespace {
 
-constexpr std::size_t kPlayersTold = 500;  // of those who are not here: anybody can make keys
+/// Returns a count of bytes in the largest unit of which there is at least one.
+std::string memory_text(std::size_t bytes) {
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  if (bytes < 1024 * 1024) return std::to_string(bytes / 1024) + " KiB";
+  return std::to_string(bytes / (1024 * 1024)) + " MiB";
+}
 
 }  // namespace
 
@@ -41,6 +45,9 @@ void CommandHandler::run(const CommandCaller& caller, const std::string& line, c
     return reply({command_help(caller.is_operator), true, true});
   if (std::holds_alternative<StatusCommand>(*command)) return status(reply);
   if (std::holds_alternative<PlayersCommand>(*command)) return players(reply);
+  if (const auto* list = std::get_if<MaterialsCommand>(&*command)) {
+    return reply({material_list(materials_, list->part), true, true});
+  }
   if (std::holds_alternative<StopCommand>(*command)) {
     reply({"the server stops", true, true});
     return stop_();
@@ -79,43 +86,20 @@ void CommandHandler::status(const CommandReply& reply) const {
              "), since the start " + std::to_string(c.edits_ordered) + " ordered and " +
              std::to_string(c.edits_rejected) + " rejected\nchunks in memory " +
              std::to_string(world_.resident_chunks()) + " (" +
-             std::to_string(world_.resident_bytes() >> 20) + " MiB), damaged " +
+             memory_text(world_.resident_bytes()) + "), damaged " +
              std::to_string(c.chunks_failed) + ", rollbacks and undos under way " +
              std::to_string(rollback_.running()),
          true, true});
 }
 
 void CommandHandler::players(const CommandReply& reply) {
-  std::map<AuthorId, WorldServer::Present> here;
-  for (WorldServer::Present& player : world_.present()) here[player.author] = std::move(player);
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
   workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
-               [rows, here, reply](const std::string& error) {
+               [rows, present = world_.present(), visitors = world_.visitors(),
+                reply](const std::string& error) {
                  if (!error.empty()) return refuse(reply, "players: " + error);
                  if (!*rows) return refuse(reply, "players: " + rows->error().message());
-                 std::map<AuthorId, std::string> lines;
-                 for (const PlayerRow& row : **rows) {
-                   lines[row.author] =
-                       row.name + " #" + std::to_string(row.author) + " key " + to_hex(row.key);
-                 }
-                 for (const auto& [author, player] : here) {
-                   lines[author] = player.name + " #" + std::to_string(author) + " key " +
-                                   to_hex(player.key) + " is here, at " +
-                                   text_of(VoxelPos{static_cast<std::int32_t>(player.at.x),
-                                                    static_cast<std::int32_t>(player.at.y),
-                                                    static_cast<std::int32_t>(player.at.z)});
-                 }
-                 std::string text = lines.empty() ? "nobody has ever been here\n" : "";
-                 std::size_t told = 0;
-                 for (const auto& [author, line] : lines) {
-                   if (here.contains(author) || told < kPlayersTold) text += line + "\n";
-                   told += here.contains(author) ? 0 : 1;
-                 }
-                 if (told > kPlayersTold)
-                   text +=
-                       "and " + std::to_string(told - kPlayersTold) + " more who are not here\n";
-                 text.pop_back();
-                 reply({text, true, true});
+                 reply({player_list(**rows, present, visitors), true, true});
                });
 }
 

@@ -10,16 +10,29 @@
 
 namespace runstone {
 
+namespace {
+
+bool is_quoted(const std::string& word) {
+  return word.size() >= 2 && word.front() == '"' && word.back() == '"';
+}
+
+}  // namespace
+
+std::string control_line(const std::vector<std::string>& words) {
+  if (words.size() == 1) return words.front();
+  std::string line;
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    const bool is_plain = !word.empty() && word.find(' ') == std::string::npos;
+    line += is_plain || is_quoted(word) ? word : "\"" + word + "\"";
+  }
+  return line;
+}
+
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out) {
   const auto path = control_path(request.world);
   if (!path) return Unexpected<std::string>{path.error()};
-  std::string line;
-  for (const std::string& word : request.words) {
-    if (!line.empty()) line += ' ';
-    // The shell has taken the quotes away that kept a name with blanks together.
-    line += word.find(' ') == std::string::npos ? word : "\"" + word + "\"";
-  }
-  line += '\n';
+  const std::string line = control_line(request.words) + '\n';
   asio::io_context io;
   asio::local::stream_protocol::socket socket(io);
   asio::error_code error;
@@ -39,7 +52,7 @@ Result<bool, std::string> control_server(const ControlRequest& request, std::ost
     if (answer == "=error") return false;
     out << (answer.starts_with('|') ? answer.substr(1) : answer) << std::endl;
   }
-  return Unexpected<std::string>{*path + ": the server ended before its answer did"};
+  return Unexpected<std::string>{*path + ": the server ended before its answer was complete"};
 }
 
 }  // namespace runstone

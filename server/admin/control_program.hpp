@@ -1,4 +1,4 @@
-// runstone-server control: gives a running server one command and prints its answer.
+// runstone-server control: gives one command to a running server and prints its answer.
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -10,11 +10,15 @@ namespace runstone {
 
 struct ControlRequest {
   std::string world = "world";     // folder
-  std::vector<std::string> words;  // of the command
+  std::vector<std::string> words;  // of the command, as the shell passed them
 };
 
-/// Whether the command did what it was asked. Prints each line of the answer as it comes. The error is one line:
-/// no server runs that world. Blocks until the answer is complete.
+/// Returns the command as one line. A single word is the whole line, as a person would type it at the console. Of
+/// several words, those that contain blanks are put in quotes, because the shell has removed the quotes around them.
+std::string control_line(const std::vector<std::string>& words);
+
+/// Gives the command and prints each line of the answer to `out` as it arrives. Returns true if the command succeeded.
+/// The error is one line: no server runs that world. Blocks until the answer is complete.
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out);
 
 }  // namespace runstone

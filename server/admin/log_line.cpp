@@ -24,6 +24,12 @@ const char* name_of(EditKind kind) {
   return "?";
 }
 
+/// Returns true if the edit restores earlier voxels. It is a paste by its kind, which says nothing about the edit that it
+/// takes back.
+bool restores(Cause cause) {
+  return cause == Cause::undo || cause == Cause::redo || cause == Cause::rollback;
+}
+
 }  // namespace
 
 std::string log_line(const EditRecord& record, const std::string& author,
@@ -34,10 +40,11 @@ std::string log_line(const EditRecord& record, const std::string& author,
       std::to_string(record.version.seq) + " " + utc_text(record.time_us) + " " + author + " ";
   line += name_of(record.cause);
   if (record.subject != 0) line += " of " + std::to_string(record.subject);
-  line += std::string(" ") + name_of(kind) + " " + text_of(box.min);
+  line += std::string(" ") + (restores(record.cause) ? "restored" : name_of(kind)) + " " +
+          text_of(box.min);
   const VoxelPos last{box.max.x - 1, box.max.y - 1, box.max.z - 1};
   if (last != box.min) line += " to " + text_of(last);
-  if (kind != EditKind::paste && materials.knows(record.edit.material)) {
+  if (!restores(record.cause) && kind != EditKind::paste && materials.knows(record.edit.material)) {
     line += " := " + materials[record.edit.material].name;
   }
   return line;

@@ -2,10 +2,12 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <variant>
 
+#include "common/core/hex.hpp"
 #include "server/admin/operators.hpp"
 
 namespace runstone {
@@ -17,21 +19,77 @@ struct NumberField {
   std::uint64_t ServerConfig::* member;
   std::uint64_t min, max;
 };
+/// Any text that is not empty.
 struct TextField {
   std::string ServerConfig::* member;
-  std::vector<std::string> choices;  // empty: any text that is not empty
-  /// For a text that may be empty and has a form of its own: what is wrong with it.
-  std::optional<std::string> (*wrong)(const std::string&) = nullptr;
+};
+/// A text with a form of its own.
+struct FormField {
+  /// Sets the member, or returns what is wrong with the text.
+  std::optional<std::string> (*set)(ServerConfig& config, const std::string& text);
+  std::string (*print)(const ServerConfig& config);
 };
 struct Field {
   std::string name, help;
-  std::variant<NumberField, TextField> kind;
+  std::variant<NumberField, TextField, FormField> kind;
 };
 
-std::optional<std::string> wrong_operators(const std::string& text) {
-  const auto keys = parse_operators(text);
-  if (keys) return std::nullopt;
-  return keys.error();
+template <class Enum>
+struct Choice {
+  const char* name;
+  Enum value;
+};
+constexpr std::array<Choice<LogLevel>, 4> kLogLevels = {{{"debug", LogLevel::debug},
+                                                         {"info", LogLevel::info},
+                                                         {"warn", LogLevel::warn},
+                                                         {"error", LogLevel::error}}};
+constexpr std::array<Choice<ChunkEncoding>, 3> kEncodings = {{{"packed", ChunkEncoding::packed},
+                                                              {"raw", ChunkEncoding::raw},
+                                                              {"coded", ChunkEncoding::coded}}};
+
+/// Returns "a, b or c".
+template <class Choices>
+std::string names_of(const Choices& choices) {
+  std::string names;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i != 0) names += i + 1 == choices.size() ? " or " : ", ";
+    names += choices[i].name;
+  }
+  return names;
+}
+
+/// A field with one value of an enumeration. `Choices` has a name for each value.
+template <auto Member, const auto& Choices>
+FormField choice_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            for (const auto& choice : Choices) {
+              if (text != choice.name) continue;
+              config.*Member = choice.value;
+              return std::nullopt;
+            }
+            return "must be " + names_of(Choices);
+          },
+          [](const ServerConfig& config) -> std::string {
+            return std::find_if(Choices.begin(), Choices.end(),
+                                [&](const auto& choice) { return choice.value == config.*Member; })
+                ->name;
+          }};
+}
+
+FormField operators_field() {
+  return {[](ServerConfig& config, const std::string& text) -> std::optional<std::string> {
+            auto keys = parse_operators(text);
+            if (!keys) return keys.error();
+            config.operators = *std::move(keys);
+            return std::nullopt;
+          },
+          [](const ServerConfig& config) {
+            std::string text;
+            for (const PublicKey& key : config.operators) {
+              text += (text.empty() ? "" : ", ") + to_hex(key);
+            }
+            return text;
+          }};
 }
 
 const std::vector<Field>& fields() {
@@ -43,11 +101,9 @@ const std::vector<Field>& fields() {
     return Field{name, range, NumberField{member, min, max}};
   };
   static const std::vector<Field> all = {
-      {"world", "folder of the world", TextField{&C::world, {}, nullptr}},
-      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one",
-       TextField{&C::listen, {}, nullptr}},
-      {"log_level", "debug, info, warn or error",
-       TextField{&C::log_level, {"debug", "info", "warn", "error"}, nullptr}},
+      {"world", "folder of the world", TextField{&C::world}},
+      {"listen", "HOST:PORT or [V6]:PORT; port 0 takes a free one", TextField{&C::listen}},
+      {"log_level", names_of(kLogLevels), choice_field<&C::log_level, kLogLevels>()},
       number("io_threads", &C::io_threads, 1, 64, "threads for sockets and the world strand"),
       number("worker_threads", &C::worker_threads, 1, 64,
              "threads that generate, load and encode chunks"),
@@ -58,7 +114,7 @@ const std::vector<Field>& fields() {
       number("view_interval_ms", &C::view_interval_ms, 0, 10'000,
              "milliseconds between two views of a session that take effect"),
       {"encoding", "packed, raw or coded (smallest, slowest), where the client reads it",
-       TextField{&C::encoding, {"packed", "raw", "coded"}, nullptr}},
+       choice_field<&C::encoding, kEncodings>()},
       number("idle_s", &C::idle_s, 5, 86'400, "seconds without a message until a session ends"),
       number("messages_per_second", &C::messages_per_second, 0, kNoMax,
              "messages per session, 0: no limit"),
@@ -72,8 +128,8 @@ const std::vector<Field>& fields() {
       number("server_kib_per_second", &C::server_kib_per_second, 0, 1ULL << 30,
              "KiB a second to all sessions together, likewise, 0: no limit"),
       {"operators",
-       "public keys in hex of those who may give every command, parted by blanks or commas",
-       TextField{&C::operators, {}, wrong_operators}},
+       "public keys, in hex, of players who may give every command; separated by blanks or commas",
+       operators_field()},
       number("edit_volume_max", &C::edit_volume_max, 1, 1ULL << 40, "voxels per edit"),
       number("height_max", &C::height_max, 1, 1ULL << 29, "voxels above y = 0 where edits may be"),
       number("depth_max", &C::depth_max, 0, 1ULL << 29, "voxels below y = 0 where edits may be"),
@@ -105,7 +161,7 @@ const Field* find(std::string_view name) {
   return found == fields().end() ? nullptr : &*found;
 }
 
-/// What is wrong with the value, or nothing once it is set.
+/// Sets a number. Returns what is wrong with the value, or nullopt.
 std::optional<std::string> assign(ServerConfig& config, const Field& field, std::uint64_t value) {
   const auto* number = std::get_if<NumberField>(&field.kind);
   if (number == nullptr) return "must be a text";
@@ -114,25 +170,24 @@ std::optional<std::string> assign(ServerConfig& config, const Field& field, std:
   return std::nullopt;
 }
 
+/// Sets a text. Returns what is wrong with the value, or nullopt.
 std::optional<std::string> assign(ServerConfig& config, const Field& field,
                                   const std::string& value) {
+  if (const auto* form = std::get_if<FormField>(&field.kind)) return form->set(config, value);
   const auto* text = std::get_if<TextField>(&field.kind);
   if (text == nullptr) return "must be a whole number: " + field.help;
-  if (text->wrong != nullptr) {
-    if (auto what = text->wrong(value)) return what;
-    config.*text->member = value;
-    return std::nullopt;
-  }
   if (value.empty()) return "must not be empty";
-  const auto& choices = text->choices;
-  if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    return "must be " + field.help;
-  }
   config.*text->member = value;
   return std::nullopt;
 }
 
-std::string with(std::string text, char from, char to, bool upper) {
+/// Returns the text of a field that is no number.
+std::string text_of(const ServerConfig& config, const Field& field) {
+  if (const auto* form = std::get_if<FormField>(&field.kind)) return form->print(config);
+  return config.*std::get<TextField>(field.kind).member;
+}
+
+std::string with_replaced(std::string text, char from, char to, bool upper) {
   for (char& c : text) {
     if (c == from) c = to;
     if (upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -149,16 +204,18 @@ std::vector<ConfigField> config_fields() {
 }
 
 std::string environment_name(const std::string& field) {
-  return "RUNSTONE_" + with(field, '_', '_', true);
+  return "RUNSTONE_" + with_replaced(field, '_', '_', true);
 }
-std::string flag_name(const std::string& field) { return "--" + with(field, '_', '-', false); }
+std::string flag_name(const std::string& field) {
+  return "--" + with_replaced(field, '_', '-', false);
+}
 
 Result<void, std::string> set_config(ServerConfig& config, const std::string& name,
                                      const std::string& text) {
   const Field* field = find(name);
   if (field == nullptr) return Unexpected<std::string>{name + ": no such setting"};
   std::optional<std::string> wrong;
-  if (std::holds_alternative<TextField>(field->kind)) {
+  if (!std::holds_alternative<NumberField>(field->kind)) {
     wrong = assign(config, *field, text);
   } else {
     std::uint64_t value = 0;
@@ -182,7 +239,7 @@ Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view 
   } catch (const toml::parse_error& error) {
     return wrong(error.source().begin.line, "", error.description());
   }
-  ServerConfig read = config;  // all or nothing
+  ServerConfig read = config;  // an error leaves `config` unchanged
   for (const auto& [key, node] : table) {
     const std::uint32_t line = key.source().begin.line;
     const Field* field = find(key.str());
@@ -221,7 +278,7 @@ std::string to_toml(const ServerConfig& config) {
       out += std::to_string(config.*number->member);
     } else {
       out += '"';
-      for (const char c : config.*std::get_if<TextField>(&field.kind)->member) {
+      for (const char c : text_of(config, field)) {
         if (c == '"' || c == '\\') out += '\\';
         out += c;
       }

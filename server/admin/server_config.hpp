@@ -1,47 +1,50 @@
-// ServerConfig: every setting of the server with its default, unit and range. One rule for all of them:
+// ServerConfig: every setting of the server with its default, unit and range. All settings follow one naming rule:
 //   file  sessions_max = 64        environment  RUNSTONE_SESSIONS_MAX=64        flag  --sessions-max 64
-// Later ones win: default, file, environment, flag. docs/server.md lists them. Values are checked where they
-// are set, so a ServerConfig is always valid. It is read once and passed on by const reference.
+// The order of precedence is flag, environment, file, default. Values are checked when they are set, so a ServerConfig
+// is always valid. It is read once and passed on by const reference. docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/core/result.hpp"
 #include "common/materials/material_table.hpp"
+#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/codec/messages.hpp"
+#include "server/admin/log_level.hpp"
 
 namespace runstone {
 
 struct ServerConfig {
   // Place.
   std::string world = "world";          // folder
-  std::string listen = "0.0.0.0:4747";  // HOST:PORT, or [V6]:PORT; port 0 takes a free one
-  std::string log_level = "info";       // debug, info, warn, error
+  std::string listen = "0.0.0.0:4747";  // HOST:PORT, or [V6]:PORT; port 0 takes a free port
+  LogLevel log_level = LogLevel::info;
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
   // Sessions.
   std::uint64_t sessions_max = 256;           // 1..65536
-  std::uint64_t handshakes_per_address = 32;  // connections not yet authenticated, 1..65536
+  std::uint64_t handshakes_per_address = 32;  // unauthenticated connections, 1..65536
   std::uint64_t view_radius_max = 16;         // chunks, 0..64
-  std::uint64_t view_interval_ms = 50;  // between two views of a session that take effect, 0..10000
-  std::string encoding = "packed";      // packed, raw or coded, where the client reads it
-  std::uint64_t idle_s = 60;            // seconds without a message, 5..86400
-  std::uint64_t messages_per_second = 10'000;  // per session, 0: no limit
-  std::uint64_t read_kib_per_second =
-      1'024;  // from each session: beyond it reading waits, 0: no limit
-  std::uint64_t control_queue_kib = 16'384;  // per session, KiB, 64..1048576
-  std::uint64_t edit_queue_kib = 4'096;      // per session, KiB, 64..1048576
-  std::uint64_t chunk_queue_kib = 4'096;     // per session, KiB, 64..1048576
-  std::uint64_t session_kib_per_second =
-      0;  // to each session: beyond it terrain waits, 0: no limit
-  std::uint64_t server_kib_per_second =
-      0;  // to all together, shared by those with terrain to send, 0: no limit
-  std::string
-      operators;  // public keys in hex of those who may give every command, parted by blanks or commas
+  std::uint64_t view_interval_ms = 50;        // least time between two views of a session, 0..10000
+  ChunkEncoding encoding = ChunkEncoding::packed;  // sent to clients that can read it
+  std::uint64_t idle_s = 60;                       // seconds without a message, 5..86400
+  std::uint64_t messages_per_second = 10'000;      // per session, 0: no limit
+  /// KiB read from each session per second, 0: no limit. Reading pauses above the limit.
+  std::uint64_t read_kib_per_second = 1'024;
+  std::uint64_t control_queue_kib = 16'384;  // KiB per session, 64..1048576
+  std::uint64_t edit_queue_kib = 4'096;      // KiB per session, 64..1048576
+  std::uint64_t chunk_queue_kib = 4'096;     // KiB per session, 64..1048576
+  /// KiB sent to each session per second, 0: no limit. Only terrain waits at the limit.
+  std::uint64_t session_kib_per_second = 0;
+  /// KiB sent to all sessions together per second, 0: no limit. Sessions with terrain to send share it.
+  std::uint64_t server_kib_per_second = 0;
+  std::set<PublicKey> operators;  // players who may give every command
   // Edits.
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit, 1..2^40
   std::uint64_t height_max = 1ULL << 29;      // voxels above y = 0 where edits may be, 1..2^29
@@ -50,13 +53,13 @@ struct ServerConfig {
   std::uint64_t edits_per_second = 2'000;     // per session, 0: no limit
   std::uint64_t edit_burst = 4'000;           // per session, 1..1000000
   // World and disk.
-  std::uint64_t memory_mib = 512;            // of chunks nobody sees, MiB, 16..1048576
-  std::uint64_t snapshot_edits = 20'000;     // ordered between two rounds of snapshots, 1..10^9
+  std::uint64_t memory_mib = 512;            // MiB of chunks that no session sees, 16..1048576
+  std::uint64_t snapshot_edits = 20'000;     // between two rounds of snapshots, 1..10^9
   std::uint64_t snapshot_s = 30;             // seconds between two rounds, 1..86400
-  std::uint64_t keyframe_edits = 32'768;     // at least, between two keyframes, 0: none .. 10^9
-  std::uint64_t log_queue_records = 65'536;  // then edits are rejected busy, 1..10^7
-  std::uint64_t audit_ms = 1'000;            // between two audits of a session, 10..3600000
-  std::uint64_t audit_chunks = 8;            // digests per audit, 0: none .. 1024
+  std::uint64_t keyframe_edits = 32'768;     // least number between two keyframes, 0: none .. 10^9
+  std::uint64_t log_queue_records = 65'536;  // above it edits are rejected as busy, 1..10^7
+  std::uint64_t audit_ms = 1'000;            // between two digest checks of a session, 10..3600000
+  std::uint64_t audit_chunks = 8;            // digests per check, 0: none .. 1024
   std::uint64_t counters_s = 60;             // seconds between two lines of counters, 0: never
   friend bool operator==(const ServerConfig&, const ServerConfig&) = default;
 };
@@ -65,23 +68,24 @@ struct ConfigField {
   std::string name;  // as in the file
   std::string help;  // unit and range
 };
-/// All settings, in the order of the struct.
+/// Returns all settings, in the order of the struct.
 std::vector<ConfigField> config_fields();
-/// "RUNSTONE_SESSIONS_MAX" and "--sessions-max" of "sessions_max".
+/// Return "RUNSTONE_SESSIONS_MAX" and "--sessions-max" for "sessions_max".
 std::string environment_name(const std::string& field);
 std::string flag_name(const std::string& field);
 
-/// Sets one field from text (environment, flag). The error says what is wrong with which value.
+/// Sets one field from the text of a flag or variable. The error names the field and says what is wrong.
 Result<void, std::string> set_config(ServerConfig& config, const std::string& field,
                                      const std::string& text);
-/// Sets the fields a TOML file names; unknown keys and wrong types are errors with their line.
+/// Sets the fields that a TOML file names; `file` is only for messages. Fails on unknown keys and wrong values, with their
+/// line; `config` is then unchanged.
 Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml,
                                          std::string_view file);
-/// Sets the fields the environment names; `look_up` is getenv.
+/// Sets the fields that the environment names. `look_up` returns the value of a variable, or nullopt.
 Result<void, std::string> read_config_environment(
     ServerConfig& config,
     const std::function<std::optional<std::string>(const std::string&)>& look_up);
-/// All fields as TOML that read_config_toml() reads back; for --print-config.
+/// Returns all fields as TOML, which read_config_toml() reads back to an equal configuration.
 std::string to_toml(const ServerConfig& config);
 
 }  // namespace runstone

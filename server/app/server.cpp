@@ -98,6 +98,10 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
         "file={} can be read by other users, and with it the world's secret key: chmod 600 it",
         parts->world.store->file());
   }
+  if (parts->world.is_new) {
+    logger("app").info("NEW WORLD: made world={} generator={} seed={}", config.world,
+                       creation.generator, creation.seed);
+  }
   logger("app").info("listening port={} world={} new={}", parts->core->port(), config.world,
                      parts->world.is_new);
   return std::unique_ptr<Server>(new Server(std::move(parts)));

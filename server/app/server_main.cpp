@@ -1,5 +1,5 @@
 // runstone-server: runs a world, imports one, compacts one, or gives a running server a command. Exit codes: 0 stopped
-// cleanly (control: the command did what it was asked), 1 failed while running, 2 could not start (docs/server.md).
+// cleanly (control: the command did what it was asked), 1 failed while running, 2 could not start (docs/server-reference.md).
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -19,6 +19,7 @@
 #include "common/os/open_files.hpp"
 #include "common/runs/dense.hpp"
 #include "server/admin/console.hpp"
+#include "server/app/new_world.hpp"
 #include "server/app/server.hpp"
 #include "server/app/server_options.hpp"
 #include "server/runtime/logging.hpp"
@@ -104,6 +105,9 @@ int run(const ServerOptions& options) {
   if (options.print_config) {
     std::cout << to_toml(*config);
     return kStopped;
+  }
+  if (const auto allowed = allow_new_world(config->world, options.create); !allowed) {
+    return cannot_start(allowed.error());
   }
   start_logging(config->log_level);
   if (!options.port_file.empty()) {  // before the world is touched

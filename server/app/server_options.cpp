@@ -8,12 +8,9 @@
 
 namespace runstone {
 
-ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
-  ServerOptions out;
-  ImportRequest request;
-  CLI::App app{"Runstone world server"};
-  // The last one wins, so that arguments added to a fixed command line (a container's) change it.
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+namespace {
+
+void add_flags(CLI::App& app, ServerOptions& out) {
   app.set_version_flag("--version",
                        "runstone-server 0.1.0 protocol " + std::to_string(kProtocolVersion));
   app.add_option("--config", out.config_file,
@@ -23,7 +20,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   app.add_option("--digests", out.digests_file,
                  "write the digests of all edited chunks here on stop");
   app.add_flag("--console", out.console,
-               "read commands from standard input, also if it is no terminal");
+               "read commands from standard input even if it is no terminal");
+  app.add_flag("--create", out.create, "make a new world if the folder --world holds none");
   app.add_option("--generator", out.creation.generator,
                  "new world: empty, flat, terrain or scenario");
   app.add_option("--generator-parameters", out.creation.generator_parameters,
@@ -39,35 +37,71 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
            field.help)
         ->group("Settings");
   }
-  CLI::App* import = app.add_subcommand("import", "make a new world from a Luanti world");
-  import->add_option("--luanti", request.luanti, "folder that holds map.sqlite")->required();
-  import->add_option("--world", request.world, "folder of the new world")->required();
-  import->add_option("--edge", request.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
-  import->add_flag("--keep-all", request.keep_all, "keep plants, torches and the like as cubes");
-  CompactRequest compact_request;
-  bool keep_size = false;
-  CLI::App* compact =
-      app.add_subcommand("compact", "take the oldest part of a world's log into its base");
-  compact->add_option("--world", compact_request.world, "folder of the world; no server may run it")
+}
+
+CLI::App* add_import(CLI::App& app, ImportRequest& out) {
+  CLI::App* const import = app.add_subcommand("import", "make a new world from a Luanti world");
+  import->add_option("--luanti", out.luanti, "folder that holds map.sqlite")->required();
+  import->add_option("--world", out.world, "folder of the new world")->required();
+  import->add_option("--edge", out.edge, "edge of a chunk, 16, 32, 64 or 128 voxels");
+  import->add_flag("--keep-all", out.keep_all, "keep plants, torches and the like as cubes");
+  return import;
+}
+
+CLI::App* add_compact(CLI::App& app, CompactRequest& out) {
+  CLI::App* const compact =
+      app.add_subcommand("compact", "move the oldest part of a world's log into its base");
+  compact->add_option("--world", out.world, "folder of the world; no server may run it")
       ->required();
-  compact->add_option("--keep", compact_request.keep_days, "days of the past to keep")
+  compact->add_option("--keep", out.keep_days, "days of the past to keep")
       ->required()
       ->check(CLI::Range(0, 36'500));
-  compact->add_flag("--keep-size", keep_size, "leave the free space in the file, for new edits");
-  compact->add_flag("--progress", compact_request.progress,
-                    "tell how far it is also where stderr is no terminal");
-  ControlRequest control_request;
-  CLI::App* control =
+  compact->add_flag_callback(
+      "--keep-size", [&out] { out.shrink = false; },
+      "leave the free space in the file, for new edits");
+  compact->add_flag("--progress", out.progress,
+                    "print progress even if standard error is no terminal");
+  return compact;
+}
+
+CLI::App* add_control(CLI::App& app, ControlRequest& out) {
+  CLI::App* const control =
       app.add_subcommand("control", "give a running server a command, such as `control help`");
-  control->add_option("--world", control_request.world, "folder of the server's world");
-  control->prefix_command();  // what follows is the command, also words such as -4
+  control->add_option("--world", out.world, "folder of the server's world");
+  control->prefix_command();  // the other arguments are the command, also words such as -4
+  return control;
+}
+
+/// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse order.
+void print_unknown_argument(const CLI::App& app) {
+  std::cerr
+      << "runstone-server: \"" << app.remaining(true).front()
+      << "\" is no subcommand (import, compact, control) and no flag; --help lists the flags\n";
+}
+
+}  // namespace
+
+ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
+  ServerOptions out;
+  ImportRequest import_request;
+  CompactRequest compact_request;
+  ControlRequest control_request;
+  CLI::App app{"Runstone world server"};
+  // The last value wins, so that arguments appended to a fixed command line (a container's) change it.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  add_flags(app, out);
+  const CLI::App* const import = add_import(app, import_request);
+  const CLI::App* const compact = add_compact(app, compact_request);
+  const CLI::App* const control = add_control(app, control_request);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    print_unknown_argument(app);
+    return {std::nullopt, 2};
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }
-  if (import->parsed()) out.import = request;
-  compact_request.shrink = !keep_size;
+  if (import->parsed()) out.import = import_request;
   if (compact->parsed()) out.compact = compact_request;
   if (control->parsed()) {
     control_request.words = control->remaining();

@@ -1,4 +1,4 @@
-// ServerOptions: what the command line of runstone-server says.
+// ServerOptions: the command line of runstone-server as a value.
 #pragma once
 #include <map>
 #include <optional>
@@ -12,18 +12,19 @@
 namespace runstone {
 
 struct ServerOptions {
-  std::map<std::string, std::string> settings;       // by field of ServerConfig, as given
+  std::map<std::string, std::string> settings;       // text by field of ServerConfig
   std::string config_file, port_file, digests_file;  // empty: none
   bool print_config = false;
+  bool create = false;  // make the world if the folder holds none, whatever the folder is
   WorldCreation creation;
   std::optional<ImportRequest> import;    // the import subcommand
   std::optional<CompactRequest> compact;  // the compact subcommand
-  bool console = false;                   // read commands even if standard input is no terminal
+  bool console = false;  // read commands from standard input even if it is no terminal
   std::optional<ControlRequest> control;  // the control subcommand
 };
 
-/// The options, or the exit code of a program that has nothing more to do: 0 after help or version, 2 after a
-/// mistake. Both were printed.
+/// The options, or the exit code of a program that has nothing more to do: 0 after help or version, 2 after an error.
+/// The help text or the error was printed.
 struct ParsedServerOptions {
   std::optional<ServerOptions> options;
   int exit_code = 0;

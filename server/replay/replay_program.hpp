@@ -1,14 +1,11 @@
-// runstone-replay as a function, so that tests can run it: arguments in, table and exit code out.
+// runstone-replay as a function, so that tests can run it.
 #pragma once
 #include <iosfwd>
 
 namespace runstone {
 
-/// What scripts may rely on.
-enum class ReplayExit { equal = 0, different = 1, cannot_read = 2 };
-
-/// `out` takes the table (or the help text), `err` one line per error. Progress goes to the terminal, if
-/// there is one.
+/// Runs the subcommand that the arguments name. Returns the exit code (ReplayExit; `play` returns that of runstone-bot).
+/// Prints the table or the help text to `out` and errors, one line each, to `err`. Prints progress to standard error.
 int replay_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
 }  // namespace runstone

@@ -25,7 +25,7 @@ constexpr std::size_t kPathBytesMax = 4 << 20;
 
 Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
-/// The moments to draw: ascending, the first and the last among them.
+/// Returns the moments to draw, ascending, with the first and the last moment of the timelapse.
 Result<std::vector<Sequence>, std::string> moments_of(WorldReader& reader,
                                                       const TimelapseOptions& options,
                                                       Sequence at) {
@@ -66,7 +66,7 @@ Result<std::optional<CameraPath>, std::string> path_of(const TimelapseOptions& o
   return std::optional<CameraPath>(*std::move(path));
 }
 
-/// Makes the folder. Frames of another timelapse in it would end up in the video.
+/// Makes the folder. Fails if it holds frames of another timelapse, which would become part of the video.
 Result<void, std::string> prepare_folder(const std::string& folder) {
   std::error_code wrong;
   std::filesystem::create_directories(folder, wrong);
@@ -83,6 +83,7 @@ Result<void, std::string> prepare_folder(const std::string& folder) {
   return {};
 }
 
+/// Returns the chunks in which the camera stands at the moments.
 std::vector<ChunkCoord> eyes_of(const CameraPath& path, const std::vector<Sequence>& moments,
                                 std::int32_t edge) {
   std::set<ChunkCoord> eyes;
@@ -118,7 +119,7 @@ Result<TimelapseReport, std::string> make_timelapse(
   const std::vector<ChunkCoord> eyes =
       path->has_value() ? eyes_of(**path, *moments, edge) : std::vector<ChunkCoord>();
   auto world = TimelapseWorld::open(reader, generator, moments->front(), moments->back(),
-                                    options.radius, eyes);
+                                    static_cast<std::uint32_t>(options.radius), eyes);
   if (!world) return failure(world.error().message());
   if (world->edited().empty() && !path->has_value()) {
     return failure(reader.file() +

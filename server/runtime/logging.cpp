@@ -6,8 +6,25 @@
 #include "common/core/assert.hpp"
 
 namespace runstone {
+namespace {
 
-void start_logging(const std::string& level) {
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::debug:
+      return spdlog::level::debug;
+    case LogLevel::info:
+      return spdlog::level::info;
+    case LogLevel::warn:
+      return spdlog::level::warn;
+    case LogLevel::error:
+      return spdlog::level::err;
+  }
+  return spdlog::level::info;
+}
+
+}  // namespace
+
+void start_logging(LogLevel level) {
   // Logging must never hold up the world strand: lines wait in a bounded queue, and the oldest give way when
   // whoever reads stderr is too slow.
   constexpr std::size_t kQueuedLinesMax = 8192;
@@ -21,7 +38,7 @@ void start_logging(const std::string& level) {
       found->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
       spdlog::register_logger(found);
     }
-    found->set_level(spdlog::level::from_str(level));
+    found->set_level(spdlog_level(level));
     found->flush_on(spdlog::level::info);
   }
 }

@@ -2,13 +2,12 @@
 #pragma once
 #include <spdlog/spdlog.h>
 
-#include <memory>
-#include <string>
+#include "server/admin/log_level.hpp"
 
 namespace runstone {
 
-/// Makes the loggers, or sets the level of those that are there. `level`: debug, info, warn or error.
-void start_logging(const std::string& level);
+/// Creates the loggers, or sets the level of existing ones.
+void start_logging(LogLevel level);
 /// A module's logger; start_logging() must have been called.
 spdlog::logger& logger(const char* module);
 

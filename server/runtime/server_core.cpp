@@ -11,7 +11,6 @@
 #include "common/os/steady_clock.hpp"
 #include "common/os/thread_cpu_ns.hpp"
 #include "common/runs/dense.hpp"
-#include "server/admin/operators.hpp"
 #include "server/history/missing_edits.hpp"
 #include "server/runtime/logging.hpp"
 
@@ -93,9 +92,7 @@ WorldConfig ServerCore::world_config(const ServerConfig& config) const {
   world.edits_per_second = config.edits_per_second;
   world.edit_burst = config.edit_burst;
   world.idle_us_max = static_cast<TimeUs>(config.idle_s) * 1'000'000;
-  world.preferred_encoding = config.encoding == "raw"     ? ChunkEncoding::raw
-                             : config.encoding == "coded" ? ChunkEncoding::coded
-                                                          : ChunkEncoding::packed;
+  world.preferred_encoding = config.encoding;
   world.audit_interval_us = static_cast<TimeUs>(config.audit_ms) * 1'000;
   world.audit_chunks = config.audit_chunks;
   world.resident_bytes_max = config.memory_mib << 20;
@@ -150,9 +147,6 @@ Result<void, std::string> ServerCore::recover(const std::string& folder) {
         return true;
       });
   if (!read) return Unexpected<std::string>{read.error().message()};
-  const auto operators = parse_operators(config_.operators);
-  if (!operators) return Unexpected<std::string>{"operators: " + operators.error()};
-  operators_ = *operators;
   rollback_ = std::make_unique<RollbackService>(
       *world_, *this, [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); });
   commands_ = std::make_unique<CommandHandler>(*world_, *rollback_, *this, store_.meta().materials,
@@ -335,7 +329,7 @@ void ServerCore::command(const std::string& line, CommandReply reply) {
 
 void ServerCore::command(SessionId session, AuthorId author, const PublicKey& key,
                          const std::string& text) {
-  const CommandCaller caller{author, operators_.contains(key)};
+  const CommandCaller caller{author, config_.operators.contains(key)};
   if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // Ports do not call back in: the answer may come at once.
   asio::post(strand_, [this, session, caller, text] {

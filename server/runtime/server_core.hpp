@@ -143,7 +143,6 @@ class ServerCore final : public WorldEnvironment,
 
   std::unique_ptr<RollbackService> rollback_;
   std::unique_ptr<CommandHandler> commands_;
-  std::set<PublicKey> operators_;
   std::function<void()> on_stop_;
   // They read the log for people who wait; chunks to be loaded or sent never wait for them.
   asio::thread_pool log_readers_{kLogReaders};

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "common/generate/spawn_point.hpp"
+
 namespace runstone {
 namespace {
 
@@ -28,7 +30,8 @@ Result<WorldMeta, std::string> new_meta(const WorldCreation& creation) {
   const auto generator = make_generator(meta.generator, meta.materials);
   if (!generator)
     return failure("--generator " + meta.generator.name + ": " + generator.error().what);
-  meta.spawn = {0.5, static_cast<double>((*generator)->surface_y(0, 0)) + 2.0, 0.5};
+  const VoxelPos spawn = spawn_point(**generator, meta.materials);
+  meta.spawn = {spawn.x + 0.5, static_cast<double>(spawn.y), spawn.z + 0.5};
   draw_identity(meta);
   return meta;
 }

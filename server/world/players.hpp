@@ -4,9 +4,12 @@
 // that an author with a row comes back under is written anew: the last one wins.
 #pragma once
 #include <algorithm>
+#include <cstddef>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/ids.hpp"
@@ -16,6 +19,8 @@ namespace runstone {
 
 class Players {
  public:
+  static constexpr std::size_t kVisitorsMax = 100;
+
   /// A row of the store, at the start.
   void restore(const PlayerRow& stored) {
     by_key_[stored.key] = stored.author;
@@ -29,6 +34,7 @@ class Players {
       known_[found->second].row.name = name;
       return found->second;
     }
+    std::erase_if(visitors_, [&](const PlayerRow& visitor) { return visitor.key == key; });
     const AuthorId author = next_++;
     by_key_[key] = author;
     known_[author] = {{author, key, name}, std::nullopt};
@@ -39,9 +45,13 @@ class Players {
     const auto found = known_.find(author);
     if (found == known_.end() || found->second.stored_name) return false;
     by_key_.erase(found->second.row.key);
+    visitors_.push_back(std::move(found->second.row));
+    if (visitors_.size() > kVisitorsMax) visitors_.pop_front();
     known_.erase(found);
     return true;
   }
+  /// Returns the last kVisitorsMax players of this run that left without an edit, the latest last.
+  const std::deque<PlayerRow>& visitors() const { return visitors_; }
   std::size_t count() const { return known_.size(); }
   /// Whether the store has the author under another name.
   bool is_renamed(AuthorId author) const {
@@ -66,6 +76,7 @@ class Players {
   };
   std::map<PublicKey, AuthorId> by_key_;
   std::map<AuthorId, Known> known_;
+  std::deque<PlayerRow> visitors_;
   AuthorId next_ = 1;
 };
 

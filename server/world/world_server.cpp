@@ -195,6 +195,11 @@ std::vector<WorldServer::Present> WorldServer::present() const {
   return out;
 }
 
+std::vector<PlayerRow> WorldServer::visitors() const {
+  const auto& visitors = state_->players.visitors();
+  return {visitors.begin(), visitors.end()};
+}
+
 void WorldServer::step_keeper(const Clocks& now) {
   WorldState& world = *state_;
   world.keeper.step(world.authority, world.durable, now, world.ports,

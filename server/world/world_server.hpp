@@ -81,6 +81,8 @@ class WorldServer {
   };
   /// Who is here, by session.
   std::vector<Present> present() const;
+  /// Returns the players of this run that left without an edit, as Players::visitors() keeps them.
+  std::vector<PlayerRow> visitors() const;
 
   // ---- answers of the ports
   void chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now);

@@ -13,7 +13,7 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/chunk.hpp"
 #include "common/runs/reorder.hpp"
-#include "server/replay/replay.hpp"
+#include "server/replay/replayer.hpp"
 #include "server/store/sqlite_store.hpp"
 #include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/support/builder_session.hpp"

@@ -53,7 +53,7 @@ Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::strin
                                                  const std::vector<std::string>& flags) {
   const std::string port_file = fresh("port");
   std::vector<std::string> words = {
-      program_file("runstone-server"), "--world",     world,    "--listen",
+      program_file("runstone-server"), "--world",     world,    "--create", "--listen",
       link.server_address() + ":0",    "--port-file", port_file};
   words.insert(words.end(), flags.begin(), flags.end());
   auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));

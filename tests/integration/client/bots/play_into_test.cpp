@@ -1,4 +1,4 @@
-// runstone-replay --into, as people run it: world folder in, edits on a live server out, by runstone-bot.
+// runstone-replay play, as people run it: world folder in, edits on a live server out, by runstone-bot.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -27,7 +27,7 @@ void make_world(const std::string& folder, std::size_t edits) {
 }
 
 std::string digest_of(const std::string& folder, const std::string& at) {
-  const auto replay = run_replay({"--world", folder, "--at", at});
+  const auto replay = run_replay({"verify", "--quick", "--world", folder, "--at", at});
   INFO(replay.out << replay.err);
   REQUIRE(replay.code == 0);
   const std::size_t begin = replay.out.find("digest ");
@@ -54,8 +54,8 @@ TEST_CASE("a log played into a server of the same generator gives the same world
   const std::string address = "127.0.0.1:" + std::to_string(server->port());
   const TemporaryFiles files;
   const auto played =
-      run_replay({"--world", folder / "old", "--at", "150", "--into", address, "--speed", "max",
-                  "--bot", RUNSTONE_BOT_PROGRAM, "--json", folder / "report.json"});
+      run_replay({"play", "--world", folder / "old", "--at", "150", "--connect", address, "--speed",
+                  "max", "--bot", RUNSTONE_BOT_PROGRAM, "--json", folder / "report.json"});
   INFO(played.err);
   CHECK(played.code == 0);
   CHECK(files.none_left());
@@ -71,7 +71,8 @@ TEST_CASE("what stands in the way of a play is the program's exit code; no file 
   make_world(folder / "old", 20);
   const TemporaryFiles files;
   const auto into = [&](const std::string& world, const std::string& bot) {
-    return run_replay({"--world", folder / world, "--into", "127.0.0.1:1", "--bot", bot});
+    return run_replay(
+        {"play", "--world", folder / world, "--connect", "127.0.0.1:1", "--bot", bot});
   };
   const auto no_world = into("none", RUNSTONE_BOT_PROGRAM);
   CHECK(no_world.code == 2);
@@ -101,8 +102,8 @@ TEST_CASE("a log is not played where no temporary folder can be made", "[bots][p
   make_world(folder / "old", 1);
   const auto error_with = [&](const std::string& temporary) {
     ::setenv("TMPDIR", temporary.c_str(), 1);
-    const auto played = run_replay(
-        {"--world", folder / "old", "--into", "127.0.0.1:1", "--bot", RUNSTONE_BOT_PROGRAM});
+    const auto played = run_replay({"play", "--world", folder / "old", "--connect", "127.0.0.1:1",
+                                    "--bot", RUNSTONE_BOT_PROGRAM});
     ::unsetenv("TMPDIR");
     CHECK(played.code == 2);
     return played.err;

@@ -74,7 +74,7 @@ TEST_CASE("a damaged chunk is named to those who see it, and nobody else is dist
   REQUIRE(row.find('/') != std::string::npos);
   {
     ServerConfig config = quiet_config(folder / "world");
-    config.log_level = "error";
+    config.log_level = LogLevel::error;
     const auto server = start_server(config, flat_creation());
     RawClient near(server->port());
     RawClient far(server->port());

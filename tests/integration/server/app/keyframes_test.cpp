@@ -124,15 +124,15 @@ TEST_CASE("a damaged edit ends the making of keyframes, not the server",
 TEST_CASE("runstone-replay makes the keyframes that a world lacks", "[integration][keyframe]") {
   const TempFolder folder;
   make_world(folder.path(), 130);
-  const auto once = run_replay({"--world", folder.path(), "--keyframes", "--keyframe-edits", "20"});
+  const auto once = run_replay({"keyframes", "--world", folder.path(), "--keyframe-edits", "20"});
   CHECK(once.code == 0);
   CHECK(once.err == "");
   CHECK(once.out == "keyframes   6 made of 6 chunks, 0 there before\n");
   CHECK(places(folder.path()) == multiples(6));
-  CHECK(run_replay({"--world", folder.path(), "--keyframes", "--keyframe-edits", "20"}).out ==
+  CHECK(run_replay({"keyframes", "--world", folder.path(), "--keyframe-edits", "20"}).out ==
         "keyframes   0 made of 0 chunks, 6 there before\n");
   const auto held = *open_world(folder.path(), StoreAccess::read_write);
-  const auto refused = run_replay({"--world", folder.path(), "--keyframes"});
+  const auto refused = run_replay({"keyframes", "--world", folder.path()});
   CHECK(refused.code == 2);
   CHECK(refused.err.find("another program is writing this world") != std::string::npos);
 }

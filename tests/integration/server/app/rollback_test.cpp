@@ -57,7 +57,7 @@ void build(RawClient& client, ClientSequence seq, const EditShape& shape, Materi
 
 /// Voxels of the world by its log alone.
 std::string replayed(const std::string& world) {
-  const auto replay = run_replay({"--world", world, "--verify"});
+  const auto replay = run_replay({"verify", "--world", world});
   INFO(replay.out << replay.err);
   REQUIRE(replay.code == 0);
   return replay.out;
@@ -71,7 +71,7 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   ServerConfig config = quiet_config(folder / "world");
   KeySeed seed{};
   seed.fill(2);
-  config.operators = to_hex(key_pair_of(seed).public_key);
+  config.operators = {key_pair_of(seed).public_key};
   auto server = start_server(config, flat_creation());
   RawClient ana(server->port());
   REQUIRE(ana.join(1).has_value());
@@ -94,7 +94,7 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   RawClient boss(server->port());
   REQUIRE(boss.join(2).has_value());
   CHECK(command(boss, "rollback list").is_ok);
-  CHECK(command(boss, "log limit 3").text.find(" player1 #1 redo of 2 paste 2 70 0 to 5 73 3\n") !=
+  CHECK(command(boss, "log limit 3").text.find(" player1 #1 redo of 2 restored 2 70 0 to 5 73 3\n") !=
         std::string::npos);
   seed.fill(1);
   const std::string key = to_hex(key_pair_of(seed).public_key);

@@ -11,11 +11,11 @@
 namespace runstone::test {
 
 inline ServerConfig quiet_config(const std::string& world) {
-  start_logging("error");
+  start_logging(LogLevel::error);
   ServerConfig config;
   config.world = world;
   config.listen = "127.0.0.1:0";
-  config.log_level = "error";
+  config.log_level = LogLevel::error;
   return config;
 }
 

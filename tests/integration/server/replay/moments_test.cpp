@@ -1,4 +1,4 @@
-// runstone-replay and the moments of a world: --at as a time, --write, --diff, --verify against keyframes, reports.
+// The subcommands of runstone-replay that take moments of a world: verify --at, copy, diff; keyframes; reports.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -18,7 +18,7 @@ using namespace runstone::test;
 namespace {
 
 constexpr Sequence kEdits = 120;
-constexpr ChunkKey kImported{0, {7, 7, 7}};  // out of the edits' reach
+constexpr ChunkKey kImported{0, {7, 7, 7}};  // no edit touches it
 
 /// A closed world of edits a millisecond apart, with one imported chunk.
 void make_world(const std::string& folder) {
@@ -61,25 +61,27 @@ TEST_CASE("a replay stops at a moment in any spelling", "[store][replay]") {
       {"-0s", "up to sequence 120\n"}};
   for (const auto& [moment, said] : moments) {
     CAPTURE(moment);
-    const auto outcome = run_replay({"--world", folder.path(), "--at", moment});
+    const auto outcome =
+        run_replay({"verify", "--quick", "--world", folder.path(), "--at", moment});
     CHECK(outcome.err == "");
     CHECK(outcome.code == 0);
     CHECK(contains(outcome.out, said));
   }
-  const auto beyond = run_replay({"--world", folder.path(), "--at", "121"});
+  const auto beyond = run_replay({"verify", "--quick", "--world", folder.path(), "--at", "121"});
   CHECK(beyond.code == 2);
   CHECK(contains(beyond.err, "ends at seq=120, before seq=121"));
-  const auto wrong = run_replay({"--world", folder.path(), "--at", "yesterday"});
+  const auto wrong =
+      run_replay({"verify", "--quick", "--world", folder.path(), "--at", "yesterday"});
   CHECK(wrong.code == 2);
   CHECK(contains(wrong.err, "\"yesterday\" is no moment"));
 }
 
-TEST_CASE("a moment is written as a world of its own", "[store][replay]") {
+TEST_CASE("copy writes a moment as a new world", "[store][replay]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy";
   make_world(world);
-  const auto outcome = run_replay(
-      {"--world", world, "--at", "70", "--write", copy + "/", "--json", folder / "w.json"});
+  const auto outcome =
+      run_replay({"copy", copy + "/", "--world", world, "--at", "70", "--json", folder / "w.json"});
   CHECK(outcome.err == "");
   REQUIRE(outcome.code == 0);
   const auto source = *open_world(world, StoreAccess::read_only);
@@ -111,11 +113,11 @@ TEST_CASE("a moment is written as a world of its own", "[store][replay]") {
   CHECK(json.at("chunks") == keys.size());
   CHECK(json.at("world_digest") == to_hex(digest));
   CHECK(std::filesystem::exists(copy + ".unfinished") == false);
-  // Never over something.
-  const auto again = run_replay({"--world", world, "--write", copy});
+  // An existing world is never overwritten.
+  const auto again = run_replay({"copy", copy, "--world", world});
   CHECK(again.code == 2);
   CHECK(contains(again.err, "exists and is not empty"));
-  // Broken off, it leaves no world behind.
+  // A copy that is interrupted leaves nothing behind.
   const auto broken = copy_world(*source, *generator, 70, folder / "half",
                                  [](std::uint64_t done, std::uint64_t) { return done < 3; });
   REQUIRE_FALSE(broken.has_value());
@@ -123,19 +125,20 @@ TEST_CASE("a moment is written as a world of its own", "[store][replay]") {
   CHECK_FALSE(std::filesystem::exists(folder / "half.unfinished"));
 }
 
-TEST_CASE("a difference is told in a table and as JSON", "[store][replay]") {
+TEST_CASE("a difference is reported in a table and as JSON", "[store][replay]") {
   const TempFolder folder;
   make_world(folder.path());
-  const auto outcome = run_replay(
-      {"--world", folder.path(), "--diff", "-100ms", "120", "--json", folder / "d.json"});
+  const auto outcome = run_replay({"diff", "--world", folder.path(), "--from", "-100ms", "--to",
+                                   "120", "--json", folder / "d.json"});
   CHECK(outcome.code == 2);  // milliseconds are no unit
-  const auto told = run_replay({"--world", folder.path(), "--diff", "2023-11-14T22:13:20.02Z",
-                                "-0s", "--json", folder / "d.json"});
-  CHECK(told.err == "");
-  REQUIRE(told.code == 0);
-  CHECK(contains(told.out,
+  const auto table =
+      run_replay({"diff", "--world", folder.path(), "--from", "2023-11-14T22:13:20.02Z", "--to",
+                  "-0s", "--json", folder / "d.json"});
+  CHECK(table.err == "");
+  REQUIRE(table.code == 0);
+  CHECK(contains(table.out,
                  "moments     after sequence 20 and after sequence 120, 100 edits between\n"));
-  CHECK(contains(told.out, "builder 1: "));
+  CHECK(contains(table.out, "builder 1: "));
   const auto json = read_json(folder / "d.json");
   CHECK(json.at("edits") == 100);
   std::uint64_t by_author = 0, by_chunk = 0, edits = 0;
@@ -148,15 +151,15 @@ TEST_CASE("a difference is told in a table and as JSON", "[store][replay]") {
   CHECK(by_author == json.at("voxels"));
   CHECK(by_chunk == json.at("voxels"));
   CHECK(edits == 100);
-  CHECK(run_replay({"--world", folder.path(), "--diff", "30"}).code == 2);
-  CHECK(contains(run_replay({"--world", folder.path(), "--diff", "30", "20"}).err,
+  CHECK(run_replay({"diff", "--world", folder.path(), "--from", "30"}).code == 2);
+  CHECK(contains(run_replay({"diff", "--world", folder.path(), "--from", "30", "--to", "20"}).err,
                  "seq=30 is behind seq=20"));
 }
 
 TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][replay]") {
   const TempFolder folder;
   make_world(folder.path());
-  // Too scattered for a keyframe to be due: made by hand, at 50 and 100.
+  // The edits are too scattered for a keyframe to be due. Two are made by hand, at 50 and 100.
   {
     auto store = *open_world(folder.path(), StoreAccess::read_write);
     const auto generator = *make_generator(store->meta().generator, store->meta().materials);
@@ -174,15 +177,15 @@ TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][
     }
   }
   const std::string file = folder / "world.sqlite", json = folder / "v.json";
-  CHECK(run_replay({"--world", folder.path(), "--verify", "--json", json}).code == 0);
+  CHECK(run_replay({"verify", "--world", folder.path(), "--json", json}).code == 0);
   CHECK(std::to_string(read_json(json).at("report").at("keyframes_compared").get<int>()) ==
         raw_sql(file, "SELECT count(*) FROM keyframe_chunk"));
-  CHECK(run_replay({"--world", folder.path(), "--verify", "--at", "60", "--json", json}).code == 0);
+  CHECK(run_replay({"verify", "--world", folder.path(), "--at", "60", "--json", json}).code == 0);
   CHECK(std::to_string(read_json(json).at("report").at("keyframes_compared").get<int>()) ==
         raw_sql(file, "SELECT count(*) FROM keyframe_chunk WHERE seq <= 60"));
-  CHECK(run_replay({"--world", folder.path(), "--json", json}).code == 0);
+  CHECK(run_replay({"verify", "--quick", "--world", folder.path(), "--json", json}).code == 0);
   CHECK(read_json(json).at("report").at("keyframes_compared") == 0);
-  // A keyframe that is sound in itself but not what the log makes: the first difference is named.
+  // A keyframe is sound in itself, but differs from what the log makes.
   {
     SplitMix64 rng(3);
     auto store = *open_world(folder.path(), StoreAccess::read_write);
@@ -194,7 +197,7 @@ TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][
         store->save_keyframe(std::vector<std::pair<ChunkKey, ChunkPtr>>{{key, lie}}, std::nullopt)
             .has_value());
   }
-  const auto differs = run_replay({"--world", folder.path(), "--verify"});
+  const auto differs = run_replay({"verify", "--world", folder.path()});
   CHECK(differs.code == 1);
   CHECK(contains(differs.out, "1 differences"));
   CHECK(contains(differs.out, "first       keyframe: chunk="));

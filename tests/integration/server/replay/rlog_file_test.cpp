@@ -21,7 +21,7 @@ namespace {
 
 /// The line of the table that a replay prints about the world's digest.
 std::string digest_of_world(const std::string& folder) {
-  const ReplayOutcome replay = run_replay({"--world", folder, "--verify"});
+  const ReplayOutcome replay = run_replay({"verify", "--world", folder});
   INFO(replay.out << replay.err);
   REQUIRE(replay.code == 0);
   const std::size_t at = replay.out.find("digest ");
@@ -83,13 +83,13 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
   make_world(world, 60);
-  const ReplayOutcome written = run_replay({"--world", world, "--export", file});
+  const ReplayOutcome written = run_replay({"export", file, "--world", world});
   INFO(written.out << written.err);
   REQUIRE(written.code == 0);
   CHECK(written.out.find("edits       120, sequences 1 to 120") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(file + ".exporting"));
 
-  const ReplayOutcome made = run_replay({"--world", copy, "--import", file});
+  const ReplayOutcome made = run_replay({"import", file, "--world", copy});
   INFO(made.out << made.err);
   REQUIRE(made.code == 0);
   CHECK(made.out.find("edits       120 added, 0 known, 0 compacted") != std::string::npos);
@@ -109,11 +109,11 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
     CHECK(marks[i].resolved == marks_again[i].resolved);
   b.reset();
 
-  const ReplayOutcome again = run_replay({"--world", copy, "--import", file});
+  const ReplayOutcome again = run_replay({"import", file, "--world", copy});
   CHECK(again.code == 0);
   CHECK(again.out.find("edits       0 added, 120 known, 0 compacted") != std::string::npos);
   const std::string second = folder / "second.rlog";
-  REQUIRE(run_replay({"--world", copy, "--export", second}).code == 0);
+  REQUIRE(run_replay({"export", second, "--world", copy}).code == 0);
   CHECK(bytes_of(second) == bytes_of(file));
 }
 
@@ -122,12 +122,12 @@ TEST_CASE("a log exported up to a sequence gives the world of that moment, and g
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
   make_world(world, 40);
-  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "30"}).code == 0);
-  REQUIRE(run_replay({"--world", copy, "--import", file}).code == 0);
+  REQUIRE(run_replay({"export", file, "--world", world, "--at", "30"}).code == 0);
+  REQUIRE(run_replay({"import", file, "--world", copy}).code == 0);
   CHECK(log_of(copy).size() == 30);
   CHECK(opened(copy)->epoch() == 1);
-  REQUIRE(run_replay({"--world", world, "--export", file}).code == 0);
-  const ReplayOutcome rest = run_replay({"--world", copy, "--import", file});
+  REQUIRE(run_replay({"export", file, "--world", world}).code == 0);
+  const ReplayOutcome rest = run_replay({"import", file, "--world", copy});
   CHECK(rest.out.find("edits       50 added, 30 known") != std::string::npos);
   CHECK(digest_of_world(copy) == digest_of_world(world));
 }
@@ -168,7 +168,7 @@ TEST_CASE(
     Bytes bytes = sound;
     damage.make(bytes);
     write_bytes(torn, bytes);
-    const ReplayOutcome imported = run_replay({"--world", copy, "--import", torn});
+    const ReplayOutcome imported = run_replay({"import", torn, "--world", copy});
     CAPTURE(i, imported.out);
     CHECK(imported.code == 2);
     CHECK(imported.err == "runstone-replay: " + torn + ": edit " +
@@ -178,7 +178,7 @@ TEST_CASE(
     CHECK(stands == std::vector<EditRecord>(
                         log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
     // The sound file mends it.
-    CHECK(run_replay({"--world", copy, "--import", file}).code == 0);
+    CHECK(run_replay({"import", file, "--world", copy}).code == 0);
     CHECK(log_of(copy) == log);
   }
 }
@@ -190,7 +190,7 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   export_small_blocks(world, file);
   const auto refused = [&](const std::string& into) {
     const auto before = log_of(into);
-    const ReplayOutcome imported = run_replay({"--world", into, "--import", file});
+    const ReplayOutcome imported = run_replay({"import", file, "--world", into});
     CHECK(imported.code == 2);
     CHECK(log_of(into) == before);
     return imported.err;
@@ -200,8 +200,8 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   REQUIRE(create_world(folder / "other", other).has_value());
   CHECK(refused(folder / "other").find("is of another world") != std::string::npos);
 
-  REQUIRE(run_replay({"--world", world, "--export", file, "--at", "25"}).code == 0);
-  REQUIRE(run_replay({"--world", folder / "fork", "--import", file}).code == 0);
+  REQUIRE(run_replay({"export", file, "--world", world, "--at", "25"}).code == 0);
+  REQUIRE(run_replay({"import", file, "--world", folder / "fork"}).code == 0);
   {
     auto fork = opened(folder / "fork", StoreAccess::read_write);
     REQUIRE(fork->raise_epoch().has_value());
@@ -212,7 +212,7 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   CHECK(refused(folder / "fork").find("edit 26 is another one than in") != std::string::npos);
 
   auto writer = opened(world, StoreAccess::read_write);
-  CHECK(run_replay({"--world", world, "--import", file}).code == 2);  // a server holds it
+  CHECK(run_replay({"import", file, "--world", world}).code == 2);  // a server holds it
 }
 
 TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", "[store][rlog]") {
@@ -234,11 +234,11 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
               ->append({}, std::span(records).subspan(10))
               .has_value());
   export_small_blocks(world, file);
-  const ReplayOutcome alone = run_replay({"--world", folder / "new", "--import", file});
+  const ReplayOutcome alone = run_replay({"import", file, "--world", folder / "new"});
   CHECK(alone.code == 2);
   CHECK(alone.err.find("holds not all of its world") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "new"));
-  const ReplayOutcome onto = run_replay({"--world", folder / "copy", "--import", file});
+  const ReplayOutcome onto = run_replay({"import", file, "--world", folder / "copy"});
   CHECK(onto.out.find("edits       30 added, 10 known") != std::string::npos);
   CHECK(digest_of_world(folder / "copy") == digest_of_world(world));
 
@@ -246,18 +246,15 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
   compact_by_hand(world + "/world.sqlite", {records[19].version, records[19].time_us}, {});
   export_small_blocks(world, file);
   CHECK(read_rlog(bytes_of(file)).records.size() == 20);
-  CHECK(run_replay({"--world", folder / "copy", "--import", file}).code == 0);
+  CHECK(run_replay({"import", file, "--world", folder / "copy"}).code == 0);
 }
 
 TEST_CASE("files that cannot be had are named", "[store][rlog]") {
   const TempFolder folder;
   make_world(folder / "world", 3);
-  CHECK(run_replay({"--world", folder / "new", "--import", folder / "none.rlog"}).code == 2);
-  CHECK(run_replay({"--world", folder / "world", "--export", folder / "no/such/log.rlog"}).code ==
-        2);
-  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--import", "b"}).code == 2);
-  CHECK(run_replay({"--world", folder / "world", "--export", "a", "--verify"}).code == 2);
+  CHECK(run_replay({"import", folder / "none.rlog", "--world", folder / "new"}).code == 2);
+  CHECK(run_replay({"export", folder / "no/such/log.rlog", "--world", folder / "world"}).code == 2);
   write_bytes(folder / "text", {'n', 'o'});
-  CHECK(run_replay({"--world", folder / "new", "--import", folder / "text"}).err ==
+  CHECK(run_replay({"import", folder / "text", "--world", folder / "new"}).err ==
         "runstone-replay: " + folder / "text" + ": edit 1 at byte 0: is not an .rlog file\n");
 }

@@ -30,6 +30,8 @@ TEST_CASE("commands without words are read", "[admin][command]") {
   parsed<HelpCommand>("help");
   parsed<StatusCommand>("  status ");
   parsed<PlayersCommand>("players");
+  CHECK(parsed<MaterialsCommand>("materials").part.empty());
+  CHECK(parsed<MaterialsCommand>("materials wool").part == "wool");
   parsed<StopCommand>("stop");
   CHECK_FALSE(parsed<UndoCommand>("undo").is_redo);
   CHECK(parsed<UndoCommand>("redo").is_redo);
@@ -96,14 +98,16 @@ TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
         "log cause \"rage\": player, console, rollback, undo, redo or import");
   CHECK(mistake("log limit 0") == "log limit \"0\": a number from 1 to 1000");
   CHECK(mistake("log \"a") == "a \" is missing at the end");
+  CHECK(mistake("materials wool red") ==
+        "materials \"red\": at most one word comes after materials");
   CHECK(mistake("undo it") == "undo \"it\": nothing comes after undo");
   CHECK(mistake("help\n") == "a command is printable UTF-8 text");
   CHECK(mistake(std::string(kCommandBytesMax + 1, 'a')) == "a command has at most 1024 bytes");
 }
 
-TEST_CASE("everybody may undo, redo and ask for help; the rest is for operators",
+TEST_CASE("everybody may undo, redo, list materials and ask for help; the rest is for operators",
           "[admin][command]") {
-  for (const char* line : {"help", "undo", "redo"})
+  for (const char* line : {"help", "materials", "undo", "redo"})
     CHECK(is_for_everybody(*parse_command(line, kNow)));
   for (const char* line : {"status", "players", "stop", "log", "rollback list", "rollback apply p1",
                            "rollback preview since 1h"}) {

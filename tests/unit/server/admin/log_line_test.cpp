@@ -1,6 +1,9 @@
 #include "server/admin/log_line.hpp"
 
 #include <catch2/catch.hpp>
+#include <string>
+
+#include "server/admin/command.hpp"
 
 using namespace runstone;
 
@@ -14,10 +17,23 @@ TEST_CASE("a line of the log says when, who, why, what, where and of which mater
   record.edit = {FillBox{{{1, 2, -3}, {5, 6, 7}}}, {}, *stone};
   CHECK(log_line(record, "ana #3", materials) ==
         "9120 2026-11-21T23:57:42Z ana #3 player box 1 2 -3 to 4 5 6 := stone");
-  record.edit = {
-      SetVoxel{{7, 8, 9}}, {}, static_cast<Material>(materials.size())};  // a material nobody knows
-  record.cause = Cause::undo;
+  const auto unknown = static_cast<Material>(materials.size());
+  record.edit = {SetVoxel{{7, 8, 9}}, {}, unknown};
+  CHECK(log_line(record, "#5", materials) == "9120 2026-11-21T23:57:42Z #5 player voxel 7 8 9");
+}
+
+TEST_CASE("a line of the log calls what an undo, redo or rollback writes restored", "[server]") {
+  // The kind of such an edit is paste, whatever the edit was that it takes back.
+  const MaterialTable materials = default_material_table();
+  EditRecord record;
+  record.version = {2, 9120};
+  record.time_us = 1'795'305'462'000'000;
+  record.edit = {SetVoxel{{7, 8, 9}}, {}, 1};
   record.subject = 9100;
-  CHECK(log_line(record, "#5", materials) ==
-        "9120 2026-11-21T23:57:42Z #5 undo of 9100 voxel 7 8 9");
+  const std::string begin = "9120 2026-11-21T23:57:42Z #5 ";
+  for (const Cause cause : {Cause::undo, Cause::redo, Cause::rollback}) {
+    record.cause = cause;
+    CHECK(log_line(record, "#5", materials) ==
+          begin + std::string(name_of(cause)) + " of 9100 restored 7 8 9");
+  }
 }

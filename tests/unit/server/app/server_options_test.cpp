@@ -1,6 +1,8 @@
 #include "server/app/server_options.hpp"
 
 #include <catch2/catch.hpp>
+#include <iostream>
+#include <sstream>
 #include <vector>
 
 using namespace runstone;
@@ -38,6 +40,30 @@ TEST_CASE("what follows control is the command, whatever it looks like", "[serve
   const auto none = parse({"control", "--world", "valley"});
   CHECK_FALSE(none.options);
   CHECK(none.exit_code == 2);
+}
+
+TEST_CASE("a mistyped subcommand is the argument that the error names", "[server_options]") {
+  std::ostringstream text;
+  std::streambuf* const before = std::cerr.rdbuf(text.rdbuf());
+  const auto parsed = parse({"contrl", "status"});
+  std::cerr.rdbuf(before);
+  CHECK(parsed.exit_code == 2);
+  CHECK(text.str() ==
+        "runstone-server: \"contrl\" is no subcommand (import, compact, control) and no flag; "
+        "--help lists the flags\n");
+}
+
+TEST_CASE("a new world is made on request", "[server_options]") {
+  CHECK_FALSE(parse({"--world", "a"}).options->create);
+  CHECK(parse({"--world", "a", "--create"}).options->create);
+}
+
+TEST_CASE("compact gives the space back unless the size is to be kept", "[server_options]") {
+  const auto plain = parse({"compact", "--world", "a", "--keep", "9"});
+  REQUIRE(plain.options->compact);
+  CHECK(plain.options->compact->shrink);
+  CHECK_FALSE(
+      parse({"compact", "--world", "a", "--keep", "9", "--keep-size"}).options->compact->shrink);
 }
 
 TEST_CASE("an unknown flag ends the program with 2", "[server_options]") {

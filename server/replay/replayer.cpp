@@ -1,4 +1,4 @@
-#include "server/replay/replay.hpp"
+#include "server/replay/replayer.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,47 @@
+#include "server/replay/command_world.hpp"
+
+#include <iomanip>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <utility>
+
+#include "common/core/hex.hpp"
+#include "server/replay/digest_list.hpp"
+#include "server/store/world_folder.hpp"
+
+namespace runstone {
+
+Result<CommandWorld, std::string> open_for_reading(const std::string& folder) {
+  auto store = open_world(folder, StoreAccess::read_only);
+  if (!store) return Unexpected<std::string>{store.error().message()};
+  auto generator = generator_of(**store);
+  if (!generator) return Unexpected<std::string>{generator.error()};
+  return CommandWorld{*std::move(store), *std::move(generator)};
+}
+
+Result<Sequence, std::string> end_of_replay(Store& store,
+                                            const std::optional<NamedMoment>& moment) {
+  if (!moment) return std::numeric_limits<Sequence>::max();
+  const auto at = sequence_of(store, *moment);
+  if (!at) return Unexpected<std::string>{at.error().message()};
+  return *at;
+}
+
+std::ostream& row(std::ostream& out, const char* name) {
+  return out << std::left << std::setw(12) << name << std::right;
+}
+
+void print_world(std::ostream& out, const Store& store) {
+  row(out, "world") << to_hex(store.meta().world_id) << "  " << store.file() << '\n';
+}
+
+Result<void, std::string> write_report(const std::string& file,
+                                       const nlohmann::ordered_json& json) {
+  if (file.empty()) return {};
+  const auto written = write_text_file(file, json.dump(1) + "\n");
+  if (!written) return Unexpected<std::string>{written.error().message()};
+  return {};
+}
+
+}  // namespace runstone

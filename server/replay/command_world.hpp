@@ -1,0 +1,37 @@
+// What the subcommands of runstone-replay share: opening a world, finding the end of a replay, and printing a report.
+#pragma once
+#include <iosfwd>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "common/core/ids.hpp"
+#include "common/core/result.hpp"
+#include "common/generate/generator.hpp"
+#include "server/history/named_moment.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+struct CommandWorld {
+  std::unique_ptr<Store> store;
+  std::unique_ptr<Generator> generator;
+};
+
+/// Opens the world in `folder` for reading; a server may be running it. Fails if there is no world, or if this
+/// program lacks its generator. The error is one line.
+Result<CommandWorld, std::string> open_for_reading(const std::string& folder);
+
+/// Returns the sequence number of the moment in this world, or the greatest sequence number if there is no moment.
+Result<Sequence, std::string> end_of_replay(Store& store, const std::optional<NamedMoment>& moment);
+
+/// Begins a row of a report's table: writes the name in a column of twelve characters.
+std::ostream& row(std::ostream& out, const char* name);
+/// Writes the row "world": id and file.
+void print_world(std::ostream& out, const Store& store);
+
+/// Writes the report to `file`, or does nothing if `file` is empty. The error is one line.
+Result<void, std::string> write_report(const std::string& file, const nlohmann::ordered_json& json);
+
+}  // namespace runstone

@@ -1,0 +1,59 @@
+#include "server/replay/copy_command.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <utility>
+
+#include "common/core/hex.hpp"
+#include "common/os/progress_line.hpp"
+#include "server/replay/command_world.hpp"
+#include "server/replay/subcommand.hpp"
+#include "server/replay/world_copy.hpp"
+
+namespace runstone {
+namespace {
+
+Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+}  // namespace
+
+void declare_copy(SubcommandOptions& command_line, CopyOptions& options) {
+  command_line.common(options.common, "folder of the world; a server may be running it");
+  command_line.text("FOLDER", options.folder, "folder of the new world; empty, or not there");
+  command_line.moment("--at", options.at, "the moment to copy");
+}
+
+Result<int, std::string> run_copy(const CopyOptions& options, std::ostream& out) {
+  const auto world = open_for_reading(options.common.world);
+  if (!world) return failure(world.error());
+  Store& store = *world->store;
+  const auto last = store.last_sequence();
+  if (!last) return failure(last.error().message());
+  const auto end = end_of_replay(store, options.at);
+  if (!end) return failure(end.error());
+  const Sequence at = std::min(*end, *last);
+  const auto copy = [&] {
+    ProgressLine line("chunks written", options.common.progress);
+    return copy_world(store, *world->generator, at, options.folder,
+                      [&](std::uint64_t done, std::uint64_t all) {
+                        line.show(done, all);
+                        return true;
+                      });
+  }();
+  if (!copy) return failure(copy.error());
+  print_world(out, store);
+  row(out, "moment") << "after sequence " << at << '\n';
+  row(out, "written") << options.folder << ", " << copy->chunks << " chunks\n";
+  row(out, "digest") << to_hex(copy->world_digest) << '\n';
+  const auto written =
+      write_report(options.common.json, {{"world_id", to_hex(store.meta().world_id)},
+                                         {"seq", at},
+                                         {"written", options.folder},
+                                         {"chunks", copy->chunks},
+                                         {"world_digest", to_hex(copy->world_digest)}});
+  if (!written) return failure(written.error());
+  return kReplayEqual;
+}
+
+}  // namespace runstone

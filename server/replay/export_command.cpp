@@ -1,0 +1,37 @@
+#include "server/replay/export_command.hpp"
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "server/replay/command_world.hpp"
+#include "server/replay/rlog_file.hpp"
+#include "server/replay/subcommand.hpp"
+#include "server/store/store.hpp"
+
+namespace runstone {
+
+void declare_export(SubcommandOptions& command_line, ExportOptions& options) {
+  command_line.common(options.common, "folder of the world; a server may be running it");
+  command_line.text("FILE", options.file, "the .rlog file to write; an old one is replaced");
+  command_line.moment("--at", options.at, "last edit to export");
+}
+
+Result<int, std::string> run_export(const ExportOptions& options, std::ostream& out) {
+  const auto store = open_world(options.common.world, StoreAccess::read_only);
+  if (!store) return Unexpected<std::string>{store.error().message()};
+  const auto at = end_of_replay(**store, options.at);
+  if (!at) return Unexpected<std::string>{at.error()};
+  const auto done = export_rlog(**store, options.file, *at);
+  if (!done) return Unexpected<std::string>{done.error()};
+  print_world(out, **store);
+  row(out, "edits") << done->edits << ", sequences " << done->first << " to " << done->last << '\n';
+  row(out, "written") << options.file << ", " << done->bytes << " bytes\n";
+  const auto written = write_report(options.common.json, {{"edits", done->edits},
+                                                          {"first", done->first},
+                                                          {"last", done->last},
+                                                          {"bytes", done->bytes}});
+  if (!written) return Unexpected<std::string>{written.error()};
+  return kReplayEqual;
+}
+
+}  // namespace runstone

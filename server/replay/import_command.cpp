@@ -1,0 +1,35 @@
+#include "server/replay/import_command.hpp"
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "server/replay/command_world.hpp"
+#include "server/replay/rlog_file.hpp"
+#include "server/replay/subcommand.hpp"
+
+namespace runstone {
+
+void declare_import(SubcommandOptions& command_line, ImportOptions& options) {
+  command_line.common(options.common, "folder of the world; made if it holds none");
+  command_line.text("FILE", options.file, "the .rlog file to append to the world's log");
+}
+
+Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out) {
+  const auto done = import_rlog(options.common.world, options.file);
+  if (!done) return Unexpected<std::string>{done.error()};
+  row(out, "world") << options.common.world << (done->made_world ? ", made\n" : "\n");
+  row(out, "edits") << done->added << " added, " << done->known << " known, " << done->compacted
+                    << " compacted\n";
+  row(out, "log") << "ends with sequence " << done->last << '\n';
+  const auto written = write_report(options.common.json, {{"made_world", done->made_world},
+                                                          {"added", done->added},
+                                                          {"known", done->known},
+                                                          {"compacted", done->compacted},
+                                                          {"last", done->last},
+                                                          {"stopped", done->stopped}});
+  if (!done->stopped.empty()) return Unexpected<std::string>{done->stopped};
+  if (!written) return Unexpected<std::string>{written.error()};
+  return kReplayEqual;
+}
+
+}  // namespace runstone

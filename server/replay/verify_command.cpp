@@ -1,0 +1,127 @@
+#include "server/replay/verify_command.hpp"
+
+#include <chrono>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <utility>
+
+#include "common/core/hex.hpp"
+#include "common/os/progress_line.hpp"
+#include "common/os/steady_clock.hpp"
+#include "server/replay/command_world.hpp"
+#include "server/replay/digest_list.hpp"
+#include "server/replay/replayer.hpp"
+#include "server/replay/subcommand.hpp"
+
+namespace runstone {
+namespace {
+
+Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
+
+double rate_of(const ReplayReport& report, double seconds) {
+  return seconds > 0 ? static_cast<double>(report.edits) / seconds : 0;
+}
+
+void print_table(std::ostream& out, const Store& store, const ReplayReport& report, double seconds,
+                 bool all_rows_read) {
+  const WorldMeta& meta = store.meta();
+  out << std::fixed;
+  print_world(out, store);
+  row(out, "base") << meta.generator.name << " version " << meta.generator.version << ", seed "
+                   << meta.generator.seed << '\n';
+  row(out, "edits") << report.edits << ", up to sequence " << report.seq << '\n';
+  row(out, "chunks") << report.digests.size() << " edited\n";
+  row(out, "voxels") << report.voxels_changed << " changed\n";
+  row(out, "stacks") << report.stack_depths.text() << " (depth:count)\n";
+  row(out, "snapshots") << report.snapshots_compared << " compared\n";
+  row(out, "keyframes") << report.keyframes_compared << " chunks compared\n";
+  row(out, "lists") << report.listed_compared << " chunks compared\n";
+  row(out, "left out") << report.not_compared
+                       << " newer than the end, or of another level of detail\n";
+  if (all_rows_read) row(out, "rows") << "all read and sound\n";
+  row(out, "time") << std::setprecision(3) << seconds << " s, " << std::setprecision(0)
+                   << rate_of(report, seconds) << " edits/s\n";
+  row(out, "digest") << to_hex(report.world_digest) << '\n';
+  row(out, "result") << (report.differences == 0
+                             ? "equal"
+                             : std::to_string(report.differences) + " differences")
+                     << '\n';
+  if (report.first) row(out, "first") << report.first->message() << '\n';
+}
+
+/// Returns a digest list with one more member, "report".
+std::string report_json(const Store& store, const ReplayReport& report, double seconds) {
+  const DigestList list{store.meta().world_id, report.seq, report.digests};
+  nlohmann::ordered_json more = {{"edits", report.edits},
+                                 {"chunks", report.digests.size()},
+                                 {"voxels_changed", report.voxels_changed},
+                                 {"stack_depths", report.stack_depths.text()},
+                                 {"snapshots_compared", report.snapshots_compared},
+                                 {"keyframes_compared", report.keyframes_compared},
+                                 {"listed_compared", report.listed_compared},
+                                 {"not_compared", report.not_compared},
+                                 {"differences", report.differences},
+                                 {"first_difference", report.first ? report.first->message() : ""},
+                                 {"world_digest", to_hex(report.world_digest)},
+                                 {"seconds", seconds},
+                                 {"edits_per_second", rate_of(report, seconds)}};
+  std::string json = to_json(list);
+  json.resize(json.rfind('}'));  // removes the end of the object, so that a member can follow
+  return json + ",\n\"report\":" + more.dump() + "}\n";
+}
+
+/// Hands the lists, and the keyframes unless the replay is quick, to the replayer.
+Result<void, std::string> expect_all(Replayer& replayer, Store& store,
+                                     const VerifyOptions& options) {
+  for (const std::string& file : options.against) {
+    const auto list = read_digests_json(file);
+    if (!list) return failure(list.error().message());
+    if (list->world_id != store.meta().world_id) return failure(file + ": is about another world");
+    replayer.expect(file, *list);
+  }
+  if (options.quick) return {};
+  if (const auto checked = store.check(); !checked) return failure(checked.error().message());
+  const auto keyframes = store.keyframe_chunks();
+  if (!keyframes) return failure(keyframes.error().message());
+  replayer.expect_keyframes(*keyframes);
+  return {};
+}
+
+}  // namespace
+
+void declare_verify(SubcommandOptions& command_line, VerifyOptions& options) {
+  command_line.common(options.common, "folder of the world; a server may be running it");
+  command_line.moment("--at", options.at, "end of the replay");
+  command_line.texts("--against", options.against,
+                     "compare with these digest lists of servers, clients or replays");
+  command_line.flag("--quick", options.quick,
+                    "do not read and check every row of every table, nor compare keyframes");
+}
+
+Result<int, std::string> run_verify(const VerifyOptions& options, std::ostream& out) {
+  const auto world = open_for_reading(options.common.world);
+  if (!world) return failure(world.error());
+  Store& store = *world->store;
+  const auto at = end_of_replay(store, options.at);
+  if (!at) return failure(at.error());
+  Replayer replayer(store, *world->generator);
+  if (const auto expected = expect_all(replayer, store, options); !expected) {
+    return failure(expected.error());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const StoreResult<ReplayReport> report = [&] {
+    ProgressLine line("edits replayed", options.common.progress);
+    return replayer.run(*at, [&](Sequence done, Sequence last) { line.show(done, last); });
+  }();
+  const double seconds = seconds_since(start);
+  if (!report) return failure(report.error().message());
+  print_table(out, store, *report, seconds, !options.quick);
+  if (!options.common.json.empty()) {
+    const auto written = write_text_file(options.common.json, report_json(store, *report, seconds));
+    if (!written) return failure(written.error().message());
+  }
+  return report->differences == 0 ? kReplayEqual : kReplayDifferent;
+}
+
+}  // namespace runstone

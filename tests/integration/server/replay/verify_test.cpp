@@ -1,0 +1,194 @@
+// runstone-replay verify: exit codes, table and report of sound, tampered and damaged worlds.
+#include "server/replay/verify_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "common/runs/run_chunk.hpp"
+#include "server/replay/digest_list.hpp"
+#include "tests/support/raw_sql.hpp"
+#include "tests/support/run_replay.hpp"
+#include "tests/support/sample_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+using namespace runstone;
+using namespace runstone::test;
+
+namespace {
+
+constexpr int kEdge = kSampleEdge;
+
+}  // namespace
+
+TEST_CASE("the replay program answers with its exit code, a table and a list", "[store][replay]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", json = folder / "out.json",
+                    other = folder / "other.json";
+  SplitMix64 rng(14);
+  {
+    const auto store = *create_world(world, sample_meta());  // generator "empty"
+    REQUIRE(store->raise_epoch().has_value());
+    REQUIRE(store->append({}, sample_records(rng, 1, 1, 80)).has_value());
+  }
+  const ReplayOutcome first = run_replay({"verify", "--world", world, "--json", json});
+  INFO(first.out << first.err);
+  CHECK(first.code == 0);
+  CHECK(first.err.empty());
+  CHECK(first.out.find("edits       80, up to sequence 80") != std::string::npos);
+  CHECK(first.out.find("result      equal") != std::string::npos);
+
+  const auto list = read_digests_json(json);
+  REQUIRE(list.has_value());
+  CHECK(list->seq == 80);
+  CHECK(list->chunks.size() > 20);
+  const ReplayOutcome second =
+      run_replay({"verify", "--quick", "--world", world, "--against", json, json});
+  CHECK(second.code == 0);
+  CHECK(second.out.find("lists       " + std::to_string(2 * list->chunks.size()) +
+                        " chunks compared") != std::string::npos);
+  CHECK(run_replay({"verify", "--quick", "--world", world, "--at", "40", "--json", other}).code ==
+        0);
+  CHECK(read_digests_json(other)->seq == 40);
+  CHECK(run_replay({"verify", "--quick", "--world", world, "--against", other}).code == 0);
+
+  DigestList wrong = *list;
+  wrong.chunks[3].digest.lane[1] ^= 4;
+  REQUIRE(write_digests_json(other, wrong).has_value());
+  const ReplayOutcome different =
+      run_replay({"verify", "--quick", "--world", world, "--against", other});
+  CHECK(different.code == 1);
+  CHECK(different.out.find("result      1 differences") != std::string::npos);
+  CHECK(different.out.find("first       " + other + ": chunk=") != std::string::npos);
+
+  wrong.world_id[0] ^= 1;
+  REQUIRE(write_digests_json(other, wrong).has_value());
+  const ReplayOutcome stranger =
+      run_replay({"verify", "--quick", "--world", world, "--against", other});
+  CHECK(stranger.code == 2);
+  CHECK(stranger.err == "runstone-replay: " + other + ": is about another world\n");
+  CHECK(run_replay({"verify", "--quick", "--world", world, "--against", folder / "missing.json"})
+            .code == 2);
+  CHECK(
+      run_replay({"verify", "--quick", "--world", world, "--json", folder / "no/such/folder.json"})
+          .code == 2);
+  CHECK(run_replay({"verify", "--quick", "--world", folder / "nothing"}).code == 2);
+  CHECK(run_replay({}).code == 2);
+  CHECK(run_replay({"verify", "--quick", "--world", world, "--at", "minus one"}).code == 2);
+  CHECK(run_replay({"--help"}).code == 0);
+
+  REQUIRE(
+      raw_sql(world + "/world.sqlite", "UPDATE edit_log SET client_seq = 0 WHERE seq = 9").empty());
+  const ReplayOutcome damaged = run_replay({"verify", "--quick", "--world", world});
+  CHECK(damaged.code == 2);
+  CHECK(damaged.err ==
+        "runstone-replay: " + world + "/world.sqlite: edit_log seq=9: checksum is wrong\n");
+}
+
+namespace {
+
+std::string bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A closed world of the generator "empty" in `folder`: one edit in each of two chunks, with snapshots.
+/// `tamper` may change a snapshot's voxels before it is stored, digest and checksums included.
+void make_small_world(const std::string& folder,
+                      const std::function<void(const ChunkKey&, RunChunk&)>& tamper) {
+  const auto store = *create_world(folder, sample_meta());
+  REQUIRE(store->raise_epoch().has_value());
+  std::vector<EditRecord> records;
+  std::vector<std::pair<ChunkKey, ChunkPtr>> snapshots;
+  for (const std::int32_t cx : {0, 3}) {
+    SplitMix64 rng(1);
+    EditRecord record = sample_record(rng, 1, records.size() + 1);
+    record.cause = Cause::player;
+    record.subject = 0;
+    record.edit = {SetVoxel{{cx * kEdge + 1, 2, 3}}, {}, 4};
+    Chunk chunk;
+    chunk.voxels = uniform_chunk(Extent::cube(kEdge), kEmpty);
+    chunk.version = record.version;
+    fill(chunk.voxels, index_of({1, 2, 3}, chunk.voxels.extent, chunk.voxels.order), 1, 4);
+    const ChunkKey key{0, {cx, 0, 0}};
+    tamper(key, chunk.voxels);
+    chunk.digest = digest_of(chunk.voxels);
+    records.push_back(record);
+    snapshots.emplace_back(key, std::make_shared<const Chunk>(std::move(chunk)));
+  }
+  REQUIRE(store->append({}, records).has_value());
+  REQUIRE(store->save_snapshots(snapshots, 2).has_value());
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot that is sound by itself but not what the log makes exits with 1 and is named",
+          "[store][replay]") {
+  const TempFolder folder;
+  const std::string honest = folder / "honest", tampered = folder / "tampered";
+  make_small_world(honest, [](const ChunkKey&, RunChunk&) {});
+  const ReplayOutcome equal = run_replay({"verify", "--world", honest});
+  INFO(equal.out << equal.err);
+  CHECK(equal.code == 0);
+  CHECK(equal.out.find("snapshots   2 compared") != std::string::npos);
+
+  Digest replayed, stored;
+  make_small_world(tampered, [&](const ChunkKey& key, RunChunk& voxels) {
+    if (key.at.x != 3) return;
+    replayed = digest_of(voxels);
+    fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1,
+         2);  // a block that nobody placed
+    stored = digest_of(voxels);
+  });
+  const ReplayOutcome different = run_replay({"verify", "--world", tampered});
+  INFO(different.out << different.err);
+  CHECK(different.code == 1);
+  CHECK(different.err.empty());
+  CHECK(different.out.find("rows        all read and sound\n") != std::string::npos);
+  CHECK(different.out.find("result      1 differences\n") != std::string::npos);
+  CHECK(
+      different.out.find("first       snapshot: chunk=3,0,0 version=1:2 digest=" + to_hex(stored) +
+                         ", replay gives digest=" + to_hex(replayed) + "\n") != std::string::npos);
+}
+
+TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is overwritten",
+          "[store][replay]") {
+  const TempFolder folder;
+  const std::string world = folder / "world", file = world + "/world.sqlite",
+                    json = folder / "out.json";
+  make_small_world(world, [](const ChunkKey&, RunChunk&) {});
+  REQUIRE(run_replay({"verify", "--world", world, "--json", json}).code == 0);
+  // The journal is part of the file afterwards, so that its bytes can be compared.
+  REQUIRE(raw_sql(file,
+                  "UPDATE edit_log SET descriptor = zeroblob(9) WHERE seq = 2; "
+                  "PRAGMA wal_checkpoint(TRUNCATE)") == "0");
+  const std::string damaged = bytes_of(file), report = bytes_of(json);
+  REQUIRE(damaged.size() > 4096);
+  // The full check finds the row, and so does the replay itself.
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"verify"}, {"verify", "--quick", "--at", "2"}}) {
+    std::vector<std::string> arguments = how;
+    arguments.insert(arguments.end(), {"--world", world, "--json", json});
+    const ReplayOutcome outcome = run_replay(arguments);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err == "runstone-replay: " + file + ": edit_log seq=2: checksum is wrong\n");
+  }
+  // The log before the damaged row is sound.
+  CHECK(run_replay({"verify", "--quick", "--world", world, "--at", "1"}).code == 0);
+  CHECK(bytes_of(file) == damaged);
+  CHECK(bytes_of(json) == report);
+}
+
+TEST_CASE("a world whose generator this program lacks is not replayed", "[store][replay]") {
+  const TempFolder folder;
+  WorldMeta meta = sample_meta();
+  meta.generator.name = "atlantis";
+  REQUIRE(create_world(folder.path(), meta).has_value());
+  const ReplayOutcome run = run_replay({"verify", "--quick", "--world", folder.path()});
+  CHECK(run.code == 2);
+  CHECK(run.err.find("generator=atlantis version=1") != std::string::npos);
+}
