@@ -230,12 +230,12 @@ void Client::flush() {
 
 void Client::step_cache(TimeUs now_us, bool all) {
   if (!cache_) return;
-  for (auto& found : cache_->take_answers()) session_.answer(std::move(found), now_us);
-  while (auto question = session_.take_question()) cache_->ask(*std::move(question));
+  for (auto& found : cache_->take_answers()) session_.receive_cached(std::move(found), now_us);
+  while (auto question = session_.take_cache_lookup()) cache_->ask(*std::move(question));
   if (all || now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     if (const auto world = session_.cached_world()) {
-      cache_->keep(*world, session_.replica().take_unkept(all ? SIZE_MAX : cache_->room()));
+      cache_->keep(*world, session_.replica().take_for_cache(all ? SIZE_MAX : cache_->room()));
     }
   }
   if (const std::string warning = cache_->take_warning(); !warning.empty())
@@ -257,7 +257,7 @@ void Client::take_input(TimeUs now_us) {
   if (input.scrub != 0) scrub(input.scrub);
   if (input.undo) static_cast<void>(session_.command("undo"));
   if (input.redo) static_cast<void>(session_.command("redo"));
-  if (input.live) static_cast<void>(session_.travel({}));
+  if (input.live) static_cast<void>(session_.request_history({}));
   if (input.screenshot) static_cast<void>(screenshot(fmt::format("runstone-{}.png", now_us)));
   pipeline_.moved();
 }
@@ -283,7 +283,7 @@ bool Client::show_answer() {
 
 void Client::scrub(int steps) {
   const Sequence newest = session_.replica().newest();
-  const bool is_away = session_.replica().past() || session_.travelling();
+  const bool is_away = session_.replica().past() || session_.loading_history();
   const auto from = static_cast<std::int64_t>(is_away ? scrubbed_to_ : newest);
   const auto step = static_cast<std::int64_t>(std::max<Sequence>(1, newest / kScrubSteps));
   const auto to = static_cast<Sequence>(std::max<std::int64_t>(0, from + steps * step));
@@ -292,7 +292,7 @@ void Client::scrub(int steps) {
     travel.to = HistoryTarget::sequence;
     travel.seq = scrubbed_to_ = to;
   }
-  static_cast<void>(session_.travel(travel));
+  static_cast<void>(session_.request_history(travel));
 }
 
 void Client::see_completeness(TimeUs now_us) {
@@ -331,7 +331,7 @@ void Client::drain_changes() {
   for (const auto& [key, reason] : news.unavailable) {
     spdlog::warn("chunk={} unavailable: {}", text_of(key), to_string(reason));
   }
-  for (const RejectNews& reject : news.rejects) {
+  for (const RejectedEdit& reject : news.rejects) {
     spdlog::info("edit={} rejected: {} {}", reject.seq, to_string(reject.reason), reject.detail);
   }
 }

@@ -95,12 +95,12 @@ class Client final : private ScriptHost {
   bool durable() const override { return session_.replica().local_edits().all().empty(); }
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
-  void travel(const HistoryRequest& travel) override { static_cast<void>(session_.travel(travel)); }
-  bool travelling() const override { return session_.travelling(); }
+  void travel(const HistoryRequest& travel) override { static_cast<void>(session_.request_history(travel)); }
+  bool travelling() const override { return session_.loading_history(); }
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }
   bool show_answer() override;
-  std::string travel_refusal() const override { return session_.travel_refusal(); }
+  std::string travel_refusal() const override { return session_.history_refusal(); }
   TimeUs utc_now_us() const override;
   bool screenshot(const std::string& file) override;
   std::optional<bool> screenshot_written() const override;

@@ -24,7 +24,7 @@ void BotCounts::merge(const BotCounts& other) {
   rejected += other.rejected;
   durable += other.durable;
   others += other.others;
-  own_us.merge(other.own_us);
+  confirm_us.merge(other.confirm_us);
   joins += other.joins;
   join_us.merge(other.join_us);
 }

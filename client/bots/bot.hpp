@@ -10,7 +10,7 @@
 #include "client/bots/behaviour.hpp"
 #include "client/bots/edit_ledger.hpp"
 #include "client/bots/edit_schedule.hpp"
-#include "client/replica/greeting.hpp"
+#include "client/replica/client_handshake.hpp"
 #include "client/schedule/histogram.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -34,7 +34,7 @@ struct BotCounts {
   std::uint64_t confirmed = 0, rejected = 0, durable = 0;
   std::uint64_t others = 0;  // edits of others that came
   Histogram
-      own_us;  // due -> own commit applied, or verified by a bot without a replica; infinite: no answer
+      confirm_us;  // due -> own commit applied, or verified by a bot without a replica; infinite: no answer
   std::uint64_t joins = 0;  // times that a bot came to see all of its view after connecting anew
   Histogram join_us;        // from connecting until then
   void merge(const BotCounts& other);

@@ -5,7 +5,7 @@
 namespace runstone {
 
 HeadlessBot::HeadlessBot(BotConfig config, FleetStatistics& fleet, TimeUs (*clock)())
-    : Bot(std::move(config)), crowd_(fleet), session_(config_.session, fleet, clock) {}
+    : Bot(std::move(config)), fleet_(fleet), session_(config_.session, fleet, clock) {}
 
 bool HeadlessBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
   return session_.submit(edit, due_us, now_us).has_value();
@@ -13,13 +13,14 @@ bool HeadlessBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_u
 
 BotCounts HeadlessBot::counts() const {
   BotCounts counts = counts_;
-  const LightCounts& seen = session_.counts();
-  counts.confirmed = seen.own_confirmed;
-  counts.rejected = seen.own_rejected;
-  counts.durable = seen.own_durable;
-  counts.others = seen.edits - seen.own_confirmed;
-  counts.own_us = seen.own_us;
-  for (std::size_t i = 0; i < session_.local_edits().undecided(); ++i) counts.own_us.add_infinite();
+  const HeadlessCounts& seen = session_.counts();
+  const LocalEdits& local = session_.local_edits();
+  counts.confirmed = local.counters().confirmed;
+  counts.rejected = local.counters().rejected;
+  counts.durable = local.counters().durable;
+  counts.others = seen.edits - local.counters().confirmed;
+  counts.confirm_us = seen.confirm_us;
+  for (std::size_t i = 0; i < local.pending_count(); ++i) counts.confirm_us.add_infinite();
   return counts;
 }
 

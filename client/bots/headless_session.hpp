@@ -1,11 +1,11 @@
-// HeadlessSession: a client's side of the protocol without a world. It edits and resumes as ClientSession does, upon the same
-// ServerConnection, but keeps of each chunk only its version (VersionTracker). Every message is decoded and verified as that of
-// any server; what breaks a rule which no decoder can see is counted as a violation:
-//   - commits are of the session's epoch, and their sequences ascend: none comes twice;
-//   - versions continue from chunk to chunk (VersionTracker);
-//   - answers are to own edits that wait for one, and no edit is answered twice; the durable watermark never goes back.
-// For each edit of a commit, own or not, it notes how long after its due time the commit was here and verified. Pure: time and
-// randomness come in as arguments (microseconds of the process' steady clock). One thread.
+// HeadlessSession: a client's side of the protocol without a world. It edits and reconnects as ClientSession does, with the
+// same ServerConnection and LocalEdits, but keeps only the version of each chunk (VersionTracker). It decodes and verifies
+// every message. It counts as a violation what no decoder can see:
+//   - a commit of another epoch, or a sequence that comes twice;
+//   - a version that does not continue that of its chunk (VersionTracker);
+//   - an answer to a local edit that waits for none, or a durable watermark that decreases.
+// For each edit of a commit it records how long after the edit's due time the commit was received and verified. Pure: time
+// and randomness are arguments, in microseconds of the process' steady clock. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -22,19 +22,19 @@
 
 namespace runstone {
 
-/// Counts since the session was made.
-struct LightCounts {
+/// Counts since the session was made. Those of its local edits are in local_edits().counters().
+struct HeadlessCounts {
   std::uint64_t commits = 0, edits = 0;  // verified
-  std::uint64_t own_confirmed = 0, own_rejected = 0, own_durable = 0, own_unseen = 0;
-  Histogram own_us;  // due -> own commit received and verified
+  Histogram
+      confirm_us;  // local edits: from the due time until the commit was received and verified
 };
 
 class HeadlessSession {
  public:
-  /// `clock` is read once a commit is verified. `crowd` must outlive the session.
+  /// `clock` is read once a commit is verified. `fleet` must outlive the session.
   HeadlessSession(SessionConfig config, FleetStatistics& fleet, TimeUs (*clock)());
 
-  // As ClientSession.
+  // As the functions of ClientSession.
   void connected(const Nonce& nonce, TimeUs now_us) { connection_.connected(nonce, now_us); }
   void disconnected() { connection_.disconnected(); }
   void receive(Message message, const Arrival& arrival);
@@ -43,7 +43,7 @@ class HeadlessSession {
   bool wants_close() const { return connection_.wants_close(); }
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
-  /// Until it is called no view is sent, and nothing comes.
+  /// Until the first call no view is sent, and the server sends no chunks.
   void set_view(const View& view);
   void set_pose(const Pose& pose) { connection_.set_pose(pose); }
   bool is_open() const { return connection_.is_open(); }
@@ -51,42 +51,44 @@ class HeadlessSession {
   const std::optional<Welcome>& welcome() const { return connection_.welcome(); }
   View view() const { return connection_.view(); }
   std::uint64_t connect_count() const { return connection_.connect_count(); }
-  /// Every chunk of the view came, or is said not to be had, and none lacks edits.
+  /// Returns true if every chunk of the view arrived or is unavailable, and none lacks edits.
   bool loaded() const;
 
-  /// Takes commits without decoding them into a message; see LinkEvents::on_bytes(). Before Ready, everything else.
+  /// Reads a frame without decoding it into a message, see LinkEvents::on_bytes(). Returns true if it was a commit of an
+  /// open connection and was read. Returns false, and reads nothing, for other frames. Fails if the commit is malformed.
   Result<bool> receive_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
                              TimeUs received_us);
-  /// When tick() has something to do next.
+  /// Returns when tick() has something to do next.
   TimeUs tick_due_us() const { return connection_.tick_due_us(kPingEveryUs); }
 
-  const LocalEdits& local_edits() const { return own_; }
-  const VersionTracker& book() const { return book_; }
-  const LightCounts& counts() const { return counts_; }
+  const LocalEdits& local_edits() const { return local_edits_; }
+  const VersionTracker& versions() const { return versions_; }
+  const HeadlessCounts& counts() const { return counts_; }
 
  private:
-  void on_session_accepted(const SessionAccepted& ready, TimeUs now_us);
+  void on_session_accepted(const SessionAccepted& accepted, TimeUs now_us);
   void on_reject(const Reject& reject);
   void on_durable(const Durable& durable);
   Result<void> on_edit(const WalkedEdit& edit);
-  void on_own_edit(const WalkedEdit& edit);
-  void settle_own();
+  void on_local_edit(const WalkedEdit& edit);
   void send_view();
 
   ServerConnection connection_;
-  FleetStatistics& crowd_;
+  FleetStatistics& fleet_;
   TimeUs (*clock_now_)();
-  bool is_view_wished_ = false;
+  bool has_view_ = false;
 
-  LocalEdits own_;
-  VersionTracker book_;
+  LocalEdits local_edits_;
+  VersionTracker versions_;
   CommitWalk walk_;
   CommitWalk::OnEdit on_walked_;
-  TimeUs walked_us_ = 0;                                   // when the commit at hand was received
-  std::vector<TimeUs> walked_due_us_, walked_own_due_us_;  // of its edits
-  Sequence last_ = 0;                                      // of the newest edit on this connection
+  // Of the commit that is being read.
+  TimeUs walked_us_ = 0;                     // when it was received
+  std::vector<TimeUs> walked_due_us_;        // due times of its edits
+  std::vector<TimeUs> walked_local_due_us_;  // due times of its local edits
+  Sequence last_ = 0;                        // newest edit on this connection
   Sequence durable_ = 0;
-  LightCounts counts_;
+  HeadlessCounts counts_;
 };
 
 }  // namespace runstone

@@ -85,7 +85,7 @@ void PlayBot::hand_in(TimeUs now_us) {
 }
 
 void PlayBot::drain_changes(TimeUs now_us) {
-  const ReplicaChanges news = session_.replica().drain_changes();
+  const ReplicaChanges changes = session_.replica().drain_changes();
   const auto close = [this](ClientSequence seq) -> std::optional<Open> {
     const auto found = open_.find(seq);
     if (found == open_.end()) return std::nullopt;
@@ -94,15 +94,15 @@ void PlayBot::drain_changes(TimeUs now_us) {
     open_.erase(found);
     return open;
   };
-  for (const EditNews& edit : news.edits) {
-    if (edit.predicted || !edit.own) continue;
+  for (const EditChange& edit : changes.edits) {
+    if (edit.predicted || !edit.is_local) continue;
     const auto open = close(edit.op.seq);
     if (!open) continue;  // ordered again by a server that had lost it
-    counts_.own_us.add(edit.applied_us - open->turn.due_us);
+    counts_.confirm_us.add(edit.applied_us - open->turn.due_us);
     ++counts_.confirmed;
     schedule_.accepted();
   }
-  for (const RejectNews& reject : news.rejects) {
+  for (const RejectedEdit& reject : changes.rejects) {
     const auto open = close(reject.seq);
     if (!open) continue;
     if (is_pushed_back(reject.reason)) {
@@ -113,12 +113,12 @@ void PlayBot::drain_changes(TimeUs now_us) {
       schedule_.dropped();
     }
   }
-  for (const ClientSequence seq : news.unseen) {
+  for (const ClientSequence seq : changes.unseen) {
     if (!close(seq)) continue;
     ++counts_.unseen;
     schedule_.dropped();
   }
-  counts_.durable += news.durable.size();
+  counts_.durable += changes.durable.size();
 }
 
 }  // namespace runstone

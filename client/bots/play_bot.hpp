@@ -24,7 +24,7 @@ struct PlayCounts {
   std::map<std::string, std::uint64_t> rejected;  // by the server for good, by reason
   std::map<std::string, std::uint64_t>
       refused;       // by the session: beyond what this world takes; by reason
-  Histogram own_us;  // due -> own commit applied
+  Histogram confirm_us;  // due -> own commit applied
 };
 
 class PlayBot {

@@ -10,14 +10,14 @@ constexpr TimeUs kTickUs = 10'000;  // as ClientSession::tick() wants it
 }  // namespace
 
 ReplicaBot::ReplicaBot(BotConfig config, FleetStatistics& fleet)
-    : Bot(std::move(config)), crowd_(fleet), session_(config_.session) {}
+    : Bot(std::move(config)), fleet_(fleet), session_(config_.session) {}
 
 TimeUs ReplicaBot::tick_due_us(TimeUs now_us) const { return now_us + kTickUs; }
 
 bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
   const auto sequence = session_.submit(edit, due_us, now_us);
   if (!sequence) return false;
-  crowd_.due.add(config_.session.instance, *sequence, due_us);
+  fleet_.due.add(config_.session.instance, *sequence, due_us);
   ledger_.add(edit);
   open_[*sequence] = {due_us, edit};
   is_answered_ = false;
@@ -25,39 +25,39 @@ bool ReplicaBot::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us
 }
 
 void ReplicaBot::drain_changes() {
-  const ReplicaChanges news = session_.replica().drain_changes();
-  for (const EditNews& edit : news.edits) {
+  const ReplicaChanges changes = session_.replica().drain_changes();
+  for (const EditChange& edit : changes.edits) {
     if (edit.predicted) continue;
     // An edit whose chunks come in parts is told, and counted, with each of them.
-    if (const auto due_us = crowd_.due.find(edit.op.instance, edit.op.seq)) {
-      crowd_.see(*due_us, edit.applied_us);
+    if (const auto due_us = fleet_.due.find(edit.op.instance, edit.op.seq)) {
+      fleet_.see(*due_us, edit.applied_us);
     } else {
-      crowd_.see_unknown();
+      fleet_.see_unknown();
     }
-    if (!edit.own) {
+    if (!edit.is_local) {
       ++counts_.others;
       continue;
     }
     const auto found = open_.find(edit.op.seq);
     if (found == open_.end()) continue;  // a chunk of it came later than the others
-    counts_.own_us.add(edit.applied_us - found->second.due_us);
+    counts_.confirm_us.add(edit.applied_us - found->second.due_us);
     ++counts_.confirmed;
     open_.erase(found);
   }
-  for (const RejectNews& reject : news.rejects) {
+  for (const RejectedEdit& reject : changes.rejects) {
     ++counts_.rejected;
     if (const auto found = open_.find(reject.seq); found != open_.end()) {
       ledger_.forget(found->second.edit);
       open_.erase(found);
     }
   }
-  counts_.durable += news.durable.size();
+  counts_.durable += changes.durable.size();
   is_answered_ = session_.replica().local_edits().all().empty();
 }
 
 BotCounts ReplicaBot::counts() const {
   BotCounts counts = counts_;
-  for (std::size_t i = 0; i < open_.size(); ++i) counts.own_us.add_infinite();
+  for (std::size_t i = 0; i < open_.size(); ++i) counts.confirm_us.add_infinite();
   return counts;
 }
 

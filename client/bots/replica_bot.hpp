@@ -33,7 +33,7 @@ class ReplicaBot final : public Bot {
   bool is_answered() const override { return is_answered_; }
   void depart() override { session_.close(GoodbyeReason::closing, ""); }
 
-  FleetStatistics& crowd_;
+  FleetStatistics& fleet_;
   ClientSession session_;
   ReplicaGround ground_{session_.replica()};
   EditLedger ledger_;

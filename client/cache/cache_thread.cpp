@@ -10,7 +10,7 @@ CacheThread::CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()
 
 CacheThread::~CacheThread() { stop(); }
 
-void CacheThread::ask(CacheQuestion question) {
+void CacheThread::ask(CacheLookup question) {
   {
     const std::lock_guard lock(mutex_);
     questions_.push_back(std::move(question));
@@ -23,7 +23,7 @@ std::size_t CacheThread::room() const {
   return kKeepMax - std::min(kKeepMax, waiting_);
 }
 
-void CacheThread::keep(const CachedWorld& world, std::vector<KeptChunk> chunks) {
+void CacheThread::keep(const CachedWorld& world, std::vector<KeyedChunk> chunks) {
   if (chunks.empty()) return;
   {
     const std::lock_guard lock(mutex_);
@@ -33,7 +33,7 @@ void CacheThread::keep(const CachedWorld& world, std::vector<KeptChunk> chunks) 
   has_work_.notify_one();
 }
 
-std::vector<std::vector<KeptChunk>> CacheThread::take_answers() {
+std::vector<std::vector<KeyedChunk>> CacheThread::take_answers() {
   const std::lock_guard lock(mutex_);
   return std::exchange(answers_, {});
 }
@@ -62,7 +62,7 @@ void CacheThread::run() {
   for (;;) {
     has_work_.wait(lock, [this] { return ends_ || !questions_.empty() || !batches_.empty(); });
     if (!questions_.empty()) {
-      const CacheQuestion question = std::move(questions_.front());
+      const CacheLookup question = std::move(questions_.front());
       questions_.pop_front();
       lock.unlock();
       auto found = cache_->find(question.world, question.keys);

@@ -25,12 +25,12 @@ class CacheThread {
   /// As stop().
   ~CacheThread();
 
-  void ask(CacheQuestion question);
+  void ask(CacheLookup question);
   /// How many chunks keep() takes now.
   std::size_t room() const;
-  void keep(const CachedWorld& world, std::vector<KeptChunk> chunks);
+  void keep(const CachedWorld& world, std::vector<KeyedChunk> chunks);
   /// What was found, one entry for each question, in order.
-  std::vector<std::vector<KeptChunk>> take_answers();
+  std::vector<std::vector<KeyedChunk>> take_answers();
   /// Writes what waits, then ends the thread. Nothing is taken afterwards.
   void stop();
 
@@ -41,7 +41,7 @@ class CacheThread {
  private:
   struct Batch {
     CachedWorld world;
-    std::vector<KeptChunk> chunks;
+    std::vector<KeyedChunk> chunks;
   };
   void run();
 
@@ -49,10 +49,10 @@ class CacheThread {
   const std::function<void()> wake_;
   mutable std::mutex mutex_;  // a leaf: guards all that follows, but for the thread
   std::condition_variable has_work_;
-  std::deque<CacheQuestion> questions_;
+  std::deque<CacheLookup> questions_;
   std::deque<Batch> batches_;
   std::size_t waiting_ = 0;  // chunks in batches_ and in the one being written
-  std::vector<std::vector<KeptChunk>> answers_;
+  std::vector<std::vector<KeyedChunk>> answers_;
   CacheCounters counters_;
   std::string warning_;
   bool ends_ = false;

@@ -200,7 +200,7 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
     return database_->ok() ? database_->integer("SELECT last_insert_rowid()") : 0;
   }
   if (before == world.mark && !is_other_size) return *id;
-  const KeptVersions kept(before, world.mark);
+  const SharedHistory kept(before, world.mark);
   const auto count = [&](sql::Statement& drop) {
     database_->run(drop);
     const std::int64_t dropped = database_->ok() ? database_->changes() : 0;
@@ -225,7 +225,7 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
   return *id;
 }
 
-std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row,
+std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row,
                                           const ChunkKey& key) {
   Tables& t = *tables_;
   t.find.bind(1, row)
@@ -264,11 +264,11 @@ std::optional<KeptChunk> ChunkCache::read(const CachedWorld& world, std::int64_t
   }
   ++counters_.hits;
   if (is_old) database_->run(t.use.bind(1, id).bind(2, stamp_));
-  return KeptChunk{key, std::move(chunk)};
+  return KeyedChunk{key, std::move(chunk)};
 }
 
-std::vector<KeptChunk> ChunkCache::find(const CachedWorld& world, std::span<const ChunkKey> keys) {
-  std::vector<KeptChunk> found;
+std::vector<KeyedChunk> ChunkCache::find(const CachedWorld& world, std::span<const ChunkKey> keys) {
+  std::vector<KeyedChunk> found;
   if (has_ended_) return found;
   database_->run("BEGIN IMMEDIATE");
   const std::int64_t row = enter(world);
@@ -281,7 +281,7 @@ std::vector<KeptChunk> ChunkCache::find(const CachedWorld& world, std::span<cons
   return found;
 }
 
-void ChunkCache::keep(const CachedWorld& world, std::span<const KeptChunk> chunks) {
+void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chunks) {
   if (has_ended_) return;
   Tables& t = *tables_;
   database_->run("BEGIN IMMEDIATE");

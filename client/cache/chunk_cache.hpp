@@ -5,7 +5,7 @@
 //   - a database that is damaged as a whole is set aside ("cache.sqlite.damaged") and begun anew;
 //   - SQLite's WAL survives the end of the process at any moment (synchronous NORMAL: the end of power as well, but for
 //     the newest batches);
-//   - of a world whose server lost edits or stands on a backup, what is not common history goes (KeptVersions).
+//   - of a world whose server lost edits or stands on a backup, what is not common history goes (SharedHistory).
 // Bounded: beyond `bytes_max` the chunks that were longest unused go. One process at a time has the folder. Blocks on the
 // disk; one thread at a time.
 #pragma once
@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "client/cache/cache_database.hpp"
-#include "client/replica/cache_question.hpp"
+#include "client/replica/cache_lookup.hpp"
 #include "common/core/result.hpp"
 #include "common/os/file_lock.hpp"
 
@@ -43,9 +43,9 @@ class ChunkCache {
                                                                std::uint64_t bytes_max);
 
   /// Those of the chunks that are here, in the order asked.
-  std::vector<KeptChunk> find(const CachedWorld& world, std::span<const ChunkKey> keys);
+  std::vector<KeyedChunk> find(const CachedWorld& world, std::span<const ChunkKey> keys);
   /// Writes chunks, and what is known of their world now, in one transaction.
-  void keep(const CachedWorld& world, std::span<const KeptChunk> chunks);
+  void keep(const CachedWorld& world, std::span<const KeyedChunk> chunks);
 
   ~ChunkCache();
 
@@ -65,7 +65,7 @@ class ChunkCache {
   void set_aside();
   /// After a batch: damage sets the database aside, anything else ends the cache.
   void settle();
-  std::optional<KeptChunk> read(const CachedWorld& world, std::int64_t row, const ChunkKey& key);
+  std::optional<KeyedChunk> read(const CachedWorld& world, std::int64_t row, const ChunkKey& key);
 
   const std::string file_;
   const std::uint64_t bytes_max_;

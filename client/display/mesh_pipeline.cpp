@@ -32,7 +32,7 @@ void MeshPipeline::take(const ReplicaChanges& news, const ClockOffset& clock, Ti
   planner_.take(news.chunks);
   for (const auto& [key, reason] : news.unavailable) join_.done(key, now_us);
   if (!draw_thread_) return;
-  for (const ChunkNews& chunk : news.chunks) {
+  for (const ChunkChange& chunk : news.chunks) {
     if (!chunk.removed) continue;
     draw_thread_->remove(chunk.key);
     changed_ = true;

@@ -24,8 +24,8 @@ void add_session(FleetReport& report, const HeadlessBot& bot) {
   const HeadlessSession& session = bot.session();
   report.commits += session.counts().commits;
   report.commit_edits += session.counts().edits;
-  report.versions.merge(session.book().counts());
-  report.violations.merge(session.book().violations());
+  report.versions.merge(session.versions().counts());
+  report.violations.merge(session.versions().violations());
 }
 
 template <class BotType>

@@ -63,7 +63,7 @@ std::string to_json(const FleetReport& report) {
                        {"rejected", c.rejected},
                        {"durable", c.durable},
                        {"of_others", c.others}}},
-                     {"own_us", histogram_json(c.own_us)},
+                     {"own_us", histogram_json(c.confirm_us)},
                      {"seen_us", histogram_json(report.seen_us)},
                      {"seen_worst_us", report.seen_worst_us},
                      {"unattributed", report.unattributed},
@@ -106,7 +106,7 @@ std::string to_table(const FleetReport& report) {
       "durable; {} not ready, {} refused\n",
       report.bots, report.replicas, c.due, report.seconds, c.submitted, c.confirmed, c.rejected,
       c.durable, c.not_ready, c.refused);
-  table += histogram_line("due to confirmed", c.own_us);
+  table += histogram_line("due to confirmed", c.confirm_us);
   table += histogram_line("due to received and verified, over all subscribers", report.seen_us);
   table += histogram_picture(report.seen_us);
   table += "slowest of each second, ms:";

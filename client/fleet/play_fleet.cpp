@@ -36,7 +36,7 @@ void add_up(PlayCounts& sum, const PlayCounts& one) {
   sum.unseen += one.unseen;
   for (const auto& [reason, count] : one.rejected) sum.rejected[reason] += count;
   for (const auto& [reason, count] : one.refused) sum.refused[reason] += count;
-  sum.own_us.merge(one.own_us);
+  sum.confirm_us.merge(one.confirm_us);
 }
 
 std::uint64_t total(const std::map<std::string, std::uint64_t>& by_reason) {
@@ -140,7 +140,7 @@ std::string to_json(const PlayReport& report) {
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us", histogram_json(c.own_us)},
+                                       {"own_us", histogram_json(c.confirm_us)},
                                        {"traffic", traffic_json(report.traffic)}};
   return json.dump(1) + "\n";
 }
@@ -153,7 +153,7 @@ std::string to_table(const PlayReport& report) {
       "again, {} rejected, {} refused here, {} without an answer\n{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable,
       c.again, total(c.rejected), total(c.refused), c.unseen,
-      histogram_line("due to confirmed", c.own_us));
+      histogram_line("due to confirmed", c.confirm_us));
   for (const auto& [reason, count] : c.rejected)
     table += fmt::format("rejected: {} {}\n", count, reason);
   for (const auto& [reason, count] : c.refused)

@@ -1,9 +1,10 @@
-// ChangeQueue: gathers what changed in a replica until it is taken: one entry per chunk, one per edit and way.
-// One thread.
+// ChangeQueue: gathers what changed in a replica until it is drained. It has one entry per changed chunk, one per
+// confirmed edit, and one per prediction. One thread.
 #pragma once
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "client/replica/replica_changes.hpp"
@@ -13,17 +14,16 @@ namespace runstone {
 
 class ChangeQueue {
  public:
-  /// The entry of a chunk, made if there is none.
-  ChunkNews& chunk(const ChunkKey& key);
-  /// Nothing of this chunk is shown any more; what was noted of it before is void.
+  /// Returns the entry of a chunk. Adds it if there is none.
+  ChunkChange& chunk(const ChunkKey& key);
+  /// Nothing of this chunk is shown any more. Replaces what was noted of it before.
   void removed(const ChunkKey& key);
-  /// The entry of an edit in the confirmed order, made if there is none. Entries stay where they are until
-  /// take().
-  EditNews& edit(const OrderedInfo& info, TimeUs applied_us);
-  /// A new entry for the prediction of an own edit.
-  EditNews& prediction(const OperationId& op, TimeUs applied_us);
-  void unavailable(UnavailableNews news) { unavailable_.push_back(news); }
-  void reject(RejectNews news) { rejects_.push_back(std::move(news)); }
+  /// Returns the entry of a confirmed edit. Adds it if there is none. The reference holds until drain().
+  EditChange& edit(const OrderedInfo& info, TimeUs applied_us);
+  /// Adds an entry for the prediction of a local edit. The reference holds until drain().
+  EditChange& prediction(const OperationId& op, TimeUs applied_us);
+  void unavailable(UnavailableChunk change) { unavailable_.push_back(change); }
+  void reject(RejectedEdit change) { rejects_.push_back(std::move(change)); }
   void durable(std::span<const ClientSequence> seqs) {
     durable_.insert(durable_.end(), seqs.begin(), seqs.end());
   }
@@ -31,17 +31,17 @@ class ChangeQueue {
     unseen_.insert(unseen_.end(), seqs.begin(), seqs.end());
   }
 
-  /// Says that these edits are contained in what changed of the chunk.
-  static void attribute(ChunkNews& chunk, std::span<EditNews* const> edits);
+  /// Notes, on both sides, that the change of the chunk contains these edits.
+  static void attribute(ChunkChange& chunk, std::span<EditChange* const> edits);
 
-  ReplicaChanges take();
+  ReplicaChanges drain();
 
  private:
-  std::map<ChunkKey, ChunkNews> chunks_;
-  std::vector<std::unique_ptr<EditNews>> edits_;
-  std::map<OperationId, EditNews*> confirmed_;  // those of edits_ that are not predictions
-  std::vector<RejectNews> rejects_;
-  std::vector<UnavailableNews> unavailable_;
+  std::map<ChunkKey, ChunkChange> chunks_;
+  std::vector<std::unique_ptr<EditChange>> edits_;
+  std::map<OperationId, EditChange*> confirmed_;  // entries of edits_ that are not predictions
+  std::vector<RejectedEdit> rejects_;
+  std::vector<UnavailableChunk> unavailable_;
   std::vector<ClientSequence> durable_, unseen_;
 };
 

@@ -3,62 +3,112 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/core/assert.hpp"
-
 namespace runstone {
 
-ClientSequence LocalEdits::add(OwnEdit edit) {
-  RUNSTONE_ASSERT(!full());
-  edits_.emplace_hint(edits_.end(), ++last_, std::move(edit));
+Result<ClientSequence> LocalEdits::submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
+                                          TimeUs submitted_us) {
+  if (edits_.size() >= kLocalEditsMax) {
+    return fail(ErrorCode::limit_exceeded, "too many local edits wait for the server");
+  }
+  LocalEdit local;
+  local.edit = edit;
+  local.chunks = std::move(chunks);
+  local.submitted_us = submitted_us;
+  edits_.emplace_hint(edits_.end(), ++last_, std::move(local));
+  ++counters_.submitted;
   return last_;
 }
 
-OwnEdit* LocalEdits::find(ClientSequence seq) {
-  const auto it = edits_.find(seq);
-  return it == edits_.end() ? nullptr : &it->second;
+void LocalEdits::mark_sent(ClientSequence seq, TimeUs now_us) {
+  if (const auto it = edits_.find(seq); it != edits_.end()) it->second.sent_us = now_us;
 }
 
-LocalEdits::Settled LocalEdits::take_durable(Sequence durable) {
-  Settled out;
-  for (auto it = edits_.begin(); it != edits_.end();) {
-    const OwnEdit& own = it->second;
-    if (own.resolved && !own.asked && own.version.seq <= durable) {
-      (own.unseen ? out.unseen : out.durable).push_back(it->first);
-      it = edits_.erase(it);
-    } else {
-      ++it;
-    }
+std::optional<LocalEditState> LocalEdits::confirm(ClientSequence seq, const Version& version) {
+  const auto it = edits_.find(seq);
+  if (it == edits_.end()) return std::nullopt;
+  LocalEdit& local = it->second;
+  if (local.needs_answer()) ++counters_.confirmed;
+  local.version = version;
+  return std::exchange(local.state, LocalEditState::confirmed);
+}
+
+std::optional<LocalEdits::Rejection> LocalEdits::reject(const Reject& reject,
+                                                        const Version& newest) {
+  const auto it = edits_.find(reject.client_seq);
+  if (it == edits_.end() || !it->second.needs_answer()) return std::nullopt;
+  if (reject.reason != RejectReason::already_resolved) {
+    Rejection out{std::move(it->second), false};
+    edits_.erase(it);
+    ++counters_.rejected;
+    return out;
   }
+  Rejection out{it->second, true};
+  it->second.state = LocalEditState::unseen;
+  it->second.version = {newest.epoch, reject.seq != 0 ? reject.seq : newest.seq};
   return out;
 }
 
 std::vector<ClientSequence> LocalEdits::resume(ClientSequence resolved) {
   std::vector<ClientSequence> offers;
-  for (auto& [seq, own] : edits_) {
+  for (auto& [seq, local] : edits_) {
     if (seq > resolved) {
-      own.resolved = own.asked = own.unseen = false;
-      own.version = {};
-      own.sent_us = OwnEdit::kNever;
+      local.state = LocalEditState::pending;
+      local.version = {};
       offers.push_back(seq);
-    } else if (!own.resolved) {
-      own.resolved = own.asked = true;
-      own.sent_us = OwnEdit::kNever;
+    } else if (local.state == LocalEditState::pending) {
+      local.state = LocalEditState::asking;
+    } else {
+      continue;
     }
+    local.sent_us = LocalEdit::kNever;
   }
+  counters_.offered_again += offers.size();
   return offers;
+}
+
+LocalEdits::Retired LocalEdits::retire(Sequence durable) {
+  Retired out;
+  for (auto it = edits_.begin(); it != edits_.end();) {
+    const LocalEdit& local = it->second;
+    if (local.needs_answer() || local.version.seq > durable) {
+      ++it;
+      continue;
+    }
+    (local.state == LocalEditState::unseen ? out.unseen : out.durable).push_back(it->first);
+    it = edits_.erase(it);
+  }
+  counters_.durable += out.durable.size();
+  counters_.unseen += out.unseen.size();
+  return out;
+}
+
+const LocalEdit* LocalEdits::find(ClientSequence seq) const {
+  const auto it = edits_.find(seq);
+  return it == edits_.end() ? nullptr : &it->second;
 }
 
 std::vector<ClientSequence> LocalEdits::unanswered() const {
   std::vector<ClientSequence> out;
-  for (const auto& [seq, own] : edits_) {
-    if (!own.resolved || own.asked) out.push_back(seq);
+  for (const auto& [seq, local] : edits_) {
+    if (local.needs_answer()) out.push_back(seq);
   }
   return out;
 }
 
-std::size_t LocalEdits::undecided() const {
+std::vector<ClientSequence> LocalEdits::overdue(TimeUs sent_us_max) const {
+  std::vector<ClientSequence> out;
+  for (const auto& [seq, local] : edits_) {
+    if (!local.needs_answer()) continue;
+    if (local.sent_us == LocalEdit::kNever || local.sent_us > sent_us_max) break;
+    out.push_back(seq);
+  }
+  return out;
+}
+
+std::size_t LocalEdits::pending_count() const {
   return static_cast<std::size_t>(std::count_if(
-      edits_.begin(), edits_.end(), [](const auto& entry) { return !entry.second.resolved; }));
+      edits_.begin(), edits_.end(),
+      [](const auto& entry) { return entry.second.state == LocalEditState::pending; }));
 }
 
 }  // namespace runstone

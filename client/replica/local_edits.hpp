@@ -1,67 +1,112 @@
-// LocalEdits: this client's edits from the click until they are known to be on disk (invariant 5).
-//   sent    -> the server has not answered yet; it is predicted on every chunk it touches
-//   decided -> applied at `version`; not predicted, kept to be offered again should the server lose it
-// Rejected and durable edits leave. Client sequences are handed out here, from 1, without gaps.
+// LocalEdits: the edits of this client, from the click until they are known to be on disk (invariant 5). Every client
+// session uses this one state machine, whether it has a replica or not.
+//
+//   submit --> pending --confirm--> confirmed --retire--> (removed, durable)
+//                 |   --reject----> (removed, rejected)
+//                 |   --reject "already resolved"--> unseen --retire--> (removed, unseen)
+//                 |   --resume, at most the server's mark--> asking --> as pending
+//   resume, above the server's mark: every state --> pending, and the edit is offered again
+//
+// Client sequences are assigned here, from 1, without gaps. One thread.
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "common/core/coords.hpp"
 #include "common/core/ids.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/edit_descriptor.hpp"
+#include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
-/// Own edits held at once; further ones are refused by submit() until the server catches up.
+/// Bound of the edits kept at a time. When it is reached, submit() fails until the server catches up.
 inline constexpr std::size_t kLocalEditsMax = 16384;
 
-struct OwnEdit {
-  EditDescriptor edit;
-  TimeUs submitted_us =
-      0;  // this client's steady clock: the click, or the time it was scheduled for
-  TimeUs sent_us = kNever;       // last put on the wire
-  std::vector<ChunkKey> chunks;  // touched, in touched_chunks() order
-  bool resolved = false;
-  Version version;      // once decided; an upper bound when the commit itself was missed
-  bool asked = false;   // decided, says the server's mark, but not how: it is sent again to ask
-  bool unseen = false;  // its commit never reached us
+enum class LocalEditState : std::uint8_t {
+  pending,  // The server has not answered. A replica predicts the edit.
+  asking,  // The server has resolved it, but the answer was lost. It is sent again to get the answer.
+  confirmed,  // Its commit arrived. It is kept until it is durable, in case the server loses it.
+  unseen,     // The server has resolved it, and its commit will not arrive.
+};
+
+struct LocalEdit {
   static constexpr TimeUs kNever = INT64_MIN;
+
+  EditDescriptor edit;
+  std::vector<ChunkKey> chunks;  // touched, in touched_chunks() order; empty without a replica
+  TimeUs submitted_us = 0;       // this client's steady clock: the click, or the scheduled time
+  TimeUs sent_us = kNever;       // last put on the wire
+  LocalEditState state = LocalEditState::pending;
+  Version version;  // confirmed: of its commit; unseen: an upper bound
+
+  bool needs_answer() const {
+    return state == LocalEditState::pending || state == LocalEditState::asking;
+  }
+};
+
+/// Counts since the object was made. An edit that is offered again may be confirmed again.
+struct LocalEditCounters {
+  std::uint64_t submitted = 0;
+  std::uint64_t confirmed = 0;
+  std::uint64_t rejected = 0;
+  std::uint64_t durable = 0;
+  std::uint64_t unseen = 0;
+  std::uint64_t offered_again = 0;
 };
 
 class LocalEdits {
  public:
-  using Map = std::map<ClientSequence, OwnEdit>;
+  using Map = std::map<ClientSequence, LocalEdit>;
 
-  /// Takes the next client sequence. Requires !full().
-  ClientSequence add(OwnEdit edit);
-  bool full() const { return edits_.size() >= kLocalEditsMax; }
-  OwnEdit* find(ClientSequence seq);
-  void erase(ClientSequence seq) { edits_.erase(seq); }
-  void clear() { edits_.clear(); }
+  /// Adds a pending edit. Fails if kLocalEditsMax edits are kept.
+  Result<ClientSequence> submit(const EditDescriptor& edit, std::vector<ChunkKey> chunks,
+                                TimeUs submitted_us);
+  /// Notes that the edit was put on the wire. An edit that left already is ignored.
+  void mark_sent(ClientSequence seq, TimeUs now_us);
 
-  /// Removes decided edits at or below the watermark; the caller learns their sequences, ascending.
-  struct Settled {
-    std::vector<ClientSequence> durable;  // their commits were seen
-    std::vector<ClientSequence> unseen;   // applied for all we know; the chunks tell
+  /// Takes the commit of an edit. Returns the state before, or nullopt if the edit is not kept.
+  std::optional<LocalEditState> confirm(ClientSequence seq, const Version& version);
+
+  struct Rejection {
+    LocalEdit edit;            // as it was before the answer
+    bool is_resolved = false;  // the server had resolved the edit before: it is unseen now
   };
-  Settled take_durable(Sequence durable);
+  /// Takes a reject. "Already resolved" makes the edit unseen: it is durable once `reject.seq` is, or `newest` if the
+  /// server does not know its sequence. Any other reason removes the edit. Returns nullopt, and changes nothing, if
+  /// no edit of this sequence needs an answer.
+  std::optional<Rejection> reject(const Reject& reject, const Version& newest);
 
-  /// A new connection: `decided` is the highest client sequence the server has decided. Edits above it were
-  /// lost, even if we saw them applied, and are to be offered again: they are returned, ascending. Edits up
-  /// to it whose answer we missed become `asked`.
+  /// Starts a new connection: `resolved` is the highest client sequence that the server has resolved. The server lost
+  /// the edits above it, even if their commits were seen. They become pending and are returned, ascending. Pending
+  /// edits up to it become asking.
   std::vector<ClientSequence> resume(ClientSequence resolved);
 
-  /// Edits to be sent (again): undecided ones, and those that ask how they were decided. Ascending.
-  std::vector<ClientSequence> unanswered() const;
+  /// Edits that left because they are on disk, ascending.
+  struct Retired {
+    std::vector<ClientSequence> durable;  // their commits were seen
+    std::vector<ClientSequence> unseen;   // the chunks show whether they were applied
+  };
+  /// Removes the edits that the server has resolved at or below the durable sequence.
+  Retired retire(Sequence durable);
+  void clear() { edits_.clear(); }
 
+  const LocalEdit* find(ClientSequence seq) const;
   const Map& all() const { return edits_; }
-  std::size_t undecided() const;
+  /// Returns the edits to send after a connection opened, ascending: those that need an answer.
+  std::vector<ClientSequence> unanswered() const;
+  /// Returns the edits that need an answer and were sent at `sent_us_max` or earlier, ascending. Ends at the first edit
+  /// that was never sent or was sent later.
+  std::vector<ClientSequence> overdue(TimeUs sent_us_max) const;
+  std::size_t pending_count() const;
+  const LocalEditCounters& counters() const { return counters_; }
 
  private:
   Map edits_;
   ClientSequence last_ = 0;
+  LocalEditCounters counters_;
 };
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// ReplicaChanges: what changed in a replica since it was last asked, for the mesher, the latency recorder and
-// the UI.
+// ReplicaChanges: what changed in a replica since its changes were last drained. The mesher, the latency recorder and the
+// user interface read them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -15,20 +15,19 @@
 
 namespace runstone {
 
-/// When a message came in, on the client's steady clock.
+/// When a message arrived, on the client's steady clock.
 struct Arrival {
   TimeUs received_us = 0;  // its last byte was read from the socket
   TimeUs unpacked_us = 0;  // it was decoded and verified
-  TimeUs now_us = 0;       // the replica takes it: "applied"
+  TimeUs now_us = 0;       // the replica applies it
 };
 
 inline constexpr TimeUs kTimeUnknown = -1;
 
-/// The layers of a chunk's picture that changed, as mesh_rdm_layers() wants them.
+/// The changed layers that the mesh of a chunk depends on, in the form of the arguments of mesh_rdm_layers().
 struct VisibleLayers {
-  DirtyLayers dirty;  // in which a shown voxel changed
-  /// By Direction, the same of each neighbour that changed in the layer that touches this chunk: all its
-  /// layers. Empty where that layer stayed as it was.
+  DirtyLayers dirty;  // layers in which a shown voxel changed
+  /// By Direction: all changed layers of the neighbour, if the layer that touches this chunk changed; else empty.
   std::array<DirtyLayers, kDirectionCount> beyond;
   VisibleLayers& operator|=(const VisibleLayers& other) {
     dirty |= other.dirty;
@@ -38,87 +37,82 @@ struct VisibleLayers {
   friend bool operator==(const VisibleLayers&, const VisibleLayers&) = default;
 };
 
-/// One chunk whose picture changed. Changes of a chunk are joined until they are taken.
-struct ChunkNews {
+/// One chunk whose mesh is out of date. Changes of a chunk are merged until they are drained.
+struct ChunkChange {
   ChunkKey key;
-  std::uint64_t serial = 0;  // of the picture, see Replica::shown_serial()
-  VisibleLayers layers;      // all that changed, but for neighbours that came or left the view
-  bool whole = false;        // nothing was shown here before, or nothing in between
+  std::uint64_t serial = 0;  // see Replica::shown_serial()
+  VisibleLayers layers;      // all that changed, except by neighbours that entered or left the view
+  bool whole = false;        // nothing was shown here before, or at some time in between
   bool removed = false;      // out of view or unavailable: nothing is shown here
-  std::vector<OperationId>
-      edits;  // edits that this change contains, in the order they were applied
+  std::vector<OperationId> edits;  // edits that this change contains, in the order applied
 };
 
-/// One edit that reached the replica: its prediction, or its place in the confirmed order.
-struct EditNews {
+/// One edit that was applied in the replica: as a prediction, or at its place in the confirmed order.
+struct EditChange {
   OperationId op;
-  Sequence seq = 0;        // 0 for a prediction
-  Sequence subject = 0;    // the earlier edit that this one answers (rollback, undo, redo); 0: none
-  bool own = false;        // made by this client instance
-  bool predicted = false;  // shown ahead of the server's answer
-  bool in_snapshot = false;  // came with a snapshot after its commit had been held back
-  TimeUs submitted_us = 0;   // server steady clock, as sent; 0 unknown; unused for predictions
-  TimeUs ordered_us = 0;     // server steady clock; unused for predictions
-  TimeUs received_us = 0;    // this client's steady clock; so are the next two
-  TimeUs unpacked_us = 0;
-  TimeUs applied_us = 0;
-  /// Chunks to mesh again because of it, neighbours at a border included; empty: nothing visible changed.
+  Sequence seq = 0;          // 0 for a prediction
+  Sequence subject = 0;      // the earlier edit that a rollback, undo or redo refers to; 0: none
+  bool is_local = false;     // made by this client instance
+  bool predicted = false;    // shown before the server's answer
+  bool in_snapshot = false;  // arrived with a snapshot, while its commit was held back
+  // Server steady clock, unused for predictions. submitted_us: 0 if unknown.
+  TimeUs submitted_us = 0, ordered_us = 0;
+  // This client's steady clock.
+  TimeUs received_us = 0, unpacked_us = 0, applied_us = 0;
+  /// Chunks to mesh again because of this edit, neighbours at a border included. Empty if nothing visible changed.
   std::vector<ChunkKey> chunks;
 };
 
-/// The server refused one of our edits; its prediction is gone.
-struct RejectNews {
+/// The server rejected a local edit. Its prediction has been removed.
+struct RejectedEdit {
   ClientSequence seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
 };
 
 /// The server cannot send a chunk of the view.
-struct UnavailableNews {
+struct UnavailableChunk {
   ChunkKey key;
   UnavailableReason reason = UnavailableReason::damaged;
 };
 
 struct ReplicaChanges {
-  std::vector<ChunkNews> chunks;  // ascending by key
-  std::vector<EditNews> edits;    // in the order applied
-  std::vector<RejectNews> rejects;
-  std::vector<ClientSequence> durable;  // own edits now known to be on disk
-  /// Own edits that were decided while we could not listen, by a server that no longer knows how: applied and
-  /// durable, or refused. The chunks tell.
+  std::vector<ChunkChange> chunks;  // ascending by key
+  std::vector<EditChange> edits;    // in the order applied
+  std::vector<RejectedEdit> rejects;
+  std::vector<ClientSequence> durable;  // local edits that are known to be on disk now
+  /// Local edits that the server resolved while this client was not connected, and whose commits will not arrive. They
+  /// were applied and are durable, or were rejected: the chunks show which.
   std::vector<ClientSequence> unseen;
-  /// Chunks that the server cannot send, and why.
-  std::vector<UnavailableNews> unavailable;
+  std::vector<UnavailableChunk> unavailable;
 };
 
-/// Counts since the replica was made. `chunk edits` count an edit once per chunk.
+/// Counts since the replica was made. A `chunk edit` is an edit in one chunk: an edit counts once per chunk. The counts of
+/// local edits are LocalEditCounters.
 struct ReplicaCounters {
   std::uint64_t snapshots_taken = 0;    // became the confirmed chunk
-  std::uint64_t snapshots_stale = 0;    // older than what we hold: ignored
+  std::uint64_t snapshots_stale = 0;    // older than the confirmed chunk: ignored
   std::uint64_t snapshots_outside = 0;  // not in view: ignored
   std::uint64_t commits = 0;
   std::uint64_t chunk_edits_applied = 0;
-  std::uint64_t chunk_edits_contained = 0;  // already in the snapshot: dropped
-  std::uint64_t chunk_edits_buffered = 0;   // came ahead of their snapshot
+  std::uint64_t chunk_edits_contained = 0;  // in the snapshot already: dropped
+  std::uint64_t chunk_edits_buffered = 0;   // held back for a snapshot
   std::uint64_t buffer_overflows = 0;
   std::uint64_t gaps = 0;
-  std::uint64_t requests = 0;                      // chunks asked for again
-  StackDepths confirmed_stacks, predicted_stacks;  // applied to confirmed runs, and on top of them
-  std::uint64_t audited = 0;                       // compared at equal version
-  std::uint64_t fell_behind = 0;     // by two audits: a commit got lost; repaired likewise
-  std::uint64_t drifted = 0;         // and found different: a snapshot is asked for
-  std::uint64_t repaired = 0;        // a snapshot replaced other voxels of its version
-  std::uint64_t claims_refuted = 0;  // kept copies that were not the server's: replaced
-  std::uint64_t adopted = 0;         // chunks that a cache had
-  std::uint64_t claimed = 0;         // chunks that the server was told are held
-  std::uint64_t same_taken = 0;      // they are as the server has them
-  std::uint64_t updates_taken = 0;   // brought up to date by the edits they lacked
-  std::uint64_t own_submitted = 0;
-  std::uint64_t own_confirmed = 0;
-  std::uint64_t own_rejected = 0;
-  std::uint64_t own_durable = 0;
-  std::uint64_t own_offered_again = 0;
-  std::uint64_t dropped_by_epoch = 0;  // chunks newer than what a restarted server kept
+  std::uint64_t requests = 0;        // chunks that were requested, repetitions included
+  StackDepths confirmed_stacks;      // edit stacks applied to confirmed runs
+  StackDepths predicted_stacks;      // edit stacks applied on top of them
+  std::uint64_t audited = 0;         // digests compared at equal version
+  std::uint64_t fell_behind = 0;     // found by two digest checks: a commit was lost
+  std::uint64_t drifted = 0;         // digests that differed: a snapshot is requested
+  std::uint64_t repaired = 0;        // snapshots that replaced other voxels of their version
+  std::uint64_t claims_refuted = 0;  // cached chunks that were not the server's: replaced
+  std::uint64_t adopted = 0;         // chunks that came from a cache
+  std::uint64_t claimed = 0;         // chunks that this client claimed to hold
+  std::uint64_t same_taken = 0;      // claimed chunks that the server has not modified
+  std::uint64_t updates_taken = 0;   // claimed chunks that were completed by the edits they lacked
+  std::uint64_t dropped_by_epoch =
+      0;  // chunks newer than what a restarted server is known to have kept
 };
 
 }  // namespace runstone

@@ -18,9 +18,9 @@ bool is_final(GoodbyeReason reason) {
 void ServerConnection::connected(const Nonce& nonce, TimeUs now_us) {
   disconnected();
   end_.reset();
-  hello_ = hello_of(config_, nonce);
+  hello_ = make_hello(config_, nonce);
   outgoing_.push_back(hello_);
-  state_ = SessionState::greeting;
+  state_ = SessionState::hello_sent;
   heard_us_ = now_us;
 }
 
@@ -41,12 +41,12 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     return Dispatch::handled;
   }
   if (auto* welcome = std::get_if<Welcome>(&message)) {
-    if (state_ == SessionState::greeting) return on_welcome(std::move(*welcome));
+    if (state_ == SessionState::hello_sent) return on_welcome(std::move(*welcome));
     fail_with(GoodbyeReason::unexpected_message, "welcome twice");
     return Dispatch::handled;
   }
   if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
-    if (state_ != SessionState::proving) {
+    if (state_ != SessionState::authenticating) {
       fail_with(GoodbyeReason::unexpected_message, "ready out of turn");
       return Dispatch::handled;
     }
@@ -71,7 +71,7 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   if (is_another_world || (welcome_ && welcome_->epoch != welcome.epoch)) clock_.reset();
   outgoing_.push_back(ClientAuth{sign(config_.keys, client_transcript(hello_, welcome))});
   welcome_ = std::move(welcome);
-  state_ = SessionState::proving;
+  state_ = SessionState::authenticating;
   return is_another_world ? Dispatch::another_world : Dispatch::handled;
 }
 
@@ -123,7 +123,7 @@ TimeUs ServerConnection::tick_due_us(TimeUs ping_every_us) const {
   return due_us;
 }
 
-void ServerConnection::send_edit(ClientSequence seq, const OwnEdit& own) {
+void ServerConnection::send_edit(ClientSequence seq, const LocalEdit& own) {
   outgoing_.push_back(EditRequest{seq, clock_.to_server(own.submitted_us).value_or(0), own.edit});
 }
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "client/replica/client_handshake.hpp"
 #include "client/replica/clock_offset.hpp"
-#include "client/replica/greeting.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "protocol/codec/handshake.hpp"
@@ -26,7 +26,7 @@ inline constexpr TimeUs kServerSilenceUsMax =
     15'000'000;                                 // with a ping a second, silence means a dead link
 inline constexpr TimeUs kMoveEveryUs = 50'000;  // poses sent at most
 
-enum class SessionState { offline, greeting, proving, open };
+enum class SessionState { offline, hello_sent, authenticating, open };
 
 /// Why the last connection ended, as far as the protocol knows.
 struct SessionEnd {
@@ -72,7 +72,7 @@ class ServerConnection {
   TimeUs tick_due_us(TimeUs ping_every_us) const;
   void send(Message message) { outgoing_.push_back(std::move(message)); }
   /// With the server's time of the click, if the offset of its clock is known.
-  void send_edit(ClientSequence seq, const OwnEdit& own);
+  void send_edit(ClientSequence seq, const LocalEdit& own);
   /// In as many messages as their limit makes of them.
   void request_chunks(const std::vector<ChunkKey>& keys);
   /// The view to wish for from now on.

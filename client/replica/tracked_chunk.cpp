@@ -5,48 +5,65 @@
 namespace runstone {
 
 void TrackedChunk::add_pending(ClientSequence seq, const EditDescriptor& edit) {
-  const auto place = std::lower_bound(pending.begin(), pending.end(), seq,
-                                      [](const Pending& p, ClientSequence s) { return p.seq < s; });
+  const auto place =
+      std::lower_bound(pending.begin(), pending.end(), seq,
+                       [](const PendingEdit& p, ClientSequence s) { return p.seq < s; });
   if (place == pending.end() || place->seq != seq) pending.insert(place, {seq, edit, 0, false});
 }
 
 bool TrackedChunk::drop_pending(ClientSequence seq) {
-  return std::erase_if(pending, [seq](const Pending& p) { return p.seq == seq; }) != 0;
+  return std::erase_if(pending, [seq](const PendingEdit& p) { return p.seq == seq; }) != 0;
 }
 
-std::size_t TrackedChunk::settle_pending(Sequence seq) {
-  return std::erase_if(pending, [seq](const Pending& p) {
-    return p.until_snapshot || (p.decided_at != 0 && p.decided_at <= seq);
+void TrackedChunk::confirm_pending(ClientSequence seq, Sequence at) {
+  for (PendingEdit& edit : pending) {
+    if (edit.seq == seq) edit.confirmed_at = at;
+  }
+}
+
+void TrackedChunk::leave_to_snapshot(ClientSequence seq) {
+  for (PendingEdit& edit : pending) {
+    if (edit.seq == seq) edit.until_snapshot = true;
+  }
+}
+
+std::size_t TrackedChunk::drop_answered(Sequence seq) {
+  return std::erase_if(pending, [seq](const PendingEdit& p) {
+    return p.until_snapshot || (p.confirmed_at != 0 && p.confirmed_at <= seq);
   });
 }
 
-TrackedChunk::InOrder TrackedChunk::take_in_order() {
-  InOrder out;
-  out.version = confirmed->version;
+TrackedChunk::Advance TrackedChunk::advance() {
+  Advance out;
+  out.version = confirmed_->version;
   std::size_t taken = 0;
   for (; taken < inbox.size(); ++taken) {
-    const Inbound& inbound = inbox[taken];
-    const bool is_contained = inbound.info->version.seq <= out.version.seq;
-    if (!is_contained && inbound.previous != out.version.seq) break;
-    if (inbound.info->own) drop_pending(inbound.info->op.seq);
-    (is_contained ? out.contained : out.applied).push_back(inbound.info);
+    const InboxEdit& next = inbox[taken];
+    const bool is_contained = next.info->version.seq <= out.version.seq;
+    if (!is_contained && next.previous != out.version.seq) break;
+    if (next.info->is_local) drop_pending(next.info->op.seq);
+    (is_contained ? out.contained : out.applied).push_back(next.info);
     if (is_contained) continue;
-    out.stack.push_back(inbound.info->edit);
-    out.version = inbound.info->version;
+    out.stack.push_back(next.info->edit);
+    out.version = next.info->version;
   }
   inbox.erase(inbox.begin(), inbox.begin() + static_cast<std::ptrdiff_t>(taken));
   return out;
 }
 
-ShownPtr TrackedChunk::predicted(VoxelPos origin, ApplyScratch& scratch) const {
-  if (pending.empty()) return {confirmed, &confirmed->voxels};
+ShownPtr TrackedChunk::predicted(ApplyScratch& scratch) const {
+  if (pending.empty()) return {confirmed_, &confirmed_->voxels};
   std::vector<EditDescriptor> stack;
   stack.reserve(pending.size());
-  for (const Pending& own : pending) stack.push_back(own.edit);
-  auto next = std::make_shared<RunChunk>(confirmed->voxels);
+  for (const PendingEdit& local : pending) stack.push_back(local.edit);
+  auto next = std::make_shared<RunChunk>(confirmed_->voxels);
   Digest unused;
-  apply_stack(*next, unused, origin, stack, scratch);
+  apply_stack(*next, unused, origin(*next), stack, scratch);
   return next;
+}
+
+VoxelPos TrackedChunk::origin(const RunChunk& voxels) const {
+  return origin_of(key.at, static_cast<std::int32_t>(voxels.extent.x));
 }
 
 }  // namespace runstone

@@ -1,5 +1,8 @@
-// TrackedChunk: what a replica keeps of one chunk: confirmed and shown runs, own edits that confirmed lacks,
-// and edits that came ahead of their turn. One thread.
+// TrackedChunk: everything that a replica knows about one chunk:
+//   - the confirmed runs and the shown runs;
+//   - the pending edits: local edits that the confirmed runs do not contain yet;
+//   - the inbox: ordered edits that arrived before the edits or the snapshot that they follow.
+// The state and the confirmed chunk are changed by ChunkTable only, which counts them. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/replica/chunk_state.hpp"
 #include "common/core/ids.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/runs/chunk.hpp"
@@ -21,65 +25,81 @@ struct OrderedInfo {
   Version version;
   EditDescriptor edit;
   Sequence subject = 0;                     // as in OrderedEdit
-  bool own = false;                         // made by this client instance
-  TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
-  TimeUs received_us = 0, unpacked_us = 0;  // this client's
+  bool is_local = false;                    // made by this client instance
+  TimeUs submitted_us = 0, ordered_us = 0;  // the server's steady clock
+  TimeUs received_us = 0, unpacked_us = 0;  // this client's steady clock
 };
 using OrderedPtr = std::shared_ptr<const OrderedInfo>;
 
-struct TrackedChunk {
-  /// An edit that waits for its turn.
-  struct Inbound {
+class TrackedChunk {
+ public:
+  explicit TrackedChunk(const ChunkKey& chunk_key) : key(chunk_key) {}
+
+  /// An ordered edit that waits until the edit before it has been applied.
+  struct InboxEdit {
     OrderedPtr info;
-    Sequence previous = 0;  // sequence the chunk stood at before it
+    Sequence previous = 0;  // the chunk's sequence before this edit
   };
-  /// An own edit that confirmed does not contain yet.
-  struct Pending {
+  /// A local edit that the confirmed runs do not contain yet.
+  struct PendingEdit {
     ClientSequence seq = 0;
     EditDescriptor edit;
-    Sequence decided_at = 0;  // 0: not answered yet
+    Sequence confirmed_at = 0;  // sequence of its commit; 0: none has arrived
     bool until_snapshot =
-        false;  // answered while we could not listen: the next snapshot settles it
+        false;  // its answer was missed, so the next snapshot contains or excludes it
   };
 
-  ChunkPtr confirmed;        // null until the first snapshot, and after a restart that distrusts it
-  ShownPtr shown;            // null until the first snapshot
-  std::uint64_t serial = 0;  // of the picture, see Replica::shown_serial()
-  std::vector<Pending> pending;  // ascending by seq
-  std::vector<Inbound> inbox;    // ascending by sequence
-  Sequence latest = 0;           // newest edit of this chunk seen on this connection
-  bool current = false;          // a snapshot of it came on this connection
-  Version audited_at;  // of the newest audit that told of a version above ours, on this connection
-  bool awaiting = false;  // asked for a snapshot: nothing else is taken
-  bool claimed = false;   // the server was told on this connection that it is held
-  bool unavailable =
-      false;  // said the server on this connection; then nothing is held, shown or kept back
-  std::optional<TimeUs> requested_us;
-  std::optional<Version> kept;  // of confirmed, as it was last handed over to be kept
+  const ChunkKey key;
+  ShownPtr shown;                    // null until the first snapshot
+  std::uint64_t serial = 0;          // see Replica::shown_serial()
+  std::vector<PendingEdit> pending;  // ascending by seq
+  std::vector<InboxEdit> inbox;      // ascending by sequence
+  Sequence latest = 0;               // newest edit of this chunk seen on this connection
+  Version behind_of;  // newest version above ours that a digest check named on this connection
+  std::optional<TimeUs> requested_us;  // last request for a snapshot
+  std::optional<Version> cached;  // version that was last handed to the cache, or that came from it
 
-  /// The server vouches for confirmed, and it is not the copy that was kept last.
-  bool is_to_keep() const {
-    return confirmed && current && !awaiting && kept != confirmed->version;
-  }
+  ChunkState state() const { return state_; }
+  bool is_current() const { return state_ == ChunkState::current; }
+  bool is_unavailable() const { return state_ == ChunkState::unavailable; }
+  /// Returns null until the first snapshot, and after a restart of the server that may have lost this version.
+  const ChunkPtr& confirmed() const { return confirmed_; }
+  /// Returns true if the server vouches for the confirmed chunk and the cache does not have this version.
+  bool is_for_cache() const { return is_current() && confirmed_ && cached != confirmed_->version; }
 
-  /// Puts an own edit into the pending stack, at its place, unless it is there.
+  /// Adds a local edit to the pending edits, in client order, unless it is there.
   void add_pending(ClientSequence seq, const EditDescriptor& edit);
+  /// Returns false if the edit is not pending here.
   bool drop_pending(ClientSequence seq);
-  /// Drops what a snapshot at `seq` is known to contain or to settle. Returns how many.
-  std::size_t settle_pending(Sequence seq);
+  /// Notes the commit of a pending edit. Does nothing if the edit is not pending here.
+  void confirm_pending(ClientSequence seq, Sequence at);
+  /// Leaves a pending edit to the next snapshot. Does nothing if the edit is not pending here.
+  void leave_to_snapshot(ClientSequence seq);
+  /// Drops the pending edits that a snapshot at `seq` contains or excludes for sure. Returns how many.
+  std::size_t drop_answered(Sequence seq);
 
-  /// What the inbox holds in order, taken out of it: from the front, until an edit does not follow.
-  struct InOrder {
-    std::vector<EditDescriptor> stack;  // to be applied to confirmed
+  /// What advance() took from the inbox.
+  struct Advance {
+    std::vector<EditDescriptor> stack;  // to be applied to the confirmed runs
     std::vector<OrderedPtr> applied;    // the same edits
-    std::vector<OrderedPtr> contained;  // confirmed has them already
+    std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
     Version version;                    // after the stack
   };
-  /// Requires confirmed.
-  InOrder take_in_order();
+  /// Takes edits from the front of the inbox until one does not follow the version reached. Local edits among them are
+  /// no longer pending. Requires confirmed().
+  Advance advance();
 
-  /// The runs to show: confirmed itself, or a copy with the pending stack applied. Requires confirmed.
-  ShownPtr predicted(VoxelPos origin, ApplyScratch& scratch) const;
+  /// Returns the runs to show: those of the confirmed chunk itself if nothing is pending, otherwise a copy with the
+  /// pending edits applied. Requires confirmed().
+  ShownPtr predicted(ApplyScratch& scratch) const;
+
+  /// Returns the world position of the first voxel of `voxels`, which are runs of this chunk.
+  VoxelPos origin(const RunChunk& voxels) const;
+
+ private:
+  friend class ChunkTable;
+  ChunkState state_ = ChunkState::expected;
+  ChunkPtr confirmed_;
 };
 
 }  // namespace runstone

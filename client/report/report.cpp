@@ -35,7 +35,7 @@ Json histogram_json(const Histogram& histogram) {
   return out;
 }
 
-Json way_json(const WayReport& way) {
+Json way_json(const PathReport& way) {
   Json out;
   out["edits"] = way.edits;
   out["without_effect"] = way.without_effect;
@@ -65,6 +65,7 @@ Json part_json(const JoinedPart& part) {
 
 Json replica_json(const Replica& replica) {
   const ReplicaCounters& c = replica.counters();
+  const LocalEditCounters& local = replica.local_edits().counters();
   return Json{{"confirmed_chunks", replica.confirmed_count()},
               {"awaiting", replica.awaiting_count()},
               {"unavailable", replica.unavailable_count()},
@@ -92,11 +93,11 @@ Json replica_json(const Replica& replica) {
               {"claimed", c.claimed},
               {"same_taken", c.same_taken},
               {"updates_taken", c.updates_taken},
-              {"own_submitted", c.own_submitted},
-              {"own_confirmed", c.own_confirmed},
-              {"own_rejected", c.own_rejected},
-              {"own_durable", c.own_durable},
-              {"own_offered_again", c.own_offered_again},
+              {"own_submitted", local.submitted},
+              {"own_confirmed", local.confirmed},
+              {"own_rejected", local.rejected},
+              {"own_durable", local.durable},
+              {"own_offered_again", local.offered_again},
               {"dropped_by_epoch", c.dropped_by_epoch}};
 }
 
@@ -146,7 +147,7 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
     out["clock"] = nullptr;
   }
   Json latency;
-  for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
+  for (std::size_t w = 0; w < kEditPathCount; ++w) {
     const auto way = static_cast<EditPath>(w);
     latency[to_string(way)] = way_json(report.latency[way]);
   }
@@ -190,7 +191,7 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
   const auto into = std::back_inserter(out);
   fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until",
                  "count", "p50", "p90", "p99", "max");
-  for (std::size_t w = 0; w < kLatencyWayCount; ++w) {
+  for (std::size_t w = 0; w < kEditPathCount; ++w) {
     const auto way = static_cast<EditPath>(w);
     for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
       add_row(out, to_string(way), to_string(static_cast<LatencyStage>(s)),

@@ -1,14 +1,14 @@
-// LatencyRecorder: the way of every edit to this client's screen, stage by stage (design: latency-plus-mesh).
+// LatencyRecorder: times every edit on its path to this client's screen, stage by stage (design: latency-plus-mesh).
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
-// Three ways are kept apart:
-//   own_predicted  submit -> applied (to the shown runs) -> meshed -> uploaded -> presented
-//   own_confirmed  submit -> ordered -> received -> unpacked -> applied; then durable, on its own
-//   remote         all stages; times of the server's clock are converted with the offset known when it
-//   arrived
-// An edit takes the first mesh that contains it; one that changes several chunks is through a stage when the
-// last of them is. Open loop: submit is the time an edit was scheduled for, not when the program got round to
-// it. An edit that is never seen counts as infinite. Microseconds of this client's steady clock, all of them
-// arguments. One thread.
+// Three paths are recorded separately:
+//   - own_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed -> uploaded -> presented;
+//   - own_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked -> applied. The time until it is
+//     durable is recorded apart;
+//   - remote: all stages. Times of the server's clock are converted with the offset known when the edit arrived.
+// An edit is in the first mesh made from runs that contain it. An edit of several chunks passes a stage when its last chunk
+// does. Open loop: submit is the time for which an edit was scheduled, not the time at which the program submitted it. An
+// edit that is never seen counts as infinite. All times are arguments, in microseconds of this client's steady clock. One
+// thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -39,61 +39,63 @@ inline constexpr std::size_t kLatencyStageCount = 7;
 const char* to_string(LatencyStage stage);
 
 enum class EditPath : std::uint8_t { own_predicted, own_confirmed, remote };
-inline constexpr std::size_t kLatencyWayCount = 3;
-const char* to_string(EditPath way);
+inline constexpr std::size_t kEditPathCount = 3;
+const char* to_string(EditPath path);
 
-struct WayReport {
-  /// From submit to the end of each stage; `meshed` is latency-plus-mesh, `presented` is "to pixels".
+struct PathReport {
+  /// From submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is "to pixels".
   std::array<Histogram, kLatencyStageCount> since_submit;
-  /// From the end of the stage before (submit, for the first one recorded).
+  /// From the end of the previous recorded stage, or from submit for the first one.
   std::array<Histogram, kLatencyStageCount> step;
-  std::uint64_t edits = 0;           // seen on this way, or due and never seen
-  std::uint64_t without_effect = 0;  // no visible voxel changed: nothing to mesh, in no later stage
-  std::uint64_t left_view = 0;       // its chunks left the view before it was drawn
-  std::uint64_t unknown_submit = 0;  // its sender or we had no clock offset: in `step` only
+  std::uint64_t edits = 0;           // seen on this path, or due and never seen
+  std::uint64_t without_effect = 0;  // no visible voxel changed: no later stage is recorded
+  std::uint64_t left_view = 0;       // its chunks left the view before they were drawn
+  std::uint64_t unknown_submit =
+      0;  // its sender or this client had no clock offset: in `step` only
 };
 
 struct LatencyReport {
-  std::array<WayReport, kLatencyWayCount> ways;
-  Histogram durable;           // own edits: submit -> known to be on disk
-  std::uint64_t rejected = 0;  // own edits the server refused; in none of the above
-  std::uint64_t unseen =
-      0;  // own edits decided while we could not listen; not in own_confirmed and durable
-  const WayReport& operator[](EditPath way) const { return ways[static_cast<std::size_t>(way)]; }
+  std::array<PathReport, kEditPathCount> paths;
+  // Local edits:
+  Histogram durable;           // submit -> known to be on disk
+  std::uint64_t rejected = 0;  // rejected by the server; in none of the above
+  std::uint64_t unseen = 0;    // resolved while not connected; not in own_confirmed and durable
+  const PathReport& operator[](EditPath path) const {
+    return paths[static_cast<std::size_t>(path)];
+  }
 };
 
 class LatencyRecorder {
  public:
-  /// `last`: the stage that ends an edit: presented, or meshed for a client that draws nothing.
+  /// `last`: the last recorded stage: presented, or meshed for a client that draws nothing.
   explicit LatencyRecorder(LatencyStage last = LatencyStage::presented) : last_(last) {}
 
-  /// An own edit was handed in; call before take() sees its news.
-  void submitted(ClientSequence seq, TimeUs scheduled_us) { own_[seq] = scheduled_us; }
-  /// An own edit was due but could not even be handed in: it is infinitely late.
+  /// A local edit was submitted. Call it before take() gets the changes that contain the edit.
+  void submitted(ClientSequence seq, TimeUs scheduled_us) { local_[seq] = scheduled_us; }
+  /// A local edit was due, but submit() failed: it counts as infinitely late.
   void not_submitted();
-  void take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us);
+  void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
 
-  /// A mesh made from the chunk's shown runs of this serial is ready / on the GPU. Serials:
-  /// Replica::shown_serial().
+  /// A mesh made from the chunk's shown runs is ready, or on the GPU. `serial`: the Replica::shown_serial() of the runs.
   void meshed(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   void uploaded(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   /// The frame with everything uploaded so far is on the screen.
   void presented(TimeUs at_us);
 
-  /// Edits still on their way.
+  /// Returns the number of edits that have not reached the last stage.
   std::size_t open_edits() const { return open_.size(); }
-  /// All of it, with what is still open counted as infinite.
+  /// Returns everything recorded so far. Edits that are still open count as infinite.
   LatencyReport report() const;
 
  private:
-  using EditKey = std::pair<OperationId, bool>;  // and whether it is the prediction
+  using EditKey = std::pair<OperationId, bool>;  // true: the prediction
   struct OpenEdit {
-    EditPath way = EditPath::remote;
+    EditPath path = EditPath::remote;
     std::optional<TimeUs> submitted_us;
     std::array<TimeUs, kLatencyStageCount> at{};
     std::array<bool, kLatencyStageCount> reached{};
     std::size_t chunks_left = 0;
-    bool drawn = false;  // at least one chunk went all the way
+    bool drawn = false;  // at least one chunk reached the last stage
   };
   struct Waiter {
     EditKey edit;
@@ -101,7 +103,7 @@ class LatencyRecorder {
     bool meshed = false, uploaded = false;
   };
 
-  void take_edit(const EditNews& news, const std::map<ChunkKey, std::uint64_t>& serials,
+  void take_edit(const EditChange& change, const std::map<ChunkKey, std::uint64_t>& serials,
                  const ClockOffset& clock);
   void chunk_done(const EditKey& key, bool drawn);
   void reach(OpenEdit& edit, LatencyStage stage, TimeUs at_us);
@@ -110,11 +112,12 @@ class LatencyRecorder {
 
   LatencyStage last_;
   LatencyReport done_;
-  std::map<ClientSequence, TimeUs> own_;  // until durable or rejected
-  std::set<ClientSequence> unconfirmed_;  // own edits, predicted and not yet confirmed
+  std::map<ClientSequence, TimeUs> local_;  // submit times, until durable or rejected
+  std::set<ClientSequence> unconfirmed_;    // local edits that are predicted and not confirmed
   std::map<EditKey, OpenEdit> open_;
   std::map<ChunkKey, std::vector<Waiter>> waiters_;
-  std::set<EditKey> finished_;  // the last kFinishedMax, so that late parts count once
+  std::set<EditKey>
+      finished_;  // the last kFinishedMax, so that an edit whose chunks arrive late counts once
   std::deque<EditKey> finished_order_;
 };
 

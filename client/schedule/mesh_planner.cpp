@@ -24,8 +24,8 @@ void MeshPlanner::for_each_beside(const ChunkKey& key, Act act) {
   }
 }
 
-void MeshPlanner::take(std::span<const ChunkNews> news) {
-  for (const ChunkNews& chunk : news) {
+void MeshPlanner::take(std::span<const ChunkChange> changes) {
+  for (const ChunkChange& chunk : changes) {
     if (chunk.removed) {
       if (const auto it = states_.find(chunk.key); it != states_.end()) {
         if (it->second.rank) ready_.erase(*it->second.rank);

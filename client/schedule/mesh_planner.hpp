@@ -58,7 +58,7 @@ class MeshPlanner {
  public:
   explicit MeshPlanner(const Replica& replica) : replica_(replica) {}
 
-  void take(std::span<const ChunkNews> news);
+  void take(std::span<const ChunkChange> changes);
   /// The view of the replica moved: chunks at its edge may not wait any longer.
   void view_changed();
   void set_eye(ChunkCoord eye);

@@ -138,7 +138,7 @@ TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]")
   CHECK(report.replicas == 5);
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
-  CHECK(report.counts.own_us.count() == 500);
+  CHECK(report.counts.confirm_us.count() == 500);
   // 45 without a replica get each edit once, its author included.
   CHECK(report.commit_edits == 45 * 500);
   CHECK(report.seen_us.count() >= 45 * 500);

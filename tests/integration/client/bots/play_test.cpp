@@ -66,7 +66,7 @@ TEST_CASE("a log played on a fresh server of the same generator gives the same w
     CHECK(report.is_complete());
     CHECK(report.counts.due == 450);
     CHECK(report.counts.submitted == 450);
-    CHECK(report.counts.own_us.count() == 450);
+    CHECK(report.counts.confirm_us.count() == 450);
     const StopReport stopped = server->stop();
     CHECK(stopped.world_digest == digest);
     CHECK(stopped.digests.seq == 450);

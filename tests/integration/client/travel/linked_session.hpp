@@ -52,8 +52,8 @@ class LinkedSession final : private LinkEvents {
   }
   /// Arrives, or is refused.
   void travel(const HistoryRequest& travel) {
-    REQUIRE(session_.travel(travel).has_value());
-    until([&] { return !session_.travelling(); });
+    REQUIRE(session_.request_history(travel).has_value());
+    until([&] { return !session_.loading_history(); });
   }
 
  private:

@@ -58,7 +58,7 @@ TEST_CASE("a client sees its view as it was after any edit, and the live world a
   for (const Sequence seq : {20U, 0U, 7U, 29U, 30U, 1U}) {
     CAPTURE(seq);
     viewer.travel(to_seq(seq));
-    CHECK(viewer.session().travel_refusal().empty());
+    CHECK(viewer.session().history_refusal().empty());
     CHECK(viewer.session().loaded());
     REQUIRE(viewer.replica().past().has_value());
     CHECK(viewer.replica().past()->seq == seq);
@@ -116,12 +116,12 @@ TEST_CASE("a moment that is not in the log is refused by name, and nothing chang
   LinkedSession viewer(server->port(), kView);
   viewer.settle();
   viewer.travel(to_seq(4));
-  CHECK(viewer.session().travel_refusal().find("seq=4") != std::string::npos);
+  CHECK(viewer.session().history_refusal().find("seq=4") != std::string::npos);
   CHECK_FALSE(viewer.replica().past().has_value());
   CHECK(viewer.session().loaded());
   viewer.travel(to_seq(2));
   viewer.travel(to_seq(99));
-  CHECK_FALSE(viewer.session().travel_refusal().empty());
+  CHECK_FALSE(viewer.session().history_refusal().empty());
   CHECK(viewer.replica().past()->seq == 2);
   CHECK(held_by(viewer.replica()) == builder.moments[2]);
   server->stop();
@@ -155,12 +155,12 @@ TEST_CASE("of many wishes in a row the last one is granted", "[travel]") {
   LinkedSession viewer(server->port(), kView);
   viewer.settle();
   for (Sequence seq = 0; seq <= 12; ++seq)
-    REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
+    REQUIRE(viewer.session().request_history(to_seq(seq)).has_value());
   viewer.travel(to_seq(5));
   CHECK(viewer.replica().past()->seq == 5);
   CHECK(held_by(viewer.replica()) == builder.moments[5]);
   for (Sequence seq = 0; seq <= 12; ++seq)
-    REQUIRE(viewer.session().travel(to_seq(seq)).has_value());
+    REQUIRE(viewer.session().request_history(to_seq(seq)).has_value());
   viewer.travel({});
   viewer.settle();
   CHECK(held_by(viewer.replica()) == builder.moments[12]);

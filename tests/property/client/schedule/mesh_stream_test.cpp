@@ -286,13 +286,13 @@ class MeshStream {
   }
 
   void drain_changes() {
-    std::vector<ChunkNews> news = replica_.drain_changes().chunks;
-    for (ChunkNews& chunk : news) {
+    std::vector<ChunkChange> changes = replica_.drain_changes().chunks;
+    for (ChunkChange& chunk : changes) {
       if (chunk.removed) drawn_.erase(chunk.key);
       if (sabotage_.own_layers) chunk.layers.dirty = {};
       if (sabotage_.beyond_layers) chunk.layers.beyond = {};
     }
-    planner_.take(news);
+    planner_.take(changes);
   }
 
   void push_job() {

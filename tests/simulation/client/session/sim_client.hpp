@@ -97,25 +97,25 @@ class SimClient {
           connection_->send_from_client(encode_message(message));
         if (session_.wants_close()) throw SimFault("session closes: " + session_.end()->text);
       }
-      for (const RejectNews& r : drain_changes().rejects) rejected_[r.seq] = r.reason;
+      for (const RejectedEdit& r : drain_changes().rejects) rejected_[r.seq] = r.reason;
       pump();
     });
   }
   /// Answers come after a while, some of them later than a view waits.
   void step_cache() {
-    while (auto question = session_.take_question()) {
+    while (auto question = session_.take_cache_lookup()) {
       time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(question)] {
-        if (life == life_) session_.answer(cache_->find(q.world, q.keys), time_.now());
+        if (life == life_) session_.receive_cached(cache_->find(q.world, q.keys), time_.now());
       });
     }
     const auto world = session_.cached_world();
-    if (world && rng_.below(50) == 0) cache_->keep(*world, session_.replica().take_unkept(40));
+    if (world && rng_.below(50) == 0) cache_->keep(*world, session_.replica().take_for_cache(40));
   }
   ReplicaChanges drain_changes() {
-    ReplicaChanges news = replica().drain_changes();
-    durable_.insert(news.durable.begin(), news.durable.end());
-    unseen_.insert(news.unseen.begin(), news.unseen.end());
-    return news;
+    ReplicaChanges changes = replica().drain_changes();
+    durable_.insert(changes.durable.begin(), changes.durable.end());
+    unseen_.insert(changes.unseen.begin(), changes.unseen.end());
+    return changes;
   }
 
   void connect() {
@@ -123,7 +123,7 @@ class SimClient {
     SimEnd end;
     end.on_message = [this](FrameClass c, ByteView bytes) -> Result<void> {
       const std::uint16_t edge =
-          session_.welcome() && session_.state() != SessionState::greeting ? kSimEdge : 0;
+          session_.welcome() && session_.state() != SessionState::hello_sent ? kSimEdge : 0;
       auto message = decode_message(Sender::server, c, bytes, edge);
       if (!message) throw SimFault(std::string("client cannot decode: ") + message.error().what);
       session_.receive(std::move(*message), {time_.now(), time_.now(), time_.now()});

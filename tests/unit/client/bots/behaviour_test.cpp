@@ -12,8 +12,7 @@ namespace {
 constexpr std::int32_t kEdge = 32;
 
 // A replica that sees flat ground, y < 0 solid, for `radius` chunks around a site.
-Replica flat_replica(ChunkCoord centre, std::uint8_t radius) {
-  Replica replica;
+void load_flat_world(Replica& replica, ChunkCoord centre, std::uint8_t radius) {
   const View view{centre, radius, radius};
   replica.set_view(view);
   replica.open({.chunk_edge = kEdge, .author = 1, .instance = 1, .epoch = 1});
@@ -29,13 +28,13 @@ Replica flat_replica(ChunkCoord centre, std::uint8_t radius) {
       }
     }
   }
-  return replica;
 }
 
 std::vector<EditDescriptor> edits_of(BotRole role, const BotPlace& place, std::uint64_t seed,
                                      int count) {
   const VoxelPos corner = site_corner(place);
-  const Replica replica = flat_replica(chunk_of({corner.x + 24, 8, corner.z + 24}, kEdge), 3);
+  Replica replica;
+  load_flat_world(replica, chunk_of({corner.x + 24, 8, corner.z + 24}, kEdge), 3);
   const auto behaviour = make_behaviour(role, place, default_material_table(), seed);
   std::vector<EditDescriptor> out;
   for (int i = 0; i < count; ++i) {
@@ -86,7 +85,8 @@ TEST_CASE("builders and brushes stay on their site", "[bots]") {
 
 TEST_CASE("a builder waits until it sees its plot; idlers and walkers edit nothing", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
-  const Replica far = flat_replica({40, 0, 40}, 1);
+  Replica far;
+  load_flat_world(far, {40, 0, 40}, 1);
   CHECK_FALSE(make_behaviour(BotRole::build, place, default_material_table(), 1)
                   ->next_edit(ReplicaGround(far)));
   CHECK(edits_of(BotRole::idle, place, 1, 10).empty());

@@ -7,15 +7,13 @@ using namespace runstone;
 namespace {
 
 // One chunk of edge 32, empty, at the origin.
-Replica empty_replica() {
-  Replica replica;
+void load_empty_chunk(Replica& replica) {
   replica.set_view({{0, 0, 0}, 0, 0});
   replica.open({.chunk_edge = 32, .author = 1, .instance = 1, .epoch = 1});
   ChunkSnapshot snapshot;
   snapshot.key = {0, {0, 0, 0}};
   snapshot.chunk.voxels = uniform_chunk(Extent::cube(32), kEmpty);
   replica.receive(std::move(snapshot), {});
-  return replica;
 }
 
 EditDescriptor voxel(std::int32_t x, Material material) {
@@ -25,7 +23,8 @@ EditDescriptor voxel(std::int32_t x, Material material) {
 }  // namespace
 
 TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
-  Replica replica = empty_replica();
+  Replica replica;
+  load_empty_chunk(replica);
   EditLedger ledger;
   const auto set = [&](const EditDescriptor& edit) {
     REQUIRE(replica.submit(edit, 0, 0).has_value());
@@ -45,7 +44,8 @@ TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
 
 TEST_CASE("a ledger forgets what a larger or a masked edit may have covered, and what was refused",
           "[bots]") {
-  const Replica replica = empty_replica();
+  Replica replica;
+  load_empty_chunk(replica);
   EditLedger ledger;
   ledger.add(voxel(1, 5));
   ledger.add(voxel(2, 5));

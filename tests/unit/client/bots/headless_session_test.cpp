@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "client/net/key_file.hpp"
+#include "tests/support/test_keys.hpp"
 
 using namespace runstone;
 
@@ -18,7 +18,7 @@ constexpr AuthorId kAuthor = 7;
 /// A server that says what a test wants, to one light session.
 struct Bench {
   Bench() {
-    config.keys = random_key();
+    config.keys = test::keys(1);
     config.instance = 11;
     session.emplace(config, crowd, read_clock);
     greet(1, 0);
@@ -33,7 +33,7 @@ struct Bench {
   }
   /// A new connection up to ready. Returns what the session has to say then.
   std::vector<Message> greet(Epoch epoch, ClientSequence resolved) {
-    session->connected(random_nonce(), clock_us);
+    session->connected({5}, clock_us);
     const auto hello = std::get<Hello>(session->take_outgoing().at(0));
     Welcome welcome;
     welcome.epoch = epoch;
@@ -77,10 +77,10 @@ struct Bench {
     return *seq;
   }
   OperationId own(ClientSequence seq) const { return {kAuthor, config.instance, seq}; }
-  const Violations& violations() const { return session->book().violations(); }
+  const Violations& violations() const { return session->versions().violations(); }
 
   SessionConfig config;
-  KeyPair keys = random_key();
+  KeyPair keys = test::keys(9);
   FleetStatistics crowd;
   std::optional<HeadlessSession> session;
 };
@@ -100,18 +100,18 @@ TEST_CASE("a light session verifies commits and measures each edit at each bot",
       {Bench::edit(0, {2, 99, 5}), Bench::edit(3, bench.own(mine)), Bench::edit(4, {2, 98, 1})}};
   REQUIRE(bench.takes(commit));
   CHECK(bench.violations().total() == 0);
-  CHECK(bench.session->book().version(kHere) == 5);
+  CHECK(bench.session->versions().version(kHere) == 5);
   CHECK(bench.session->counts().commits == 1);
   CHECK(bench.session->counts().edits == 3);
-  CHECK(bench.session->counts().own_confirmed == 1);
-  CHECK(bench.session->counts().own_us.max() == 600);
+  CHECK(bench.session->local_edits().counters().confirmed == 1);
+  CHECK(bench.session->counts().confirm_us.max() == 600);
   CHECK(bench.crowd.seen_us().count() == 2);
   CHECK(bench.crowd.seen_us().max() == 2'100);
   CHECK(bench.crowd.unattributed() == 1);
   CHECK(bench.session->local_edits().all().size() == 1);
   bench.give(Durable{1, 5});
   CHECK(bench.session->local_edits().all().empty());
-  CHECK(bench.session->counts().own_durable == 1);
+  CHECK(bench.session->local_edits().counters().durable == 1);
 }
 
 TEST_CASE("bytes of another class, and messages that are no commits, are left to be decoded",
@@ -186,7 +186,7 @@ TEST_CASE("a rejected edit is counted and may not be applied later", "[bots][lig
   Bench bench;
   const ClientSequence mine = bench.submit(0);
   bench.give(Reject{mine, RejectReason::busy, "", 0});
-  CHECK(bench.session->counts().own_rejected == 1);
+  CHECK(bench.session->local_edits().counters().rejected == 1);
   CHECK(bench.session->local_edits().all().empty());
   CHECK(bench.violations().total() == 0);
   REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(mine))}}));

@@ -39,8 +39,8 @@ ChunkPtr chunk_at(const ChunkKey& key, const Version& version) {
   return chunk;
 }
 
-std::vector<KeptChunk> chunks_at(std::int32_t first, std::int32_t count, const Version& version) {
-  std::vector<KeptChunk> out;
+std::vector<KeyedChunk> chunks_at(std::int32_t first, std::int32_t count, const Version& version) {
+  std::vector<KeyedChunk> out;
   for (std::int32_t i = first; i < first + count; ++i)
     out.emplace_back(key_at(i), chunk_at(key_at(i), version));
   return out;
@@ -59,7 +59,7 @@ std::unique_ptr<ChunkCache> opened(const std::string& folder, std::uint64_t byte
 }
 
 /// Whatever was found is what was kept of that key and version.
-void require_true(const std::vector<KeptChunk>& found) {
+void require_true(const std::vector<KeyedChunk>& found) {
   for (const auto& [key, chunk] : found) REQUIRE(*chunk == *chunk_at(key, chunk->version));
 }
 

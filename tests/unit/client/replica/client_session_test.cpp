@@ -491,14 +491,14 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
   session = ClientSession(caching);
   auto out = open();
   CHECK(take<View>(out).empty());
-  auto question = session.take_question();
+  auto question = session.take_cache_lookup();
   REQUIRE(question.has_value());
   CHECK(question->keys == view_keys(session));
   CHECK(question->world.id == server.world_id);
-  CHECK_FALSE(session.take_question().has_value());
+  CHECK_FALSE(session.take_cache_lookup().has_value());
   const ChunkKey key{0, {0, -1, 0}};
   SECTION("its answer is shown and claimed, and the view follows") {
-    session.answer({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
     CHECK(session.replica().shown(key) != nullptr);
     out = sent();
     REQUIRE(take<CachedChunks>(out).size() == 1);
@@ -506,16 +506,16 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     CHECK(take<View>(out).size() == 1);
     // It is kept in the cache as it is: only others are to be written.
     for (const ChunkKey& other : view_keys(session)) receive(server.world.snapshot(other.at));
-    CHECK(session.replica().take_unkept(100).size() == 14);
-    CHECK(session.replica().take_unkept(100).empty());
+    CHECK(session.replica().take_for_cache(100).size() == 14);
+    CHECK(session.replica().take_for_cache(100).empty());
     receive(server.world.commit({9, 1, 1}, set({1, -2, 1}, 2)));
-    const auto unkept = session.replica().take_unkept(100);
+    const auto unkept = session.replica().take_for_cache(100);
     REQUIRE(unkept.size() == 1);
     CHECK(unkept[0].first == key);
     // What leaves the view is kept as it was.
     receive(server.world.commit({9, 1, 2}, set({1, -2, 1}, 3)));
     session.set_view({{50, 0, 0}, 0, 0});
-    const auto left = session.replica().take_unkept(100);
+    const auto left = session.replica().take_for_cache(100);
     REQUIRE(left.size() == 1);
     CHECK(left[0].second->version.seq == 2);
   }
@@ -526,7 +526,7 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     session.tick(now);
     out = sent();
     CHECK(take<View>(out).size() == 1);
-    session.answer({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
     out = sent();
     CHECK(take<CachedChunks>(out).size() == 1);
   }
@@ -534,12 +534,12 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     session.disconnected();
     server.world_id = {9};
     out = open();
-    REQUIRE(session.take_question().has_value());
-    session.answer({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
+    REQUIRE(session.take_cache_lookup().has_value());
+    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
     CHECK(session.replica().shown(key) == nullptr);
     out = sent();
     CHECK(take<View>(out).empty());
-    session.answer({}, now);
+    session.receive_cached({}, now);
     out = sent();
     CHECK(take<View>(out).size() == 1);
   }

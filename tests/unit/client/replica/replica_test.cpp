@@ -27,9 +27,9 @@ EditDescriptor box(VoxelPos min, VoxelPos max, Material material, Mask mask = {}
 struct Fixture {
   Fixture() {
     replica.set_view({{0, 0, 0}, 2, 2});
-    static_cast<void>(replica.open(opening()));
+    static_cast<void>(replica.open(parameters()));
   }
-  SessionParameters opening(ClientSequence resolved = 0, Sequence durable = 0) const {
+  SessionParameters parameters(ClientSequence resolved = 0, Sequence durable = 0) const {
     return {kEdge, kMe, kInstance, world.epoch(), durable, world.head(), resolved};
   }
   void load(const ChunkKey& key) {
@@ -62,22 +62,22 @@ TEST_CASE_METHOD(Fixture,
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   require_in_step(kHere);
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.chunks.size() == 1);
-  CHECK(news.chunks[0].key == kHere);
-  CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
-  CHECK(news.chunks[0].layers.dirty.layer[0].test(3));
-  CHECK(news.chunks[0].layers.dirty.layer[1].test(4));
-  CHECK(news.chunks[0].layers.dirty.layer[2].test(5));
-  CHECK(news.chunks[0].edits == std::vector{other(1)});
-  REQUIRE(news.edits.size() == 1);
-  CHECK(news.edits[0].op == other(1));
-  CHECK_FALSE(news.edits[0].own);
-  CHECK(news.edits[0].seq == 1);
-  CHECK(news.edits[0].received_us == 1000);
-  CHECK(news.edits[0].unpacked_us == 1100);
-  CHECK(news.edits[0].applied_us == 1200);
-  CHECK(news.edits[0].chunks == std::vector{kHere});
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.chunks.size() == 1);
+  CHECK(changes.chunks[0].key == kHere);
+  CHECK(changes.chunks[0].layers.dirty.layer[0].count() == 1);
+  CHECK(changes.chunks[0].layers.dirty.layer[0].test(3));
+  CHECK(changes.chunks[0].layers.dirty.layer[1].test(4));
+  CHECK(changes.chunks[0].layers.dirty.layer[2].test(5));
+  CHECK(changes.chunks[0].edits == std::vector{other(1)});
+  REQUIRE(changes.edits.size() == 1);
+  CHECK(changes.edits[0].op == other(1));
+  CHECK_FALSE(changes.edits[0].is_local);
+  CHECK(changes.edits[0].seq == 1);
+  CHECK(changes.edits[0].received_us == 1000);
+  CHECK(changes.edits[0].unpacked_us == 1100);
+  CHECK(changes.edits[0].applied_us == 1200);
+  CHECK(changes.edits[0].chunks == std::vector{kHere});
 }
 
 TEST_CASE_METHOD(Fixture, "where nothing is pending the shown runs are the confirmed object itself",
@@ -96,15 +96,15 @@ TEST_CASE_METHOD(Fixture, "an edit at the border tells the neighbour to mesh its
   load(kHere);
   load(kRight);
   take(world.commit(other(1), set({15, 4, 5}, 2)));
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.chunks.size() == 2);
-  CHECK(news.chunks[1].key == kRight);
-  CHECK_FALSE(news.chunks[1].layers.dirty.any());
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.chunks.size() == 2);
+  CHECK(changes.chunks[1].key == kRight);
+  CHECK_FALSE(changes.chunks[1].layers.dirty.any());
   VisibleLayers beside;
-  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = news.chunks[0].layers.dirty;
-  CHECK(news.chunks[1].layers == beside);
-  CHECK(news.chunks[0].layers.beyond == VisibleLayers{}.beyond);
-  CHECK(news.edits[0].chunks == std::vector{kHere, kRight});
+  beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = changes.chunks[0].layers.dirty;
+  CHECK(changes.chunks[1].layers == beside);
+  CHECK(changes.chunks[0].layers.beyond == VisibleLayers{}.beyond);
+  CHECK(changes.edits[0].chunks == std::vector{kHere, kRight});
 }
 
 TEST_CASE_METHOD(Fixture, "commits that overtake their snapshot are held back and then applied",
@@ -127,10 +127,10 @@ TEST_CASE_METHOD(Fixture,
   replica.receive(world.snapshot(kHere.at), kNow);
   require_in_step(kHere);
   CHECK(replica.counters().chunk_edits_contained == 1);
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.edits.size() == 1);
-  CHECK(news.edits[0].in_snapshot);
-  CHECK(news.edits[0].chunks == std::vector{kHere});
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.edits.size() == 1);
+  CHECK(changes.edits[0].in_snapshot);
+  CHECK(changes.edits[0].chunks == std::vector{kHere});
 }
 
 TEST_CASE_METHOD(Fixture, "chunks of one material come as snapshots do, and with their digest",
@@ -239,9 +239,9 @@ TEST_CASE_METHOD(Fixture, "chunks outside the view are neither kept nor taken", 
   load(kHere);
   replica.set_view({{10, 0, 0}, 1, 1});
   CHECK(replica.confirmed(kHere) == nullptr);
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.chunks.size() == 1);
-  CHECK(news.chunks[0].removed);
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.chunks.size() == 1);
+  CHECK(changes.chunks[0].removed);
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.counters().snapshots_outside == 1);
@@ -254,21 +254,21 @@ TEST_CASE_METHOD(Fixture, "the own edit shows at once and is not meshed again wh
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   CHECK(replica.shown_at({3, 4, 5}) == Material{2});
-  ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.edits.size() == 1);
-  CHECK(news.edits[0].predicted);
-  CHECK(news.edits[0].chunks == std::vector{kHere});
+  ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.edits.size() == 1);
+  CHECK(changes.edits[0].predicted);
+  CHECK(changes.edits[0].chunks == std::vector{kHere});
   const std::uint64_t serial = replica.shown_serial(kHere);
 
   take(world.commit(mine(seq), set({3, 4, 5}, 2)));
   require_in_step(kHere);
   CHECK(replica.shown_serial(kHere) == serial);
-  news = replica.drain_changes();
-  CHECK(news.chunks.empty());
-  REQUIRE(news.edits.size() == 1);
-  CHECK(news.edits[0].own);
-  CHECK_FALSE(news.edits[0].predicted);
-  CHECK(news.edits[0].chunks.empty());
+  changes = replica.drain_changes();
+  CHECK(changes.chunks.empty());
+  REQUIRE(changes.edits.size() == 1);
+  CHECK(changes.edits[0].is_local);
+  CHECK_FALSE(changes.edits[0].predicted);
+  CHECK(changes.edits[0].chunks.empty());
 }
 
 TEST_CASE_METHOD(Fixture, "an own edit leaves when the durable watermark passes it, and not before",
@@ -277,7 +277,7 @@ TEST_CASE_METHOD(Fixture, "an own edit leaves when the durable watermark passes 
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   take(world.commit(mine(seq), set({3, 4, 5}, 2)));
   CHECK(replica.local_edits().all().size() == 1);
-  CHECK(replica.local_edits().undecided() == 0);
+  CHECK(replica.local_edits().pending_count() == 0);
   replica.receive(Durable{world.epoch(), 0});
   CHECK(replica.local_edits().all().size() == 1);
   replica.receive(Durable{world.epoch(), 1});
@@ -307,12 +307,12 @@ TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the oth
   // The second edit is applied afresh: what the first one had filled is empty to it now.
   CHECK(replica.shown_at({3, 4, 5}) == Material{6});
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.rejects.size() == 1);
-  CHECK(news.rejects[0].seq == first);
-  CHECK(news.rejects[0].reason == RejectReason::rate_limited);
-  REQUIRE(news.chunks.size() == 1);
-  CHECK(news.chunks[0].layers.dirty.layer[0].count() == 1);
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.rejects.size() == 1);
+  CHECK(changes.rejects[0].seq == first);
+  CHECK(changes.rejects[0].reason == RejectReason::rate_limited);
+  REQUIRE(changes.chunks.size() == 1);
+  CHECK(changes.chunks[0].layers.dirty.layer[0].count() == 1);
   CHECK(replica.local_edits().all().size() == 1);
 }
 
@@ -372,7 +372,7 @@ TEST_CASE_METHOD(
   replica.receive(Durable{world.epoch(), 1});
 
   world.restart(kept);
-  const auto offers = replica.open(opening(first, 1));
+  const auto offers = replica.open(parameters(first, 1));
   CHECK(offers == std::vector{second, third});
   CHECK(replica.confirmed(kHere) != nullptr);
   CHECK(replica.confirmed(kRight) == nullptr);
@@ -397,8 +397,8 @@ TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is no
   static_cast<void>(
       world.commit(mine(seq), fill));  // applied, but the connection broke before we heard
   static_cast<void>(world.commit(other(1), set({5, 4, 4}, kEmpty)));
-  CHECK(replica.open(opening(seq)) == std::vector{seq});  // to ask how it was decided
-  CHECK(replica.counters().own_offered_again == 0);
+  CHECK(replica.open(parameters(seq)) == std::vector{seq});  // to ask how it was decided
+  CHECK(replica.local_edits().counters().offered_again == 0);
   CHECK(replica.shown_at({5, 4, 4}) == Material{3});  // until the snapshot
   CHECK(replica.local_edits().all().size() == 1);     // and it is kept until durable
   replica.receive(Reject{seq, RejectReason::already_resolved, "", world.head()}, 2000);
@@ -410,9 +410,9 @@ TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is no
   CHECK(replica.local_edits().all().size() == 1);
   replica.receive(Durable{world.epoch(), world.head()});
   CHECK(replica.local_edits().all().empty());
-  const ReplicaChanges news = replica.drain_changes();
-  CHECK(news.unseen == std::vector{seq});
-  CHECK(news.durable.empty());
+  const ReplicaChanges changes = replica.drain_changes();
+  CHECK(changes.unseen == std::vector{seq});
+  CHECK(changes.durable.empty());
 }
 
 TEST_CASE_METHOD(Fixture,
@@ -420,7 +420,7 @@ TEST_CASE_METHOD(Fixture,
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  CHECK(replica.open(opening(seq)) == std::vector{seq});
+  CHECK(replica.open(parameters(seq)) == std::vector{seq});
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
   replica.receive(Reject{seq, RejectReason::rate_limited, "", 0},
@@ -535,7 +535,7 @@ TEST_CASE_METHOD(Fixture,
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  static_cast<void>(replica.open(opening(seq)));  // rejected, unheard
+  static_cast<void>(replica.open(parameters(seq)));  // rejected, unheard
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
   replica.receive(overtaken, kNow);
@@ -548,12 +548,12 @@ TEST_CASE_METHOD(Fixture,
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  static_cast<void>(replica.open(opening(seq)));
+  static_cast<void>(replica.open(parameters(seq)));
   replica.receive(Reject{seq, RejectReason::already_resolved, "", 0},
                   2000);  // nobody knows how any more
   CHECK(replica.local_edits().all().empty());
   world.restart({});
-  CHECK(replica.open(opening(0)).empty());
+  CHECK(replica.open(parameters(0)).empty());
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
 }
@@ -566,7 +566,7 @@ TEST_CASE_METHOD(Fixture,
   world.restart({});
   static_cast<void>(
       world.commit(other(2), set({30, 4, 5}, 2)));  // sequence 1 again, elsewhere, and durable
-  static_cast<void>(replica.open(opening(0, 1)));
+  static_cast<void>(replica.open(parameters(0, 1)));
   CHECK(replica.confirmed(kHere) == nullptr);
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
@@ -578,7 +578,7 @@ TEST_CASE_METHOD(
     "[replica]") {
   load(kHere);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // while we were away
-  CHECK(replica.open(opening()).empty());
+  CHECK(replica.open(parameters()).empty());
   CHECK(replica.current_count() == 0);
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(2), set({2, 1, 1}, 2)));
@@ -594,7 +594,7 @@ TEST_CASE_METHOD(Fixture,
                  "a gap that the first snapshot after a resumption does not close is asked for",
                  "[replica]") {
   load(kHere);
-  CHECK(replica.open(opening()).empty());
+  CHECK(replica.open(parameters()).empty());
   const ChunkSnapshot equal = world.snapshot(kHere.at);
   static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // dropped for us
   take(world.commit(other(2), set({2, 1, 1}, 2)));
@@ -614,12 +614,12 @@ TEST_CASE_METHOD(Fixture,
   CHECK(replica.unavailable(kHere));
   CHECK_FALSE(replica.unavailable(kRight));
   CHECK(replica.unavailable_count() == 1);  // the other one is out of view
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.unavailable.size() == 1);
-  CHECK(news.unavailable[0].key == kHere);
-  CHECK(news.unavailable[0].reason == UnavailableReason::damaged);
-  REQUIRE(news.chunks.size() == 1);
-  CHECK(news.chunks[0].removed);
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.unavailable.size() == 1);
+  CHECK(changes.unavailable[0].key == kHere);
+  CHECK(changes.unavailable[0].reason == UnavailableReason::damaged);
+  REQUIRE(changes.chunks.size() == 1);
+  CHECK(changes.chunks[0].removed);
 
   CHECK_FALSE(replica.submit(set({3, 3, 3}, 2), 0, 0).has_value());
   CHECK_FALSE(replica.submit(box({14, 0, 0}, {18, 1, 1}, 2), 0, 0).has_value());  // partly
@@ -641,18 +641,18 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
                  "[replica]") {
   load(kHere);
   load(kRight);
-  CHECK(replica.open(opening()).empty());
+  CHECK(replica.open(parameters()).empty());
   replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.shown(kHere) == nullptr);
   CHECK(replica.confirmed_count() == 1);
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.chunks.size() == 2);
-  CHECK(news.chunks[0].removed);
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.chunks.size() == 2);
+  CHECK(changes.chunks[0].removed);
   VisibleLayers beside;
   beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = all_layers(Extent::cube(kEdge));
-  CHECK(news.chunks[1].layers == beside);
-  static_cast<void>(replica.open(opening()));  // the next server may have it repaired
+  CHECK(changes.chunks[1].layers == beside);
+  static_cast<void>(replica.open(parameters()));  // the next server may have it repaired
   CHECK(replica.unavailable_count() == 0);
   replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
   replica.set_view({{3, 0, 0}, 2, 2});
@@ -661,7 +661,7 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
 
 TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before it is shown",
                  "[replica]") {
-  SessionParameters low = opening();
+  SessionParameters low = parameters();
   low.heights = {-16, 8};
   static_cast<void>(replica.open(low));
   load(kHere);
@@ -674,7 +674,7 @@ TEST_CASE_METHOD(Fixture, "an edit beyond the world's heights is refused before 
 
 TEST_CASE_METHOD(Fixture, "an edit larger than the server allows is refused before it is shown",
                  "[replica]") {
-  SessionParameters small = opening();
+  SessionParameters small = parameters();
   small.edit_volume_max = 8;
   static_cast<void>(replica.open(small));
   load(kHere);
@@ -696,7 +696,7 @@ TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing t
   replica.receive(Durable{world.epoch(), 2});
   REQUIRE(replica.confirmed(kHere) != nullptr);
   REQUIRE(replica.confirmed(kRight) != nullptr);
-  SessionParameters restored = opening();
+  SessionParameters restored = parameters();
   SECTION("an older epoch") { restored.epoch = 0; }
   SECTION("a log that is shorter than what was durable here") {
     restored.epoch += 3;
@@ -721,8 +721,36 @@ TEST_CASE_METHOD(Fixture, "news of an edit says which earlier one it answers", "
   undo.edits[0].cause = Cause::undo;
   undo.edits[0].subject = 1;
   take(undo);
-  const ReplicaChanges news = replica.drain_changes();
-  REQUIRE(news.edits.size() == 2);
-  CHECK(news.edits[0].subject == 0);
-  CHECK(news.edits[1].subject == 1);
+  const ReplicaChanges changes = replica.drain_changes();
+  REQUIRE(changes.edits.size() == 2);
+  CHECK(changes.edits[0].subject == 0);
+  CHECK(changes.edits[1].subject == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "commits that arrive while the past is shown are held back in bounds",
+                 "[replica]") {
+  load(kHere);
+  const ChunkSnapshot before = world.snapshot(kHere.at);
+  replica.show_moment(PastMoment{0, 0});
+  replica.receive(before, kNow);
+  for (ClientSequence i = 1; i <= kInboxEditsMax + 1; ++i) {
+    take(world.commit(other(i), set({1, 2, 3}, static_cast<Material>(1 + i % 2))));
+  }
+  CHECK(replica.counters().buffer_overflows == 1);
+  CHECK(replica.shown_at({1, 2, 3}) == kEmpty);
+  replica.show_moment(std::nullopt);
+  replica.receive(before, kNow);  // lacks the commits that were dropped
+  CHECK(replica.take_requests() == std::vector{kHere});
+  replica.receive(world.snapshot(kHere.at), kNow);
+  require_in_step(kHere);
+}
+
+TEST_CASE_METHOD(Fixture, "a claim that is answered with an unavailable chunk waits no longer",
+                 "[replica]") {
+  load(kHere);
+  static_cast<void>(replica.open(parameters()));
+  CHECK(replica.take_claims().size() == 1);
+  replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
+  CHECK(replica.take_claims().empty());
+  CHECK(replica.missing().size() == 64);  // of 65 chunks in view
 }

@@ -78,10 +78,10 @@ TEST_CASE_METHOD(Fixture, "a connection opens by hello, welcome, proof and ready
   CHECK_FALSE(connection.accepts_input());
   greet();
   CHECK(hello.name == "ada");
-  CHECK(connection.state() == SessionState::greeting);
+  CHECK(connection.state() == SessionState::hello_sent);
   CHECK(connection.accepts_input());
   CHECK(receive(welcome()) == Dispatch::handled);
-  CHECK(connection.state() == SessionState::proving);
+  CHECK(connection.state() == SessionState::authenticating);
   const auto proofs = take<ClientAuth>();
   REQUIRE(proofs.size() == 1);
   CHECK(verify(hello.key, client_transcript(hello, welcome()), proofs[0].signature));
@@ -219,7 +219,7 @@ TEST_CASE_METHOD(Fixture, "pings go out at once and then as often as asked", "[r
 TEST_CASE_METHOD(Fixture, "a pong tells the server's clock, with which edits are sent",
                  "[replica]") {
   open();
-  OwnEdit own;
+  LocalEdit own;
   own.edit = {SetVoxel{{1, 2, 3}}, {}, 4};
   own.submitted_us = now;
   connection.send_edit(1, own);

@@ -13,7 +13,7 @@ namespace {
 ClientReport sample() {
   ClientReport report;
   report.renderer = "none";
-  auto& remote = report.latency.ways[static_cast<std::size_t>(EditPath::remote)];
+  auto& remote = report.latency.paths[static_cast<std::size_t>(EditPath::remote)];
   auto& meshed = remote.since_submit[static_cast<std::size_t>(LatencyStage::meshed)];
   for (int i = 0; i < 9; ++i) meshed.add(100);
   meshed.add_infinite();

@@ -11,43 +11,43 @@ const ChunkKey kB{0, {1, 0, 0}};
 const OperationId kMine{5, 77, 1};
 const OperationId kTheirs{6, 1, 1};
 
-ChunkNews chunk(const ChunkKey& key, std::uint64_t serial) {
-  ChunkNews news;
-  news.key = key;
-  news.serial = serial;
-  return news;
+ChunkChange chunk(const ChunkKey& key, std::uint64_t serial) {
+  ChunkChange change;
+  change.key = key;
+  change.serial = serial;
+  return change;
 }
-ChunkNews gone(const ChunkKey& key) {
-  ChunkNews news;
-  news.key = key;
-  news.removed = true;
-  return news;
+ChunkChange removed(const ChunkKey& key) {
+  ChunkChange change;
+  change.key = key;
+  change.removed = true;
+  return change;
 }
-EditNews remote(std::vector<ChunkKey> chunks) {
-  EditNews news;
-  news.op = kTheirs;
-  news.seq = 1;
-  news.submitted_us = 10'000;  // server clock
-  news.ordered_us = 10'100;
-  news.received_us = 300;
-  news.unpacked_us = 310;
-  news.applied_us = 350;
-  news.chunks = std::move(chunks);
-  return news;
+EditChange remote(std::vector<ChunkKey> chunks) {
+  EditChange change;
+  change.op = kTheirs;
+  change.seq = 1;
+  change.submitted_us = 10'000;  // server clock
+  change.ordered_us = 10'100;
+  change.received_us = 300;
+  change.unpacked_us = 310;
+  change.applied_us = 350;
+  change.chunks = std::move(chunks);
+  return change;
 }
-EditNews own(bool predicted, std::vector<ChunkKey> chunks, TimeUs applied) {
-  EditNews news;
-  news.op = kMine;
-  news.own = true;
-  news.predicted = predicted;
-  news.ordered_us = 10'200;
-  news.received_us = applied - 20;
-  news.unpacked_us = applied - 10;
-  news.applied_us = applied;
-  news.chunks = std::move(chunks);
-  return news;
+EditChange local(bool predicted, std::vector<ChunkKey> chunks, TimeUs applied) {
+  EditChange change;
+  change.op = kMine;
+  change.is_local = true;
+  change.predicted = predicted;
+  change.ordered_us = 10'200;
+  change.received_us = applied - 20;
+  change.unpacked_us = applied - 10;
+  change.applied_us = applied;
+  change.chunks = std::move(chunks);
+  return change;
 }
-ReplicaChanges news(std::vector<ChunkNews> chunks, std::vector<EditNews> edits) {
+ReplicaChanges changes(std::vector<ChunkChange> chunks, std::vector<EditChange> edits) {
   ReplicaChanges out;
   out.chunks = std::move(chunks);
   out.edits = std::move(edits);
@@ -62,18 +62,18 @@ std::int64_t only(const Histogram& histogram) {
   REQUIRE(histogram.count() == 1);
   return *histogram.max();
 }
-const Histogram& since(const LatencyReport& report, EditPath way, LatencyStage stage) {
-  return report[way].since_submit[static_cast<std::size_t>(stage)];
+const Histogram& since(const LatencyReport& report, EditPath path, LatencyStage stage) {
+  return report[path].since_submit[static_cast<std::size_t>(stage)];
 }
-const Histogram& step(const LatencyReport& report, EditPath way, LatencyStage stage) {
-  return report[way].step[static_cast<std::size_t>(stage)];
+const Histogram& step(const LatencyReport& report, EditPath path, LatencyStage stage) {
+  return report[path].step[static_cast<std::size_t>(stage)];
 }
 
 }  // namespace
 
 TEST_CASE("a remote edit is timed through every stage, in this client's clock", "[schedule]") {
   LatencyRecorder recorder;
-  recorder.take(news({chunk(kA, 7)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.take(changes({chunk(kA, 7)}, {remote({kA})}), clock_ahead(), 350);
   recorder.meshed(kA, 6, 380);  // of older runs: does not contain it
   recorder.meshed(kA, 7, 400);
   recorder.uploaded(kA, 7, 420);
@@ -81,21 +81,21 @@ TEST_CASE("a remote edit is timed through every stage, in this client's clock", 
   recorder.presented(500);
   CHECK(recorder.open_edits() == 0);
   const LatencyReport report = recorder.report();
-  const auto way = EditPath::remote;
-  CHECK(only(since(report, way, LatencyStage::ordered)) == 100);
-  CHECK(only(since(report, way, LatencyStage::received)) == 200);
-  CHECK(only(since(report, way, LatencyStage::unpacked)) == 210);
-  CHECK(only(since(report, way, LatencyStage::applied)) == 250);
-  CHECK(only(since(report, way, LatencyStage::meshed)) == 300);
-  CHECK(only(since(report, way, LatencyStage::uploaded)) == 320);
-  CHECK(only(since(report, way, LatencyStage::presented)) == 400);
-  CHECK(only(step(report, way, LatencyStage::meshed)) == 50);
-  CHECK(report[way].edits == 1);
+  const auto path = EditPath::remote;
+  CHECK(only(since(report, path, LatencyStage::ordered)) == 100);
+  CHECK(only(since(report, path, LatencyStage::received)) == 200);
+  CHECK(only(since(report, path, LatencyStage::unpacked)) == 210);
+  CHECK(only(since(report, path, LatencyStage::applied)) == 250);
+  CHECK(only(since(report, path, LatencyStage::meshed)) == 300);
+  CHECK(only(since(report, path, LatencyStage::uploaded)) == 320);
+  CHECK(only(since(report, path, LatencyStage::presented)) == 400);
+  CHECK(only(step(report, path, LatencyStage::meshed)) == 50);
+  CHECK(report[path].edits == 1);
 }
 
 TEST_CASE("an edit is through a stage when the last of its chunks is", "[schedule]") {
   LatencyRecorder recorder;
-  recorder.take(news({chunk(kA, 1), chunk(kB, 2)}, {remote({kA, kB})}), clock_ahead(), 350);
+  recorder.take(changes({chunk(kA, 1), chunk(kB, 2)}, {remote({kA, kB})}), clock_ahead(), 350);
   recorder.meshed(kA, 1, 400);
   recorder.uploaded(kA, 1, 410);
   recorder.presented(420);
@@ -110,7 +110,7 @@ TEST_CASE("an edit is through a stage when the last of its chunks is", "[schedul
 
 TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one", "[schedule]") {
   LatencyRecorder recorder;
-  recorder.take(news({chunk(kA, 3)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.take(changes({chunk(kA, 3)}, {remote({kA})}), clock_ahead(), 350);
   recorder.meshed(kA, 5, 400);
   recorder.meshed(kA, 9, 500);
   recorder.uploaded(kA, 9, 510);
@@ -118,15 +118,15 @@ TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one
   CHECK(only(since(recorder.report(), EditPath::remote, LatencyStage::meshed)) == 300);
 }
 
-TEST_CASE("an own edit counts from the time it was scheduled for, shown and confirmed apart",
+TEST_CASE("a local edit counts from the time it was scheduled for, shown and confirmed apart",
           "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);  // handed in at 1500: the program was late
-  recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1500)}), clock_ahead(), 1500);
+  recorder.take(changes({chunk(kA, 1)}, {local(true, {kA}, 1500)}), clock_ahead(), 1500);
   recorder.meshed(kA, 1, 1600);
   recorder.uploaded(kA, 1, 1610);
   recorder.presented(1700);
-  recorder.take(news({}, {own(false, {}, 3000)}), clock_ahead(), 3000);
+  recorder.take(changes({}, {local(false, {}, 3000)}), clock_ahead(), 3000);
   ReplicaChanges durable;
   durable.durable = {1};
   recorder.take(durable, clock_ahead(), 4000);
@@ -143,7 +143,7 @@ TEST_CASE("an own edit counts from the time it was scheduled for, shown and conf
 TEST_CASE("what was never seen is infinite in the stages it did not reach", "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
-  recorder.take(news({chunk(kA, 1)}, {own(true, {kA}, 1100)}), clock_ahead(), 1100);
+  recorder.take(changes({chunk(kA, 1)}, {local(true, {kA}, 1100)}), clock_ahead(), 1100);
   recorder.not_submitted();
   const LatencyReport report = recorder.report();
   const auto& applied = since(report, EditPath::own_predicted, LatencyStage::applied);
@@ -159,7 +159,7 @@ TEST_CASE("a rejected edit is counted as rejected and as nothing else but its pr
           "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
-  ReplicaChanges all = news({chunk(kA, 1)}, {own(true, {kA}, 1100)});
+  ReplicaChanges all = changes({chunk(kA, 1)}, {local(true, {kA}, 1100)});
   all.rejects.push_back({1, RejectReason::busy, ""});
   recorder.take(all, clock_ahead(), 1100);
   recorder.meshed(kA, 1, 1200);
@@ -171,10 +171,10 @@ TEST_CASE("a rejected edit is counted as rejected and as nothing else but its pr
   CHECK(report.durable.count() == 0);
 }
 
-TEST_CASE("an own edit whose commit was missed is counted as unseen, not as late", "[schedule]") {
+TEST_CASE("a local edit whose commit was missed is counted as unseen, not as late", "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
-  ReplicaChanges all = news({}, {own(true, {}, 1100)});
+  ReplicaChanges all = changes({}, {local(true, {}, 1100)});
   all.unseen = {1};
   recorder.take(all, clock_ahead(), 1100);
   const LatencyReport report = recorder.report();
@@ -185,11 +185,11 @@ TEST_CASE("an own edit whose commit was missed is counted as unseen, not as late
 
 TEST_CASE("edits without effect and edits that left the view are told apart", "[schedule]") {
   LatencyRecorder recorder;
-  recorder.take(news({}, {remote({})}), clock_ahead(), 350);
-  EditNews second = remote({kA});
+  recorder.take(changes({}, {remote({})}), clock_ahead(), 350);
+  EditChange second = remote({kA});
   second.op.seq = 2;
-  recorder.take(news({chunk(kA, 1)}, {second}), clock_ahead(), 350);
-  recorder.take(news({gone(kA)}, {}), clock_ahead(), 360);
+  recorder.take(changes({chunk(kA, 1)}, {second}), clock_ahead(), 350);
+  recorder.take(changes({removed(kA)}, {}), clock_ahead(), 360);
   const LatencyReport report = recorder.report();
   CHECK(report[EditPath::remote].edits == 2);
   CHECK(report[EditPath::remote].without_effect == 1);
@@ -200,9 +200,9 @@ TEST_CASE("edits without effect and edits that left the view are told apart", "[
 
 TEST_CASE("a late part of an edit that was finished does not count again", "[schedule]") {
   LatencyRecorder recorder(LatencyStage::meshed);
-  recorder.take(news({chunk(kA, 1)}, {remote({kA})}), clock_ahead(), 350);
+  recorder.take(changes({chunk(kA, 1)}, {remote({kA})}), clock_ahead(), 350);
   recorder.meshed(kA, 1, 400);
-  recorder.take(news({chunk(kB, 2)}, {remote({kB})}), clock_ahead(), 900);
+  recorder.take(changes({chunk(kB, 2)}, {remote({kB})}), clock_ahead(), 900);
   recorder.meshed(kB, 2, 1000);
   const LatencyReport report = recorder.report();
   CHECK(report[EditPath::remote].edits == 1);
@@ -211,7 +211,7 @@ TEST_CASE("a late part of an edit that was finished does not count again", "[sch
 
 TEST_CASE("without a clock offset only the steps from ordering on are known", "[schedule]") {
   LatencyRecorder recorder(LatencyStage::meshed);
-  recorder.take(news({chunk(kA, 1)}, {remote({kA})}), ClockOffset{}, 350);
+  recorder.take(changes({chunk(kA, 1)}, {remote({kA})}), ClockOffset{}, 350);
   recorder.meshed(kA, 1, 400);
   const LatencyReport report = recorder.report();
   CHECK(report[EditPath::remote].unknown_submit == 1);

@@ -1,8 +1,8 @@
-#include "client/replica/greeting.hpp"
+#include "client/replica/client_handshake.hpp"
 
 namespace runstone {
 
-Hello hello_of(const SessionConfig& config, const Nonce& nonce) {
+Hello make_hello(const SessionConfig& config, const Nonce& nonce) {
   Hello hello;
   hello.key = config.keys.public_key;
   hello.instance = config.instance;

@@ -1,28 +1,28 @@
-// CacheQuestion: chunks that a session would rather have from a cache than from the server.
+// CacheLookup: chunks that a session wants to look up in a cache before it asks the server for them.
 #pragma once
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "client/replica/kept_versions.hpp"
+#include "client/replica/shared_history.hpp"
 #include "common/core/coords.hpp"
 #include "common/runs/chunk.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
-/// A world as its server describes it now: what a cache keeps of it must still be common history.
+/// A world as its server describes it now. A cache returns only chunks whose history the server still shares.
 struct CachedWorld {
   WorldId id{};
   std::uint16_t chunk_edge = 32;
   ServerMark mark;
 };
 
-struct CacheQuestion {
+struct CacheLookup {
   CachedWorld world;
   std::vector<ChunkKey> keys;  // ascending
 };
 
-using KeptChunk = std::pair<ChunkKey, ChunkPtr>;
+using KeyedChunk = std::pair<ChunkKey, ChunkPtr>;
 
 }  // namespace runstone

@@ -18,11 +18,11 @@ struct SessionConfig {
   std::uint64_t features = kFeaturesKnown;
   View view;                            // wished; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
-  bool has_cache = false;               // of a ClientSession: somebody answers take_question()
+  bool has_cache = false;               // of a ClientSession: somebody answers take_cache_lookup()
 };
 
 /// `nonce` must be fresh and random: it keeps old welcomes from being replayed.
-Hello hello_of(const SessionConfig& config, const Nonce& nonce);
+Hello make_hello(const SessionConfig& config, const Nonce& nonce);
 
 /// Why a welcome is not believed; trying again with the same configuration is pointless.
 struct WelcomeFault {

@@ -1,0 +1,40 @@
+// HistoryRequests: the requests of a session to see its view at a moment of the past, or live again, and their answers.
+// The newest request replaces those before it. Of one connection. One thread.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+class HistoryRequests {
+ public:
+  /// Returns the request with its number, to be sent. It is the newest one from now on.
+  HistoryRequest next(HistoryRequest request) {
+    request.request = ++newest_;
+    refusal_.clear();
+    return request;
+  }
+  /// Takes an answer of the server. Answers to older requests change nothing.
+  void receive(const HistoryState& state) {
+    if (state.request != newest_) return;
+    // The chunks of the live world are counted as at the start of a session: no "complete" follows.
+    if (state.phase == HistoryPhase::begins && state.past) return;
+    answered_ = newest_;
+    if (state.phase == HistoryPhase::refused) refusal_ = state.text;
+  }
+  void clear() { *this = {}; }
+
+  /// Returns true if the newest request was sent, and not everything that it asked for has arrived.
+  bool is_loading() const { return answered_ != newest_; }
+  /// Returns why the newest request was refused, or an empty string.
+  const std::string& refusal() const { return refusal_; }
+
+ private:
+  std::uint32_t newest_ = 0;    // number of the newest request; 0: none
+  std::uint32_t answered_ = 0;  // number of the newest one that was fulfilled or refused
+  std::string refusal_;
+};
+
+}  // namespace runstone

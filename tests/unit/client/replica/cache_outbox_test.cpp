@@ -1,0 +1,63 @@
+#include "client/replica/cache_outbox.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace runstone;
+
+namespace {
+
+ChunkPtr chunk_at(Sequence seq) {
+  Chunk chunk;
+  chunk.voxels = uniform_chunk(Extent::cube(16), 3);
+  chunk.version = {1, seq};
+  return std::make_shared<const Chunk>(std::move(chunk));
+}
+
+struct Fixture {
+  TrackedChunk& current(std::int32_t x, Sequence seq) {
+    TrackedChunk& chunk = *table.track({0, {x, 0, 0}}).first;
+    table.take_snapshot(chunk, chunk_at(seq));
+    return chunk;
+  }
+  ChunkTable table;
+  CacheOutbox outbox;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "a chunk is handed to the cache once per version", "[replica]") {
+  TrackedChunk& chunk = current(0, 1);
+  current(1, 1);
+  CHECK(outbox.take(&table, 1).size() == 1);
+  CHECK(outbox.take(&table, 9).size() == 1);
+  CHECK(outbox.take(&table, 9).empty());
+  table.take_snapshot(chunk, chunk_at(2));
+  const auto again = outbox.take(&table, 9);
+  REQUIRE(again.size() == 1);
+  CHECK(again[0].first == chunk.key);
+  CHECK(again[0].second->version.seq == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "only chunks that the server vouches for are handed over", "[replica]") {
+  table.set_confirmed(*table.track({0, {0, 0, 0}}).first, chunk_at(1));
+  table.request(current(1, 1));
+  CHECK(outbox.take(&table, 9).empty());
+}
+
+TEST_CASE_METHOD(Fixture, "chunks that left the view come first, also while the past is shown",
+                 "[replica]") {
+  const TrackedChunk& left = current(5, 1);
+  outbox.add(left);
+  CHECK(outbox.take(nullptr, 9).empty());  // not enabled
+  outbox.enable();
+  outbox.add(left);
+  current(0, 1);
+  CHECK(outbox.take(nullptr, 9).size() == 1);
+  outbox.add(left);
+  const auto both = outbox.take(&table, 9);
+  REQUIRE(both.size() == 3);
+  CHECK(both[0].first == left.key);
+  outbox.add(current(6, 1));
+  outbox.clear();
+  CHECK(outbox.take(nullptr, 9).empty());
+}
