@@ -1,4 +1,5 @@
-// Loggers of the server program, one per module: world, net, store, app. Lines go to stderr.
+// The loggers of the server program, one for each module: world, net, store, app. Lines go to
+// stderr.
 #pragma once
 #include <spdlog/spdlog.h>
 
@@ -7,9 +8,9 @@
 
 namespace runstone {
 
-/// Makes the loggers, or sets the level of those that are there. `level`: debug, info, warn or error.
+/// Makes the loggers, or sets their level if they exist. `level`: debug, info, warn or error.
 void start_logging(const std::string& level);
-/// A module's logger; start_logging() must have been called.
+/// Returns a module's logger. Requires start_logging().
 spdlog::logger& logger(const char* module);
 
 }  // namespace runstone
