@@ -95,7 +95,7 @@ void CommandHandler::status(const CommandReply& reply) const {
 void CommandHandler::players(const CommandReply& reply) {
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
   workers_.run([rows](WorldReader& reader, const Generator&) { *rows = reader.players(); },
-               [rows, present = world_.present(), visitors = world_.visitors(),
+               [rows, present = world_.online_players(), visitors = world_.visitors(),
                 reply](const std::string& error) {
                  if (!error.empty()) return refuse(reply, "players: " + error);
                  if (!*rows) return refuse(reply, "players: " + rows->error().message());

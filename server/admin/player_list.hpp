@@ -12,7 +12,7 @@ namespace runstone {
 /// their position, visitors a note that they left. Everybody can make keys, so at most 500 players of the store who are
 /// not present are listed; a last line counts the others.
 std::string player_list(const std::vector<PlayerRow>& stored,
-                        const std::vector<WorldServer::Present>& present,
+                        const std::vector<WorldServer::OnlinePlayer>& present,
                         const std::vector<PlayerRow>& visitors);
 
 }  // namespace runstone

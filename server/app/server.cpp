@@ -70,7 +70,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                              std::move(on_failure), std::move(on_stop));
   if (const auto bound = parts->core->listen(config.listen); !bound)
     return Unexpected<std::string>{bound.error()};
-  if (const auto recovered = parts->core->recover(config.world); !recovered) {
+  if (const auto recovered = parts->core->recover(); !recovered) {
     return Unexpected<std::string>{recovered.error()};
   }
   parts->work.emplace(parts->io.get_executor());
@@ -117,14 +117,14 @@ StopReport Server::stop() {
   Parts& parts = *parts_;
   parts.is_running = false;
   if (parts.control) parts.control->stop();
-  const bool is_settled = parts.core->begin_stop().get();
+  const bool is_flushed = parts.core->begin_stop().get();
   parts.core->stop_writer();
   parts.workers->join();
   parts.core->log_counters();
   parts.control.reset();  // whoever has not read its answer by now has had time
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
-  const bool is_clean = is_settled && !parts.core->has_failed();
+  const bool is_clean = is_flushed && !parts.core->has_failed();
   const auto live = parts.core->edited_chunks();
   parts.core.reset();
   return sum_up(*parts.world.store, live, is_clean);

@@ -1,4 +1,5 @@
-// Hash of chunk keys for look-up tables of one process. Nothing may depend on the order of such a table.
+// ChunkKeyHash: hashes chunk keys for tables in memory. No result may depend on the order of such a
+// table.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +11,9 @@ namespace runstone {
 
 struct ChunkKeyHash {
   std::size_t operator()(const ChunkKey& key) const noexcept {
-    const auto word = [](std::int32_t v) { return std::uint64_t{static_cast<std::uint32_t>(v)}; };
-    const std::uint64_t xz = mix64(word(key.at.x) | word(key.at.z) << 32);
-    return static_cast<std::size_t>(mix64(xz ^ (word(key.at.y) | std::uint64_t{key.lod} << 32)));
+    const auto bits = [](std::int32_t v) { return std::uint64_t{static_cast<std::uint32_t>(v)}; };
+    const std::uint64_t xz = mix64(bits(key.at.x) | bits(key.at.z) << 32);
+    return static_cast<std::size_t>(mix64(xz ^ (bits(key.at.y) | std::uint64_t{key.lod} << 32)));
   }
 };
 

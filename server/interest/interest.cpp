@@ -35,22 +35,22 @@ std::size_t Interest::set_view(SessionId session, const View& view) {
   return moved.entered;
 }
 
-void Interest::want_again(SessionId session, std::span<const View> passed) {
-  std::vector<ChunkKey> forgotten;
+void Interest::want_again(SessionId session, std::span<const View> skipped) {
+  std::vector<ChunkKey> again;
   for (const auto& [key, state] : at(session).chunks()) {
     const auto holds = [&](const View& view) { return view.contains(key.at); };
-    if (passed.empty() || !std::all_of(passed.begin(), passed.end(), holds))
-      forgotten.push_back(key);
+    if (skipped.empty() || !std::all_of(skipped.begin(), skipped.end(), holds))
+      again.push_back(key);
   }
-  for (const ChunkKey& key : forgotten) set_state(session, key, ChunkInterest::wanted);
+  for (const ChunkKey& key : again) set_state(session, key, ChunkInterest::wanted);
 }
 
 std::optional<ChunkKey> Interest::nearest_wanted(SessionId session) {
   return at(session).nearest_wanted();
 }
 
-std::optional<ChunkKey> Interest::next_for_audit(SessionId session) {
-  return at(session).next_for_audit();
+std::optional<ChunkKey> Interest::next_for_digest_check(SessionId session) {
+  return at(session).next_for_digest_check();
 }
 
 bool Interest::set_state(SessionId session, const ChunkKey& key, ChunkInterest state) {

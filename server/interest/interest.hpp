@@ -1,7 +1,8 @@
-// Interest: who sees which chunk. Keeps each session's interest and, per chunk, its subscribers and those who
-// wait for it, so that the receivers of a commit cost O(subscribers of the chunks it changed).
-// Subscribing and taking the snapshot's version happen in one step of the world strand; therefore a session
-// misses no commit after its snapshot. One thread.
+// Interest: which session sees which chunk. It keeps the interest of each session and, for each
+// chunk, its subscribers and the sessions that wait for it. So finding the receivers of a commit
+// costs O(subscribers of the chunks it changed). A session is subscribed in the same task of the
+// world strand that takes the snapshot's version, so it misses no commit after its snapshot. One
+// thread.
 #pragma once
 #include <map>
 #include <optional>
@@ -21,39 +22,40 @@ class Interest {
  public:
   explicit Interest(CoordLimit limit) : limit_(limit) {}
 
-  /// A session without a view. Sessions are named once.
+  /// Adds a session without a view. Requires that it was not added before.
   void open(SessionId session);
-  /// Forgets the session; unknown ones are allowed.
+  /// Removes the session, if it is known.
   void close(SessionId session);
-  /// Null for an unknown session.
+  /// Returns null if the session is unknown.
   const SessionInterest* find(SessionId session) const;
 
-  /// The calls below require an open session.
-  /// Returns how many chunks came into the view.
+  // The calls down to set_state() require an open session.
+
+  /// Sets the session's view. Returns how many chunks it added.
   std::size_t set_view(SessionId session, const View& view);
-  /// The peer has looked elsewhere in between: chunks that are not in all of `passed` (without any: all
-  /// chunks) are wanted again.
-  void want_again(SessionId session, std::span<const View> passed);
+  /// Makes chunks wanted again that lie outside of any of the `skipped` views, or all chunks if
+  /// there are none. For a client that had other views in between and may have dropped those
+  /// chunks.
+  void want_again(SessionId session, std::span<const View> skipped);
   std::optional<ChunkKey> nearest_wanted(SessionId session);
-  std::optional<ChunkKey> next_for_audit(SessionId session);
-  /// Moves a chunk of the session's view to a state; returns false if the view does not hold it.
+  std::optional<ChunkKey> next_for_digest_check(SessionId session);
+  /// Moves a chunk to a state. Returns false if it is not in the session's view.
   bool set_state(SessionId session, const ChunkKey& key, ChunkInterest state);
 
-  /// Ascending. The span lives until the next change.
+  /// Returns the subscribers of a chunk, ascending. The span is valid until the next change.
   std::span<const SessionId> subscribers(const ChunkKey& key) const;
-  /// Copies, because the caller answers each of them by changing its state.
+  /// Returns a copy of the sessions that wait for a chunk, because the caller changes their states.
   std::vector<SessionId> waiting(const ChunkKey& key) const;
   bool subscribes(SessionId session, const ChunkKey& key) const;
-  /// Whether any session is subscribed to the chunk or waits for it.
+  /// Returns true if a session is subscribed to the chunk or waits for it.
   bool is_used(const ChunkKey& key) const { return users_.contains(key); }
-  /// Chunks that lost their last user since the last call (some may have won a new one).
+  /// Returns the chunks that lost their last user since the last call. Some may have a new one.
   std::vector<ChunkKey> take_released() { return std::exchange(released_, {}); }
 
  private:
   struct Users {
-    std::vector<SessionId>
-        subscribers;  // ascending, so that those of many chunks are joined in one pass
-    std::vector<SessionId> waiting;  // in the order in which they came
+    std::vector<SessionId> subscribers;  // ascending, so that broadcast merges them in one pass
+    std::vector<SessionId> waiting;      // in the order of their requests
   };
   void leave(SessionId session, const ChunkKey& key, ChunkInterest was);
   void enter(SessionId session, const ChunkKey& key, ChunkInterest now);
@@ -61,7 +63,7 @@ class Interest {
 
   CoordLimit limit_;
   std::map<SessionId, SessionInterest> sessions_;
-  std::unordered_map<ChunkKey, Users, ChunkKeyHash> users_;  // never empty entries
+  std::unordered_map<ChunkKey, Users, ChunkKeyHash> users_;  // no entry is empty
   std::vector<ChunkKey> released_;
 };
 

@@ -8,7 +8,7 @@ namespace runstone {
 
 namespace {
 
-// A heap has its largest element on top.
+// Returns a comparison for heaps, which have their largest element on top.
 auto later(const ViewOrder& order) {
   return [&order](const ChunkKey& a, const ChunkKey& b) { return order(b, a); };
 }
@@ -78,7 +78,8 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
   if (state != ChunkInterest::wanted) {
     ++counter(state);
     chunks_.insert_or_assign(key, state);
-    // So a chunk that is wanted again and again is in the queue once: it was nearest when it was sent.
+    // A chunk was first in the queue when it was sent. Removing it keeps a chunk that is wanted
+    // again and again in the queue once.
     if (!queue_.empty() && queue_.front() == key) pop_nearest();
     return;
   }
@@ -87,14 +88,14 @@ void SessionInterest::set_state(const ChunkKey& key, ChunkInterest state) {
   std::push_heap(queue_.begin(), queue_.end(), later(*order_));
 }
 
-std::optional<ChunkKey> SessionInterest::next_for_audit() {
+std::optional<ChunkKey> SessionInterest::next_for_digest_check() {
   if (count(ChunkInterest::subscribed) == 0) return std::nullopt;
-  auto at = audited_ ? chunks_.upper_bound(*audited_) : chunks_.begin();
-  for (std::size_t step = 0; step <= chunks_.size();
-       ++step) {  // one round at most: somebody is subscribed
+  auto at = digest_checked_ ? chunks_.upper_bound(*digest_checked_) : chunks_.begin();
+  // At most one round: there is a subscribed chunk.
+  for (std::size_t step = 0; step <= chunks_.size(); ++step) {
     if (at == chunks_.end()) at = chunks_.begin();
     if (at->second == ChunkInterest::subscribed) {
-      audited_ = at->first;
+      digest_checked_ = at->first;
       return at->first;
     }
     ++at;

@@ -1,5 +1,6 @@
-// View cells: which chunks a view holds, and what changes when it moves. A view is a disc of columns times an
-// interval of heights, so a difference costs O(columns + result) and not O(view).
+// View cells: the chunks that a view contains, and the difference between two views. A view is a
+// disc of columns times an interval of heights, so a difference costs O(columns + result), not
+// O(view).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,8 @@
 
 namespace runstone {
 
-/// Chunk coordinates of a world are in [-limit, limit); a view may look past the rim, its chunks end there.
+/// Chunk coordinates of a world are in [-limit, limit). A view may extend beyond; it has no chunks
+/// there.
 struct CoordLimit {
   std::int32_t limit = kWorldLimit;
   bool contains(ChunkCoord c) const {
@@ -19,10 +21,11 @@ struct CoordLimit {
   }
 };
 
-/// Squared distance from the view's centre, in chunks: the order in which a builder wants to see them.
+/// Returns the squared distance from the view's centre, in chunks.
 std::int64_t distance2(const View& view, ChunkCoord at);
 
-/// Appends the chunks of `view` that are not in `other` (all of them without one), column by column.
+/// Appends the chunks of `view` that are not in `other`, column by column; all of them if there is
+/// no `other`.
 void append_difference(const View& view, const std::optional<View>& other, CoordLimit limit,
                        std::vector<ChunkCoord>& out);
 

@@ -1,5 +1,7 @@
-// ViewOrder: in which order the chunks of a view come: what surrounds the viewer first, then what lies in the cone of
-// sight, then the rest; each nearest first, ties by key. Pure.
+// ViewOrder: the order in which the chunks of a view are sent: first the chunks around the viewer,
+// then the chunks in the cone of sight, then the rest. Within each group the nearest chunk comes
+// first; ties are ordered by key.
+// Pure.
 #pragma once
 #include <cstdint>
 
@@ -11,10 +13,11 @@ namespace runstone {
 class ViewOrder {
  public:
   explicit ViewOrder(const View& view);
-  /// Whether `a` comes before `b`. A strict weak order of chunk keys.
+  /// Returns true if `a` comes before `b`. This is a strict weak order of chunk keys.
   bool operator()(const ChunkKey& a, const ChunkKey& b) const;
 
-  /// Whoever turns round sees these at once: up to this squared distance, in chunks.
+  /// The squared distance, in chunks, up to which chunks surround the viewer. A viewer who turns
+  /// sees them at once.
   static constexpr std::int64_t kNear2 = 4;
 
  private:
@@ -23,7 +26,7 @@ class ViewOrder {
 
   View view_;
   double x_ = 0, y_ = 0, z_ = 0;  // the direction of sight, of length 1
-  double cosine_ = -1;            // of half the cone's angle
+  double cosine_ = -1;            // of View::cone, the angle between the cone's axis and its side
 };
 
 }  // namespace runstone

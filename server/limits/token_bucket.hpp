@@ -1,4 +1,5 @@
-// TokenBucket: a rate with a burst. Each use takes tokens; they come back with time. Answers a flooding peer.
+// TokenBucket: limits a rate, with a burst. Each use takes tokens, and tokens are added with time.
+// It protects the server from clients that send too much.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,11 +10,13 @@ namespace runstone {
 
 class TokenBucket {
  public:
-  /// `per_second` tokens come back, at most `burst` are kept; starts full. A rate of 0 means "no limit".
+  /// Adds `per_second` tokens a second and keeps at most `burst`. The bucket starts full. A rate of
+  /// 0 means no limit.
   TokenBucket(std::uint64_t per_second, std::uint64_t burst)
       : per_second_(per_second), full_(burst * kPart), parts_(full_) {}
 
-  /// Takes `count` tokens if they are there. `now_us` is of one steady clock; going back counts as standing.
+  /// Takes `count` tokens. Returns false, and takes none, if there are fewer. `now_us` is of one
+  /// steady clock. A time before the last one adds no tokens.
   bool take(std::uint64_t count, TimeUs now_us) {
     if (per_second_ == 0) return true;
     if (!started_) {
@@ -21,7 +24,8 @@ class TokenBucket {
       started_ = true;
     }
     if (now_us > last_us_) {
-      // A part is a millionth of a token, so a microsecond at one token a second is one part: no rounding.
+      // A part is a millionth of a token. One token a second is one part a microsecond, so nothing
+      // is rounded.
       const auto idle_us =
           static_cast<std::uint64_t>(std::min<TimeUs>(now_us - last_us_, kIdleUsMax));
       parts_ = std::min(full_, parts_ + idle_us * per_second_);

@@ -1,6 +1,7 @@
-// ByteBudget: bytes a second that several may share, given out in turns: who asks gets the next free stretch of time.
-// Each has one turn booked at most, so those who have something to send take turns, and who has nothing leaves no gap.
-// Times are arguments (microseconds of one steady clock). Any thread.
+// ByteBudget: a limit of bytes a second that sessions may share. A session that wants to send books
+// the next free slot of time. Each session has at most one slot booked, so sessions with data
+// alternate, and a session without data leaves no gap.
+// Times are arguments (microseconds of one steady clock). Threads: any.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -13,12 +14,13 @@ namespace runstone {
 
 class ByteBudget {
  public:
-  /// 0: no limit.
+  /// 0 means no limit.
   explicit ByteBudget(std::uint64_t bytes_per_second)
       : per_second_(std::min(bytes_per_second, kPerSecondMax)) {}
   bool is_limited() const { return per_second_ != 0; }
 
-  /// When `bytes` more may go. The turn is taken, used or not.
+  /// Books a slot for `bytes`. Returns the time from which they may be sent. The slot is used up
+  /// even if nothing is sent.
   TimeUs book(std::size_t bytes, TimeUs now_us) {
     if (!is_limited()) return now_us;
     const std::lock_guard lock(mutex_);
@@ -26,8 +28,8 @@ class ByteBudget {
     free_ns_ = from_ns + span_ns(bytes);
     return from_ns / 1'000;
   }
-  /// Bytes went that could not wait. They delay later turns, but by no more than kDebtUsMax in all, so that
-  /// turns never stop coming.
+  /// Counts bytes that were sent without a slot. They delay later slots, in all by at most
+  /// kDebtUsMax, so that slots never stop.
   void charge(std::size_t bytes, TimeUs now_us) {
     if (!is_limited() || bytes == 0) return;
     const std::lock_guard lock(mutex_);

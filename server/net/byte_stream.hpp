@@ -1,5 +1,5 @@
-// ByteStream: the bytes under a session: TCP today; TLS or a WebSocket slip in here. Calls come from the
-// session's strand; at most one read and one write are under way at a time.
+// ByteStream: the byte stream of a session. TCP implements it.
+// Threads: the session's strand. At most one read and one write are under way at a time.
 #pragma once
 #include <asio/awaitable.hpp>
 #include <asio/buffer.hpp>
@@ -15,38 +15,40 @@
 
 namespace runstone {
 
-/// Trivially destructible, as values in a co_await expression have to be (g++ 12 frees others twice).
+/// Must be trivially destructible, because g++ 12 destroys other values in a co_await expression
+/// twice.
 struct IoResult {
   asio::error_code error;
   std::size_t bytes = 0;
-  std::int64_t call_ns = 0;  // of a write: processor time of the calls themselves
+  std::int64_t call_ns = 0;  // of a write: processor time of the system calls
 };
 
-/// What may be written and leaves at once, instead of waiting in the kernel.
+/// The bytes that may be written and leave at once, without waiting in the kernel.
 struct StreamRoom {
   std::size_t bytes = SIZE_MAX;
-  TimeUs again_us = 0;  // where there is none: how long to wait before the next question
+  TimeUs again_us = 0;  // if there is no room: how long to wait before asking again
 };
 
 class ByteStream {
  public:
   virtual ~ByteStream() = default;
-  /// Some bytes; an error at the end of the stream.
+  /// Reads at least one byte. Fails at the end of the stream.
   virtual asio::awaitable<IoResult> read_some(asio::mutable_buffer into) = 0;
-  /// All bytes of all buffers. The vector must live until the call ends.
+  /// Writes all bytes of all buffers. The vector must live until the call ends.
   virtual asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) = 0;
-  /// For terrain: what waits in the kernel is overtaken by no edit. Some 1 us.
+  /// Returns the room for terrain. An edit cannot overtake bytes that wait in the kernel. Cost:
+  /// about 1 us.
   virtual StreamRoom room() = 0;
-  /// No more writes: the peer sees the end of the stream after what was written.
+  /// Ends sending: the peer gets the end of the stream behind the bytes that were written.
   virtual void shutdown_send() = 0;
-  /// Ends both directions; calls under way return an error.
+  /// Closes both directions. Calls under way fail.
   virtual void close() = 0;
-  /// "127.0.0.1:40312", for log lines.
+  /// Returns the address for log lines, such as "127.0.0.1:40312".
   virtual std::string peer() const = 0;
 };
 
-/// TCP with TCP_NODELAY and a small TCP_NOTSENT_LOWAT, so that little terrain lies between an edit and the
-/// wire.
+/// Makes a stream over TCP with TCP_NODELAY and TCP_NOTSENT_LOWAT = `notsent_bytes`, so that little
+/// terrain waits in the kernel before an edit.
 std::unique_ptr<ByteStream> make_tcp_stream(asio::ip::tcp::socket socket,
                                             std::size_t notsent_bytes);
 

@@ -8,22 +8,24 @@ namespace {
 
 constexpr std::uint64_t kSecondUs = 1'000'000;
 constexpr std::size_t kFragmentsMax = 2'048;  // further ones are counted with the last one
-constexpr std::uint64_t kWindowMax =
-    256ULL << 20;  // no link on earth needs more, and no product overflows
+// More than any link needs, and small enough that no product overflows.
+constexpr std::uint64_t kWindowMax = 256ULL << 20;
 constexpr std::uint64_t kRateMax = 100'000'000'000;  // bytes a second
-constexpr TimeUs kRateSpanUsMin = 250'000;           // a rate is believed for one to two spans
+constexpr TimeUs kRateSpanUsMin = 250'000;           // a rate is valid for one to two spans
 constexpr TimeUs kRateSpanRoundTrips = 5;
 constexpr TimeUs kRoundTripAgeUsMax = 5'000'000;
 constexpr unsigned kRoundsWithoutGrowthMax = 2;
-// A queue has begun when so many round trips in a row are longer by an eighth, within these bounds.
+// A queue has begun when so many round trips in a row are longer by an eighth. These bounds limit
+// the eighth.
 constexpr unsigned kLateInARow = 4;
 constexpr TimeUs kQueueUsMin = 4'000, kQueueUsMax = 16'000;
-constexpr TimeUs kFragmentUs = 2'000;  // of the link's time
+constexpr TimeUs kFragmentUs = 2'000;  // the time that the link needs for a fragment
 constexpr std::size_t kFragmentBytesMin = 2 * 1024;
-// The writer wakes up once for so much of the link's time, and makes up for so much that it came late.
+// A fragment may be sent so long before its time, so that the writer wakes up less often. A writer
+// that is late makes up for so much.
 constexpr TimeUs kAheadUs = 1'000;
 constexpr TimeUs kLateUsMax = 2'000;
-// Shares of the rate, in percent. A little less than all of it empties the queue that a probe has made.
+// Percentages of the rate. Slightly less than the rate empties the queue that a probe has made.
 constexpr std::uint64_t kStartGain = 200, kLateStartGain = 125, kSteadyGain = 98, kDrainGain = 80,
                         kProbeGainMin = 110, kProbeGainMax = 125, kWonGain = 150;
 constexpr unsigned kRoundsPerProbe = 6;
@@ -43,8 +45,8 @@ std::size_t ChunkPace::fragment_bytes() const {
                                                             kFragmentBytesMin, kFragmentBytesMax));
 }
 
-// What the client may have read but not told yet.
-std::uint64_t ChunkPace::untold() const {
+// Returns the bytes that the client may have read but not acknowledged yet.
+std::uint64_t ChunkPace::unreported_bytes() const {
   return std::min(bytes_in(rate(), kReceivedEveryUs),
                   std::max<std::uint64_t>(kReceivedEveryBytes, bytes_in(rate(), kReceivedUsMin)));
 }
@@ -53,10 +55,10 @@ std::uint64_t ChunkPace::window() const {
   if (rate() == 0) return kStartBytes;
   const std::uint64_t link = bytes_in(rate(), round_trip_us_);
   if (phase_ == Phase::remeasure) return std::max<std::uint64_t>(link / 2, kFloorBytes);
-  // A link of uneven delay holds more than its shortest round trip says.
+  // A link of varying delay holds more bytes than its shortest round trip suggests.
   const std::uint64_t uneven = bytes_in(rate(), std::min(2 * swing_us_, round_trip_us_ / 3));
-  const std::uint64_t steady = link + untold() + uneven + kFragmentBytesMax;
-  const std::uint64_t start = (is_late() ? link + link / 4 : 2 * link) + untold();
+  const std::uint64_t steady = link + unreported_bytes() + uneven + kFragmentBytesMax;
+  const std::uint64_t start = (is_late() ? link + link / 4 : 2 * link) + unreported_bytes();
   const std::uint64_t window = phase_ == Phase::start ? std::max(start, steady) : steady;
   return std::min(window, kWindowMax);
 }
@@ -66,7 +68,7 @@ std::uint64_t ChunkPace::gain_percent() const {
   if (is_draining_) return kDrainGain;
   if (!is_probing_) return kSteadyGain;
   if (probes_won_ > 0) return kWonGain;
-  // By one fragment in a round trip, where that is more.
+  // A probe sends at least one fragment more in a round trip.
   const std::uint64_t link = std::max<std::uint64_t>(1, bytes_in(rate(), round_trip_us_));
   return std::clamp<std::uint64_t>(100 + 100 * kFragmentBytesMax / link, kProbeGainMin,
                                    kProbeGainMax);
@@ -74,7 +76,7 @@ std::uint64_t ChunkPace::gain_percent() const {
 
 bool ChunkPace::is_late() const { return late_in_a_row_ >= kLateInARow; }
 
-// A little room is none: it would cut terrain into crumbs.
+// Less room than a fragment counts as none, so that fragments do not become small.
 bool ChunkPace::is_full() const { return in_flight() + fragment_bytes() > window(); }
 
 std::size_t ChunkPace::room(TimeUs now_us) const {
@@ -89,10 +91,10 @@ TimeUs ChunkPace::next_us(TimeUs now_us) const {
 
 void ChunkPace::sent(std::size_t bytes, TimeUs now_us) {
   if (in_flight() == 0) {
-    // The link was idle: rates count from here.
-    acked_us_ = first_sent_us_ = heard_us_ = now_us;
+    // The link was idle: rates are measured from now on.
+    acked_us_ = first_sent_us_ = last_ack_us_ = now_us;
   } else if (now_us >= silent_until() && is_full()) {
-    heard_us_ = now_us;  // the next one after another such silence
+    last_ack_us_ = now_us;  // the next fragment waits for another kSilenceUs
   }
   sent_ += bytes;
   if (rate() != 0) {
@@ -104,19 +106,20 @@ void ChunkPace::sent(std::size_t bytes, TimeUs now_us) {
     fragments_.back().end = sent_;
     return;
   }
-  fragments_.push_back({sent_, now_us, acked_, acked_us_, first_sent_us_, dry_until_ > acked_});
+  fragments_.push_back(
+      {sent_, now_us, acked_, acked_us_, first_sent_us_, app_limited_until_ > acked_});
 }
 
 Result<void> ChunkPace::acked(std::uint64_t total, TimeUs now_us) {
   if (total > sent_)
-    return fail(ErrorCode::bad_value, "received counts more chunk bytes than were sent", total);
+    return fail(ErrorCode::bad_value, "receive ack counts more chunk bytes than were sent", total);
   if (total < acked_)
-    return fail(ErrorCode::bad_value, "received counts fewer chunk bytes than before", total);
+    return fail(ErrorCode::bad_value, "receive ack counts fewer chunk bytes than before", total);
   if (total == acked_) return {};
   acked_ = total;
-  acked_us_ = heard_us_ = now_us;
+  acked_us_ = last_ack_us_ = now_us;
   Fragment newest;
-  bool is_whole = false;  // a fragment was read to its end
+  bool is_whole = false;  // a fragment was acknowledged to its end
   while (!fragments_.empty() && fragments_.front().end <= total) {
     newest = fragments_.front();
     fragments_.pop_front();
@@ -124,7 +127,7 @@ Result<void> ChunkPace::acked(std::uint64_t total, TimeUs now_us) {
   }
   if (!is_whole) return {};
   take_rate(newest, now_us);
-  if (is_draining_ && in_flight() <= bytes_in(rate(), round_trip_us_) + untold() / 2)
+  if (is_draining_ && in_flight() <= bytes_in(rate(), round_trip_us_) + unreported_bytes() / 2)
     is_draining_ = false;
   first_sent_us_ = newest.sent_us;
   take_round_trip(newest, now_us);
@@ -137,17 +140,17 @@ Result<void> ChunkPace::acked(std::uint64_t total, TimeUs now_us) {
 
 void ChunkPace::take_rate(const Fragment& newest, TimeUs now_us) {
   const TimeUs span_us = std::max(now_us - newest.acked_us, newest.sent_us - newest.first_sent_us);
-  // Shorter than any round trip: the words of the client came bunched up.
+  // A shorter time than any round trip means that acknowledgements arrived together.
   if (span_us <= 0 || span_us < round_trip_us_) return;
   const std::uint64_t rate =
       std::min(kRateMax, (acked_ - newest.acked) * kSecondUs / static_cast<std::uint64_t>(span_us));
-  const TimeUs believed_us = std::max(kRateSpanUsMin, kRateSpanRoundTrips * round_trip_us_);
-  if (now_us - rate_since_us_ > believed_us && (!newest.is_dry || rate > rate_)) {
+  const TimeUs valid_us = std::max(kRateSpanUsMin, kRateSpanRoundTrips * round_trip_us_);
+  if (now_us - rate_since_us_ > valid_us && (!newest.is_app_limited || rate > rate_)) {
     rate_before_ = std::exchange(rate_, 0);
     rate_since_us_ = now_us;
   }
-  // Where there was nothing to send, a lower rate is no news of the link.
-  if (rate > rate_ && (!newest.is_dry || rate > this->rate())) rate_ = rate;
+  // If there was nothing to send, a lower rate says nothing about the link.
+  if (rate > rate_ && (!newest.is_app_limited || rate > this->rate())) rate_ = rate;
 }
 
 void ChunkPace::take_round_trip(const Fragment& newest, TimeUs now_us) {
@@ -192,7 +195,7 @@ void ChunkPace::end_round() {
   if (phase_ == Phase::steady) {
     if (is_probing_) {
       is_probing_ = false;
-      is_judging_ = is_draining_ = true;  // what the probe sent is read a round trip later
+      is_judging_ = is_draining_ = true;  // the probe's bytes are acknowledged a round trip later
       return;
     }
     if (is_judging_) {
@@ -210,7 +213,7 @@ void ChunkPace::end_round() {
     return;
   }
   if (phase_ != Phase::start) return;
-  if (dry_until_ > acked_) return;
+  if (app_limited_until_ > acked_) return;
   if (rate() * 4 >= rate_at_growth_ * 5) {
     rate_at_growth_ = rate();
     rounds_without_growth_ = 0;

@@ -104,7 +104,7 @@ asio::awaitable<void> Listener::accept_loop(std::shared_ptr<Listener> self) {
     if (!error) {
       self->admit(std::move(socket));
     } else if (self->acceptor_.is_open()) {
-      // Out of file descriptors, most likely: they come back when sessions end.
+      // The process is probably out of file descriptors. Sessions that end release some.
       self->pause_.expires_after(std::chrono::milliseconds(100));
       const auto [woken] = co_await self->pause_.async_wait(kTuple);
       (void)woken;
@@ -123,7 +123,7 @@ void Listener::admit(asio::ip::tcp::socket socket) {
   }
   if (!ended) {
     counters_.refused.fetch_add(1);
-    return;  // closing the socket says it: there was no handshake to answer
+    return;  // the destructor closes the socket; there is no handshake to answer
   }
   counters_.refused.fetch_add(ended->size());
   for (const auto& session : *ended) session->abort();
@@ -154,7 +154,7 @@ std::optional<std::vector<std::shared_ptr<NetSession>>> Listener::make_room(
     end(*same->second.begin());
   }
   if (sessions_.size() - leaving_.size() >= limits_.connections_max) {
-    if (handshakes_.empty()) return std::nullopt;  // all of them are players
+    if (handshakes_.empty()) return std::nullopt;  // all connections have authenticated
     end(handshakes_.begin()->first);
   }
   return ended;

@@ -1,7 +1,8 @@
-// Listener: accepts connections and keeps the sessions by number. Sockets that never authenticate keep nobody
-// out: a newcomer for whom there is no room takes the place of the oldest one in the handshake, and one
-// address has few of those. Threads: the accept loop runs on its own strand; the others but listen() may be
-// called from any thread.
+// Listener: accepts connections and keeps the sessions by number. Sockets that never authenticate
+// cannot keep players out: if there is no room for a new connection, it replaces the oldest one in
+// the handshake, and one address may have only handshakes_per_address of those.
+// Threads: the accept loop runs on its own strand. listen() is called before start(); the other
+// functions may be called from any thread.
 #pragma once
 #include <asio/io_context.hpp>
 #include <asio/ip/address.hpp>
@@ -19,7 +20,7 @@
 
 namespace runstone {
 
-/// Whether Listener::listen() would succeed now: binds and lets go again. The error is the same line.
+/// Binds the address and releases it. Fails as Listener::listen() would.
 Result<void, std::string> can_listen(const std::string& address);
 
 class Listener : public std::enable_shared_from_this<Listener> {
@@ -28,20 +29,21 @@ class Listener : public std::enable_shared_from_this<Listener> {
   Listener(asio::io_context& io, const NetLimits& limits, std::uint16_t chunk_edge,
            NetEvents& events);
 
-  /// Binds and listens. `address` is "HOST:PORT" or "[V6]:PORT"; port 0 takes a free one. The error is one
-  /// line that names the address.
+  /// Binds and listens. `address` is "HOST:PORT" or "[V6]:PORT"; port 0 takes a free one. The error
+  /// is one line that names the address.
   Result<void, std::string> listen(const std::string& address);
   std::uint16_t port() const { return port_; }
-  /// Accepts from now on.
+  /// Starts to accept connections.
   void start();
-  /// Takes no more connections.
+  /// Accepts no more connections.
   void stop();
 
-  /// Null if it is gone.
+  /// Returns null if there is no such session.
   std::shared_ptr<NetSession> find(SessionId session) const;
-  /// The session has authenticated: its connection is not closed for a newcomer any more.
+  /// Reports that the session has authenticated. Its connection is not replaced by a new one any
+  /// more.
   void opened(SessionId session);
-  /// Forgets a session that has told disconnected.
+  /// Removes a session that has reported on_disconnected().
   void forget(SessionId session);
   std::size_t session_count() const;
   void close_all(GoodbyeReason reason, const std::string& text);
@@ -50,7 +52,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
  private:
   static asio::awaitable<void> accept_loop(std::shared_ptr<Listener> self);
   void admit(asio::ip::tcp::socket socket);
-  /// Sessions that have to go so that one more from `from` fits; nothing if it cannot. Under the mutex.
+  /// Returns the sessions that must be closed so that one more from `from` fits, or nullopt if it
+  /// cannot fit. Requires the mutex.
   std::optional<std::vector<std::shared_ptr<NetSession>>> make_room(const asio::ip::address& from);
   void end_handshake(SessionId session);
 
@@ -65,13 +68,14 @@ class Listener : public std::enable_shared_from_this<Listener> {
   asio::steady_timer pause_;
   std::uint16_t port_ = 0;
   SessionId next_id_ = 1;
-  mutable std::mutex mutex_;  // a leaf: guards the rest
+  mutable std::mutex mutex_;  // a leaf: guards the members below
   std::map<SessionId, std::shared_ptr<NetSession>> sessions_;
-  std::map<SessionId, asio::ip::address>
-      handshakes_;  // oldest first: neither authenticated nor told to go
-  std::map<asio::ip::address, std::set<SessionId>>
-      handshakes_from_;          // the same by address, never empty sets
-  std::set<SessionId> leaving_;  // told to go, still in `sessions_`
+  // Sessions in the handshake that are not being closed, oldest first.
+  std::map<SessionId, asio::ip::address> handshakes_;
+  // The same by address. No set is empty.
+  std::map<asio::ip::address, std::set<SessionId>> handshakes_from_;
+  // Sessions that are being closed and are still in `sessions_`.
+  std::set<SessionId> leaving_;
 };
 
 }  // namespace runstone

@@ -1,5 +1,6 @@
-// NetEvents: what sessions tell the rest of the server. Called on the session's strand, one call at a time
-// per session and in order: connected, then messages, then disconnected exactly once. Must return soon.
+// NetEvents: the events of network sessions. For each session: on_connected(), then messages and
+// drains, then on_disconnected() exactly once.
+// Threads: the session's strand, one call at a time for each session. A call must return soon.
 #pragma once
 #include <cstddef>
 
@@ -12,10 +13,11 @@ class NetEvents {
  public:
   virtual ~NetEvents() = default;
   virtual void on_connected(SessionId session) = 0;
-  /// A verified message of so many bytes. The receiver calls NetSession::handled() with them for each, from any
-  /// thread, once it is done with it: a session of which too much is unhandled stops reading, and TCP pushes back.
+  /// Brings a verified message of `bytes` bytes. The receiver must call NetSession::handled(bytes)
+  /// when it has handled the message, from any thread. A session with too many unhandled bytes
+  /// stops reading, and TCP makes the client wait.
   virtual void on_message(SessionId session, Message&& message, std::size_t bytes) = 0;
-  /// After a refused send: there is room again.
+  /// Reports that the queues have room again after a send that did not fit.
   virtual void on_drained(SessionId session) = 0;
   virtual void on_disconnected(SessionId session) = 0;
 };

@@ -1,4 +1,5 @@
-// Log lines of the net module that a peer can trigger: rate-limited, so that nobody fills the disk.
+// Log lines of the net module that a peer can cause. Their rate is limited, so that no peer fills
+// the disk.
 #pragma once
 #include <string>
 
@@ -8,8 +9,9 @@
 
 namespace runstone {
 
-/// One warning per broken session, ten a second at most in the whole process; the next line says how many
-/// were left out.
+/// Writes one warning for a session that breaks a rule, at most as many as LineThrottle passes in
+/// the whole process.
+/// Thread: any.
 void log_broken_rule(SessionId session, const std::string& peer, GoodbyeReason reason,
                      const Error& error);
 

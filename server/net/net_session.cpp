@@ -17,15 +17,17 @@ namespace runstone {
 namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
-// Messages of all sessions wait in one line for the world strand, so nobody may put many there at once: a read is short, and
-// few are under way (unhandled_bytes_max). By their bytes, which tell what they cost: a claim to hold 256 chunks is no edit.
+// The messages of all sessions wait for the world strand in one queue, so no session may have many
+// there: a read is short, and unhandled_bytes_max limits the bytes. Bytes are counted, not
+// messages, because the cost of a message grows with its bytes.
 constexpr std::size_t kReadBytes = 4 * 1024;
-constexpr std::size_t kMessageBytes = 64;  // what the smallest one counts besides
-constexpr std::size_t kTurnRoomBytes =
-    2 * 1024;  // for terrain whose turn it is where there is no room
+// Counted for each message in addition to its bytes.
+constexpr std::size_t kMessageBytes = 64;
+// Room for a chunk fragment that must be sent although the socket has none.
+constexpr std::size_t kStarvedRoomBytes = 2 * 1024;
 constexpr TimeUs kRoomPauseUsMax = 50'000;
-constexpr TimeUs kReadBurstUs =
-    500'000;  // of the reading budget may be used at once: what a client holds, a large paste
+// Part of the read budget that may be used at once, for the list of cached chunks or a large paste.
+constexpr TimeUs kReadBurstUs = 500'000;
 
 asio::steady_timer::time_point time_point_of(TimeUs us) {
   return asio::steady_timer::time_point(std::chrono::microseconds(us));
@@ -53,7 +55,7 @@ NetSession::NetSession(SessionId id, asio::io_context& io, std::unique_ptr<ByteS
       read_budget_(limits.read_bytes_per_second),
       reader_(Sender::client),
       messages_(limits.messages_per_second, limits.message_burst) {
-  // A timer that never comes by itself: cancelling it wakes the loop that waits on it.
+  // The timer never expires. Cancelling it wakes the loop that waits on it.
   read_wake_.expires_at(asio::steady_timer::time_point::max());
 }
 
@@ -74,7 +76,7 @@ bool NetSession::send(const EncodedMessage& message) {
     if (closing_) return true;
     if (!queue_.push(message)) return false;
     wakes = take_wake();
-    // Whoever woke the writer: until it runs, nobody has paid for this.
+    // The cost of sending this message is not in commit_send_ns before the writer has run.
     if (message.frame_class == FrameClass::edits && is_woken_ && !std::exchange(is_due_, true)) {
       counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
     }
@@ -85,7 +87,7 @@ bool NetSession::send(const EncodedMessage& message) {
 
 std::optional<ChunkPlace> NetSession::reserve_chunk(const ChunkKey& key) {
   const std::lock_guard lock(mutex_);
-  if (closing_) return ChunkPlace{0};  // names no place: filling it does nothing
+  if (closing_) return ChunkPlace{0};  // no place: filling it does nothing
   return queue_.reserve_chunk(key);
 }
 
@@ -94,7 +96,7 @@ void NetSession::forget_outside(const View& view) {
     const std::lock_guard lock(mutex_);
     queue_.forget_outside(view);
   }
-  wake_writer();  // there may be room again, or a chunk behind one that is gone
+  wake_writer();  // there may be room again, or a filled chunk may be first now
 }
 
 void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
@@ -118,7 +120,8 @@ void NetSession::close(GoodbyeReason reason, const std::string& text) {
     if (closing_) return;
     closing_ = true;
     queue_.drop_chunks();
-    // If even the goodbye does not fit, the peer has not read for long: it learns from the end of the stream.
+    // If the goodbye does not fit, the client has not read for long. It gets only the end of the
+    // stream.
     (void)queue_.push(encode_message(Goodbye{reason, text}));
   }
   const auto begin = [self = shared_from_this()] {
@@ -137,8 +140,8 @@ void NetSession::handled(std::size_t message_bytes) {
 }
 
 void NetSession::abort() {
-  close(GoodbyeReason::server_full,
-        "no room for one more handshake");  // nothing more is queued or sent
+  // After this call nothing is queued any more.
+  close(GoodbyeReason::server_full, "no room for one more handshake");
   const auto end = [self = shared_from_this()] { self->stream_->close(); };
   asio::post(strand_, end);
 }
@@ -168,22 +171,22 @@ void NetSession::post_wake() {
 
 asio::awaitable<void> NetSession::end_after_linger(std::shared_ptr<NetSession> self) {
   self->linger_.expires_after(std::chrono::milliseconds(self->limits_.linger_ms));
-  self->read_wake_.cancel();  // a paused reader goes on, to see the end of the stream
+  self->read_wake_.cancel();  // a paused reader continues until the end of the stream
   const auto [error] = co_await self->linger_.async_wait(kTuple);
-  (void)error;  // cancelled when both loops have ended: closing twice is harmless
+  (void)error;  // cancelled when both loops have ended; closing twice is harmless
   self->stream_->close();
   self->read_turn_.cancel();
 }
 
-// A message costs more to take than to send, whatever it says. So each session is read no faster than an honest client
-// has anything to say, and TCP holds the others back.
-asio::awaitable<void> NetSession::wait_for_turn(std::size_t bytes_read) {
+// Handling a message costs more than sending it. So each session is read no faster than a regular
+// client sends, and TCP makes the others wait.
+asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   const TimeUs now_us = steady_now_us();
-  const TimeUs turn_us = read_budget_.book(bytes_read, now_us) - kReadBurstUs;
-  if (turn_us <= now_us) co_return;
-  read_turn_.expires_at(time_point_of(turn_us));
+  const TimeUs slot_us = read_budget_.book(bytes_read, now_us) - kReadBurstUs;
+  if (slot_us <= now_us) co_return;
+  read_turn_.expires_at(time_point_of(slot_us));
   const auto [error] = co_await read_turn_.async_wait(kTuple);
-  (void)error;  // cancelled when the stream is closed: the next read says so
+  (void)error;  // cancelled when the stream is closed; the next read fails then
 }
 
 Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
@@ -197,23 +200,23 @@ Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
   }
-  if (const auto* received = std::get_if<ReceiveAck>(&*message)) return on_received(*received);
+  if (const auto* ack = std::get_if<ReceiveAck>(&*message)) return on_receive_ack(*ack);
   unhandled_.fetch_add(body.size() + kMessageBytes);
   events_.on_message(id_, *std::move(message), body.size());
   return {};
 }
 
-Result<void> NetSession::on_received(const ReceiveAck& received) {
+Result<void> NetSession::on_receive_ack(const ReceiveAck& ack) {
   {
     const std::lock_guard lock(mutex_);
     if (!gate_.is_paced()) {
       broken_rule_ = GoodbyeReason::unexpected_message;
-      return fail(ErrorCode::bad_value, "received, but its feature is not in force");
+      return fail(ErrorCode::bad_value, "receive ack, but its feature is not in force");
     }
-    const auto acked = gate_.acked(received.chunk_bytes, steady_now_us());
-    if (!acked) {
+    const auto taken = gate_.acked(ack.chunk_bytes, steady_now_us());
+    if (!taken) {
       broken_rule_ = GoodbyeReason::malformed_message;
-      return acked;
+      return taken;
     }
     queue_.set_chunk_backlog(gate_.backlog_bytes());
   }
@@ -238,9 +241,10 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     const IoResult got = co_await self->stream_->read_some(into);
     if (got.error) break;
     self->counters_.bytes_in.fetch_add(got.bytes, std::memory_order_relaxed);
-    co_await self->wait_for_turn(got.bytes);
-    if (refused)
-      continue;  // closing: what comes still is read, so that the kernel does not reset our goodbye
+    co_await self->wait_for_read_budget(got.bytes);
+    // While closing, input is read and dropped. Unread input would make the kernel reset the
+    // connection, and the goodbye would be lost.
+    if (refused) continue;
     self->broken_rule_ = GoodbyeReason::malformed_frame;
     const Result<void> fed = self->reader_.feed(ByteView(buffer.data(), got.bytes), on_message);
     if (!fed) {
@@ -249,13 +253,13 @@ asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
     }
     while (self->must_pause() && !self->linger_started_) {
       self->reader_paused_.store(true);
-      if (!self->must_pause()) break;  // handled() may have come before it could see the flag
+      if (!self->must_pause()) break;  // handled() may have been called before the flag was set
       const auto [error] = co_await self->read_wake_.async_wait(kTuple);
-      (void)error;  // always cancelled: that is the wake
+      (void)error;  // always cancelled, which is the wake
     }
     self->reader_paused_.store(false);
   }
-  // The peer closed or broke off: nothing that waits to be sent has a reader.
+  // The client has closed the connection, so nobody reads what is queued.
   self->close(GoodbyeReason::closing, "end of stream");
   self->loop_ended();
 }
@@ -269,11 +273,12 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     bool is_drained = false;
     bool is_last = false;
     auto wake = asio::steady_timer::time_point::max();
-    // A call of the system, so not under the mutex, and only where terrain wants to know.
+    // room() is a system call, so it is made without the mutex and only for terrain.
     const bool asks = self->has_chunk();
     const StreamRoom room = asks ? self->stream_->room() : StreamRoom{};
     const bool has_room = room.bytes > kFrameHeaderBytes;
-    // A peer that does not read is asked after ever more seldom; one that does wakes the writer by what it says.
+    // The pause grows while the client does not read. A client that reads wakes the writer by its
+    // acknowledgements.
     room_pause_us = has_room ? 0 : std::clamp(2 * room_pause_us, room.again_us, kRoomPauseUsMax);
     {
       const std::lock_guard lock(self->mutex_);
@@ -283,14 +288,14 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
       }
       const TimeUs now_us = steady_now_us();
       const bool has_chunk = self->queue_.has_chunk();
-      if (has_chunk && !asks) continue;  // it came in between
-      // Edits alone may fill the window for ever: terrain has its turn all the same.
+      if (has_chunk && !asks) continue;  // a chunk was queued since has_chunk()
+      // Edits alone may fill the window for long. A starved class sends all the same.
       const std::size_t room_bytes =
-          !has_room && self->queue_.are_chunks_starved() ? kTurnRoomBytes : room.bytes;
+          !has_room && self->queue_.are_chunks_starved() ? kStarvedRoomBytes : room.bytes;
       const std::size_t chunk_body_max = has_chunk ? self->gate_.open(now_us, room_bytes) : 0;
       has_batch = self->queue_.take(batch, chunk_body_max);
       if (has_batch) self->gate_.sent(batch.chunk_bytes, batch.bytes - batch.chunk_bytes, now_us);
-      if (!has_chunk) self->gate_.ran_dry();
+      if (!has_chunk) self->gate_.mark_app_limited();
       if (has_chunk && chunk_body_max == 0) {
         wake = time_point_of(std::max(now_us + room_pause_us, self->gate_.next_us(now_us)));
       }
@@ -301,8 +306,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     if (is_drained) self->events_.on_drained(self->id_);
     if (is_last) break;
     if (!has_batch) {
-      // Woken by cancel; a wake that came before this wait starts finds no waiter, but it was posted to this
-      // strand, so it cannot run between here and the wait. Terrain that has to wait sets the time.
+      // A wake cancels this wait. It is posted to this strand, so it cannot run before the wait has
+      // begun. Terrain that must wait sets the time.
       self->write_wake_.expires_at(wake);
       const auto [error] = co_await self->write_wake_.async_wait(kTuple);
       (void)error;
@@ -322,8 +327,8 @@ asio::awaitable<void> NetSession::write_loop(std::shared_ptr<NetSession> self) {
     }
   }
   self->stream_->shutdown_send();
-  self->close(GoodbyeReason::closing,
-              "write failed");  // the linger timer ends a reader that waits for ever
+  // The linger timer ends a reader that still waits.
+  self->close(GoodbyeReason::closing, "write failed");
   self->loop_ended();
 }
 

@@ -103,7 +103,9 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
     if (cut(FrameClass::edits, kFragmentBytesMax, batch)) continue;
     if (cut(FrameClass::control, kFragmentBytesMax, batch)) continue;
     if (chunk_body_max > 0) cut(FrameClass::chunks, chunk_body_max, batch);
-    break;  // terrain in the kernel's buffer delays the next edit: one fragment per write is enough
+    // Terrain in the kernel's buffer delays the next edit, so a write has one fragment of it at
+    // most.
+    break;
   }
   return !batch.pieces.empty();
 }

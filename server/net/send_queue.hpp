@@ -1,9 +1,10 @@
-// SendQueue: what one session still has to send, bounded per class, cut into frames by priority:
-// edits before control before chunks, chosen anew for every fragment. So an edit waits for one fragment of
-// terrain at most, while each class keeps its own order. A class that waits is never starved: once four fragments'
-// worth of others has passed it, its turn comes. A chunk may take its place in the queue before its
-// bytes are made: a worker fills the place later, and nothing of its class overtakes it. Threads: none of its
-// own; the session guards it with a mutex (a leaf).
+// SendQueue: the messages that a session still has to send, bounded for each class and cut into
+// fragments. For each fragment it chooses the class by priority: edits, then control, then chunks.
+// So an edit waits for at most one fragment of terrain, and each class keeps its own order. No
+// class is starved: when kPassedFragments fragments of other classes have passed a class, its next
+// fragment is sent. A chunk reserves a place in the queue before a worker has encoded it, and later
+// messages of its class wait for it.
+// Threads: one; the session guards it with a mutex (a leaf).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,31 +20,34 @@
 namespace runstone {
 
 struct SendLimits {
-  std::size_t control_bytes = 16 * 1024 * 1024;  // one welcome with a full material table, and more
+  std::size_t control_bytes = 16 * 1024 * 1024;  // more than a welcome with a full material table
   std::size_t edit_bytes = 4 * 1024 * 1024;
-  std::size_t chunk_bytes = 4 * 1024 * 1024;  // a chunk is taken while less is queued
-  // Messages that wait: a small one costs several times its bytes of memory, and a peer may have many made that it never reads.
+  std::size_t chunk_bytes = 4 * 1024 * 1024;  // a chunk is accepted while less is queued
+  // Messages. A small message needs several times its bytes of memory, and a client that does not
+  // read could cause many of them.
   std::size_t control_count = 1024;
   std::size_t edit_count = 16 * 1024;
-  std::size_t chunk_count = 256;        // places taken, filled or not
+  std::size_t chunk_count = 256;        // reserved places, filled or not
   std::size_t write_bytes = 32 * 1024;  // handed to the socket at a time
 };
 
-/// Names a place taken for a chunk.
+/// Identifies the reserved place of a chunk. 0 is no place.
 using ChunkPlace = std::uint64_t;
 
 class SendQueue {
  public:
   explicit SendQueue(const SendLimits& limits) : limits_(limits) {}
 
-  /// False: full, nothing was queued. A message larger than the whole bound fits an empty class.
+  /// Queues a message. Returns false if its class is full. An empty class accepts a message of any
+  /// size.
   bool push(const EncodedMessage& message);
-  /// A place at the end of the chunk class; nothing if it is full. `key`: whose snapshot will fill it.
+  /// Reserves a place at the end of the chunk class. Returns nullopt if the class is full. `key`:
+  /// the chunk that will fill it.
   std::optional<ChunkPlace> reserve_chunk(const std::optional<ChunkKey>& key = std::nullopt);
-  /// Fills a place. Places dropped meanwhile are ignored.
+  /// Fills a place. Does nothing if the place was dropped.
   void fill(ChunkPlace place, const EncodedMessage& message);
 
-  /// One write: headers and pieces of bodies in the order in which they go out. Reused between writes.
+  /// One write: headers and pieces of bodies in the order of sending. It is reused between writes.
   struct Batch {
     std::vector<std::shared_ptr<const Bytes>> messages;  // keeps the bodies alive
     struct Piece {
@@ -53,43 +57,45 @@ class SendQueue {
     std::vector<Piece> pieces;
     bool has_edits = false;
     std::size_t bytes = 0;        // headers included
-    std::size_t chunk_bytes = 0;  // of them, of the class chunks
+    std::size_t chunk_bytes = 0;  // the part of `bytes` that is of the class chunks
   };
-  /// Takes the next fragments, about `write_bytes` and one fragment of the chunk class at most, whose body has
-  /// `chunk_body_max` bytes at most (0: no chunk now); false if there are none. The batch's bytes leave the
-  /// bounds at once.
+  /// Takes the next fragments: about `write_bytes`, with at most one fragment of the chunk class,
+  /// whose body has at most `chunk_body_max` bytes (0: none). Returns false if there are none. The
+  /// bytes do not count for the bounds any more.
   bool take(Batch& batch, std::size_t chunk_body_max = kFragmentBytesMax);
-  /// Whether so much of other classes has passed the chunks that they have their turn however little room there is.
+  /// Returns true if so many bytes of other classes have passed the chunks that the next chunk
+  /// fragment must be sent, whatever the room.
   bool are_chunks_starved() const {
     return lane(FrameClass::chunks).passed >= kPassedFragments * kFragmentBytesMax;
   }
-  /// Whether the next chunk is there and could be taken.
+  /// Returns true if the next chunk is filled, so that a fragment of it can be taken.
   bool has_chunk() const { return can_cut(FrameClass::chunks); }
 
-  /// Drops snapshots that nothing was sent of and that lie outside of the view.
+  /// Drops chunks outside of the view of which nothing was sent.
   void forget_outside(const View& view);
-  /// How many bytes of chunks may wait, within the limits: on a slow link fewer, so that the order in which they
-  /// are wanted now counts soon.
+  /// Sets how many bytes of chunks may wait, within the limits. On a slow link this is less, so
+  /// that a new view changes the order of chunks soon.
   void set_chunk_backlog(std::size_t bytes) { chunk_backlog_ = bytes; }
-  /// Chunks are not worth sending any more: the session closes. Drops them, also those still to be filled.
+  /// Drops all chunks and reserved places, because the session closes.
   void drop_chunks();
   bool empty() const;
   std::size_t queued_bytes(FrameClass frame_class) const { return lane(frame_class).bytes; }
 
-  /// After a refusal: whether there is room again in all classes. Tells each refusal once.
+  /// Returns true once after a class was full, when all classes have room again.
   bool take_drained();
 
  private:
   struct Item {
-    std::shared_ptr<const Bytes> bytes;  // null: a place not filled yet
+    std::shared_ptr<const Bytes> bytes;  // null: a place that is not filled yet
     ChunkPlace place = 0;
     std::optional<ChunkKey> key;
   };
   struct Lane {
     std::deque<Item> items;
-    std::size_t sent = 0;    // bytes of the first item already cut
-    std::size_t bytes = 0;   // queued, without what was cut
-    std::size_t passed = 0;  // bytes of other classes that went while this one could have
+    std::size_t sent = 0;   // bytes of the first item that were taken
+    std::size_t bytes = 0;  // queued bytes, without those that were taken
+    std::size_t passed =
+        0;  // bytes of other classes that were taken while this class had a fragment
   };
   Lane& lane(FrameClass c) { return lanes_[static_cast<std::size_t>(c)]; }
   const Lane& lane(FrameClass c) const { return lanes_[static_cast<std::size_t>(c)]; }

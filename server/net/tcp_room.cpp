@@ -13,15 +13,15 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint32_t kProbePackets =
-    4;  // BBR's window while it measures, and its smallest at any time
-constexpr std::uint32_t kProbeWindowGain =
-    256;  // then alone its window is the link's product: 1, times 2^8
+// BBR's window while it measures, which is its smallest window at any time.
+constexpr std::uint32_t kProbePackets = 4;
+// BBR's window gain of 1, times 2^8. It has this gain only while it measures.
+constexpr std::uint32_t kProbeWindowGain = 256;
 
 bool measures_round_trip(int socket) {
   tcp_cc_info info{};
   socklen_t size = sizeof info;
-  // Other congestion controls tell other things, of other sizes, or nothing.
+  // Other congestion controls return other structures, of other sizes, or none.
   return ::getsockopt(socket, IPPROTO_TCP, TCP_CC_INFO, &info, &size) == 0 &&
          size == sizeof info.bbr && info.bbr.bbr_cwnd_gain == kProbeWindowGain;
 }
@@ -37,7 +37,8 @@ TcpRoom tcp_room(int socket) {
     return {SIZE_MAX, 0};
   }
   const auto round_trip_us = static_cast<TimeUs>(info.tcpi_rtt);
-  // As the kernel counts what is on its way (tcp_packets_in_flight()), and what waits to be.
+  // Packets in flight, counted as in the kernel's tcp_packets_in_flight(), and packets that wait to
+  // be sent.
   const std::uint64_t away =
       std::uint64_t{info.tcpi_unacked} + info.tcpi_retrans -
       std::min<std::uint64_t>(info.tcpi_unacked, std::uint64_t{info.tcpi_sacked} + info.tcpi_lost);

@@ -1,5 +1,5 @@
-// TcpRoom: how much TCP would send of a socket at once. What is handed to it beyond that waits in the kernel, where no
-// edit can overtake it, until packets before it are acknowledged.
+// TcpRoom: how many bytes TCP would send of a socket at once. Bytes beyond that wait in the kernel,
+// where no edit can overtake them, until earlier packets are acknowledged.
 #pragma once
 #include <cstddef>
 
@@ -12,10 +12,11 @@ struct TcpRoom {
   TimeUs round_trip_us = 0;  // as TCP measures it; 0: not yet
 };
 
-/// Of a connected socket. Asks the kernel, some 1 us; where it does not answer there is room for everything.
-/// While BBR measures the shortest round trip, 0.2 s of 10, its window is four packets (Cardwell et al., "BBR:
-/// Congestion-Based Congestion Control", ACM Queue 14(5), 2016): edits alone need them, so there is room for one packet at
-/// a time, if nothing else is on its way: its acknowledgement is what ends the measurement.
+/// Returns the room of a connected socket, without a limit if the kernel does not know. Cost: about
+/// 1 us. While BBR measures the shortest round trip, 0.2 s of every 10 s, its window is four
+/// packets (Cardwell et al., "BBR: Congestion-Based Congestion Control", ACM Queue 14(5), 2016).
+/// Edits need them. So there is room for one packet if none is in flight, because the measurement
+/// ends with the acknowledgement of a packet.
 TcpRoom tcp_room(int socket);
 
 }  // namespace runstone

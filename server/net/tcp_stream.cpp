@@ -28,7 +28,7 @@ class TcpStream : public ByteStream {
               std::to_string(end.port());
     }
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
-    // Both options only make edits faster: a kernel without them still serves.
+    // Both options only make edits faster. The server works without them.
     const int lowat = static_cast<int>(notsent_bytes);
     (void)::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &lowat,
                        sizeof lowat);
@@ -40,10 +40,11 @@ class TcpStream : public ByteStream {
     co_return IoResult{error, bytes};
   }
   asio::awaitable<IoResult> write(const std::vector<asio::const_buffer>& buffers) override {
-    // Not asio::async_write: what a call costs is wanted, and most calls need not wait.
+    // This is not asio::async_write, because the cost of each call is measured, and most calls need
+    // not wait.
     IoResult result;
     rest_ = buffers;
-    std::size_t first = 0;  // of rest_: the first buffer that is not written wholly
+    std::size_t first = 0;  // the first buffer of rest_ that is not written completely
     while (first < rest_.size()) {
       const std::int64_t began_ns = thread_cpu_ns();
       const std::size_t written = socket_.write_some(

@@ -1,6 +1,6 @@
-// ChunkSource: where chunks come from that are not in memory: newest snapshot, else base, else the generator.
-// Threads: load() from any thread; it blocks on the disk, so workers call it. Each caller borrows a reader of
-// its own from a pool.
+// ChunkSource: loads chunks that are not in memory: the newest snapshot, else the base, else
+// generated. It keeps a pool of readers of the world folder.
+// Threads: any. Calls block on the disk, so workers make them. Each call uses a reader of its own.
 #pragma once
 #include <functional>
 #include <memory>
@@ -19,10 +19,11 @@ class ChunkSource {
   ChunkSource(std::string folder, const Generator& generator)
       : folder_(std::move(folder)), generator_(generator) {}
 
-  /// A chunk as it stands on disk, in its cheapest axis order, with its digest; an error names file, table
-  /// and row.
+  /// Returns the chunk on disk, in its cheapest axis order, with its digest. The error names file,
+  /// table and row.
   StoreResult<Chunk> load(const ChunkKey& key);
-  /// Lends a reader to `use`, which alone has it for that long.
+  /// Calls `use` with a reader that nobody else uses meanwhile. Fails if no reader can be opened;
+  /// `use` is not called then.
   StoreResult<void> with_reader(const std::function<void(WorldReader&)>& use);
 
  private:

@@ -6,22 +6,22 @@ namespace runstone {
 
 EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chunk,
                                        ChunkEncoding encoding) {
-  const Name name{key, chunk.get(), encoding};
+  const EntryKey id{key, chunk.get(), encoding};
   std::promise<EncodedMessage> promise;
   std::shared_future<EncodedMessage> known;
   {
     const std::lock_guard lock(mutex_);
-    auto found = entries_.find(name);
+    auto found = entries_.find(id);
     if (found != entries_.end() && found->second.chunk.lock() != chunk) {
       drop(found);
       found = entries_.end();
     }
     if (found != entries_.end()) {
-      turns_.splice(turns_.begin(), turns_, found->second.turn);
+      by_use_.splice(by_use_.begin(), by_use_, found->second.place);
       known = found->second.message;
     } else {
-      turns_.push_front(name);
-      entries_.emplace(name, Entry{chunk, promise.get_future().share(), 0, turns_.begin()});
+      by_use_.push_front(id);
+      entries_.emplace(id, Entry{chunk, promise.get_future().share(), 0, by_use_.begin()});
       ++encoded_;
     }
   }
@@ -30,18 +30,18 @@ EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chun
   EncodedMessage message = encode_snapshot(key, *chunk, encoding);
   promise.set_value(message);
   const std::lock_guard lock(mutex_);
-  const auto mine = entries_.find(name);
-  if (mine == entries_.end() || mine->second.bytes != 0)
-    return message;  // dropped, perhaps made anew
-  mine->second.bytes = message.bytes->size();
-  bytes_ += mine->second.bytes;
-  while (bytes_ > bytes_max_) drop(entries_.find(turns_.back()));
+  const auto entry = entries_.find(id);
+  if (entry == entries_.end() || entry->second.bytes != 0)
+    return message;  // evicted meanwhile, perhaps encoded again
+  entry->second.bytes = message.bytes->size();
+  bytes_ += entry->second.bytes;
+  while (bytes_ > bytes_max_) drop(entries_.find(by_use_.back()));
   return message;
 }
 
 void EncodedChunks::drop(Entries::iterator entry) {
   bytes_ -= entry->second.bytes;
-  turns_.erase(entry->second.turn);
+  by_use_.erase(entry->second.place);
   entries_.erase(entry);
 }
 

@@ -1,6 +1,7 @@
-// EncodedChunks: snapshots that were encoded a moment ago. A crowd in one place wants the same chunks at the same
-// versions: each is encoded once in each encoding, and every session queues the same bytes. Those used last are kept.
-// Any thread.
+// EncodedChunks: a cache of encoded snapshots. Players in one place need the same chunks at the
+// same versions, so each is encoded once in each encoding, and every session queues the same bytes.
+// The least recently used are evicted.
+// Threads: any.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,33 +19,34 @@ namespace runstone {
 
 class EncodedChunks {
  public:
-  static constexpr std::size_t kBytesMax = 1 << 20;  // some 1,000 packed chunks
+  static constexpr std::size_t kBytesMax = 1 << 20;  // about 1,000 packed chunks
 
   explicit EncodedChunks(std::size_t bytes_max = kBytesMax) : bytes_max_(bytes_max) {}
 
-  /// The chunk's snapshot message. Encodes it, unless that was done or another thread is at it, which is then waited for.
+  /// Returns the chunk's snapshot message. Encodes it, unless it is cached. Waits if another thread
+  /// encodes it.
   EncodedMessage snapshot(const ChunkKey& key, const ChunkPtr& chunk, ChunkEncoding encoding);
 
-  /// How many were encoded.
+  /// Returns how many snapshots were encoded.
   std::uint64_t encoded() const;
-  /// Bytes of messages kept.
+  /// Returns the bytes of the cached messages.
   std::size_t bytes() const;
 
  private:
-  using Name = std::tuple<ChunkKey, const Chunk*, ChunkEncoding>;
+  using EntryKey = std::tuple<ChunkKey, const Chunk*, ChunkEncoding>;
   struct Entry {
-    std::weak_ptr<const Chunk> chunk;  // an address alone may come to name another one
+    std::weak_ptr<const Chunk> chunk;  // detects an address that was used again
     std::shared_future<EncodedMessage> message;
-    std::size_t bytes = 0;  // 0 until it is encoded
-    std::list<Name>::iterator turn;
+    std::size_t bytes = 0;  // 0 until the message is encoded
+    std::list<EntryKey>::iterator place;
   };
-  using Entries = std::map<Name, Entry>;
+  using Entries = std::map<EntryKey, Entry>;
   void drop(Entries::iterator entry);
 
   const std::size_t bytes_max_;
   mutable std::mutex mutex_;  // a leaf: guards the rest
   Entries entries_;
-  std::list<Name> turns_;  // used last first
+  std::list<EntryKey> by_use_;  // the most recently used first
   std::size_t bytes_ = 0;
   std::uint64_t encoded_ = 0;
 };

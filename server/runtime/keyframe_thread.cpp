@@ -11,13 +11,14 @@ namespace runstone {
 
 namespace {
 
-// Edits are looked at in portions, so that a commit of one edit does not wake a reader.
+// The thread waits for so many new edits, so that a commit of one edit does not wake it.
 constexpr Sequence kPortionEdits = 1024;
 
-/// How a slice that the writer was given went. Shared with the writer, which may answer when nobody waits any more.
+/// The result of a slice that the writer saves. It is shared with the writer, which may answer
+/// after the wait has ended.
 struct Answer {
   std::mutex mutex;
-  std::condition_variable come;
+  std::condition_variable arrived;
   std::optional<StoreResult<void>> result;
 };
 
@@ -70,13 +71,13 @@ StoreResult<void> KeyframeThread::save(KeyframeMaker::Chunks chunks,
       writer_.save_keyframe(std::move(chunks), keyframe, [answer](StoreResult<void> result) {
         const std::lock_guard guard(answer->mutex);
         answer->result = std::move(result);
-        answer->come.notify_one();
+        answer->arrived.notify_one();
       });
   if (!taken)
     return Unexpected<StoreError>{
         {StoreError::Kind::cancelled, folder_, "keyframe", "the log writer has ended"}};
   std::unique_lock lock(answer->mutex);
-  answer->come.wait(lock, [&] { return answer->result.has_value(); });
+  answer->arrived.wait(lock, [&] { return answer->result.has_value(); });
   return *answer->result;
 }
 
@@ -97,7 +98,7 @@ void KeyframeThread::run() {
           return save(std::move(chunks), keyframe);
         },
         [this](Sequence, Sequence) {
-          std::this_thread::yield();  // players' work goes first
+          std::this_thread::yield();  // lets the threads that serve players run first
           return !is_stopping();
         });
     if (!made) return failed(made.error());

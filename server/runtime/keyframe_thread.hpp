@@ -1,6 +1,7 @@
-// KeyframeThread: makes keyframes while a server runs. It follows the log on disk with a reader of its own and hands what it
-// makes to the log writer, so the world strand never waits for it. A failure is logged and ends this thread, not the server:
-// the log holds all that keyframes say, and the next start tries again.
+// KeyframeThread: makes keyframes while a server runs. It reads the log on disk with its own reader
+// and queues keyframes for the log writer, so the world strand never waits for it. A failure is
+// logged and ends this thread, not the server: keyframes contain nothing that the log does not, and
+// the next start tries again.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -15,23 +16,25 @@ namespace runstone {
 
 class KeyframeThread {
  public:
-  /// Starts with what is due in the log already. `generator` and `writer` must outlive the object.
+  /// Starts the thread, which first makes the keyframes that are due in the log already.
+  /// `generator` and `writer` must outlive the object.
   KeyframeThread(std::string folder, const Generator& generator, const KeyframePolicy& policy,
                  LogWriter& writer);
-  /// stop().
+  /// Calls stop().
   ~KeyframeThread();
   KeyframeThread(const KeyframeThread&) = delete;
   KeyframeThread& operator=(const KeyframeThread&) = delete;
 
-  /// The log is on disk up to here. Any thread; does not wait.
+  /// Reports that the log is on disk up to `seq`. Thread: any. Does not wait.
   void durable(Sequence seq);
-  /// Ends the thread; it waits for one chunk or one slice at most. A keyframe half made is left for the next start.
-  /// While the writer still runs, or after it failed. May be called again.
+  /// Ends the thread. Waits for at most one chunk or one slice. The next start makes a keyframe
+  /// that was not finished. Requires that the writer still runs or has failed. It may be called
+  /// again.
   void stop();
 
  private:
   void run();
-  /// Waits until there is enough that is new to look at. False when it is time to end.
+  /// Waits until enough new edits are durable. Returns false if the thread must end.
   bool wait_for_work(Sequence seen);
   bool is_stopping() const;
   StoreResult<void> save(KeyframeMaker::Chunks chunks, const std::optional<Keyframe>& keyframe);
@@ -42,9 +45,9 @@ class KeyframeThread {
   LogWriter& writer_;
   mutable std::mutex mutex_;  // a leaf
   std::condition_variable work_;
-  Sequence durable_ = 0;  // guarded, as stopping_
-  bool stopping_ = false;
-  std::thread thread_;  // starts last
+  Sequence durable_ = 0;   // guarded by mutex_
+  bool stopping_ = false;  // guarded by mutex_
+  std::thread thread_;     // starts last, because it uses the members above
 };
 
 }  // namespace runstone

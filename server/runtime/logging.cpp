@@ -25,8 +25,8 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 }  // namespace
 
 void start_logging(LogLevel level) {
-  // Logging must never hold up the world strand: lines wait in a bounded queue, and the oldest give way when
-  // whoever reads stderr is too slow.
+  // Logging must not delay the world strand: lines wait in a bounded queue. If the reader of stderr
+  // is too slow, the oldest lines are dropped.
   constexpr std::size_t kQueuedLinesMax = 8192;
   if (spdlog::thread_pool() == nullptr) spdlog::init_thread_pool(kQueuedLinesMax, 1);
   const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
@@ -46,7 +46,7 @@ void start_logging(LogLevel level) {
 spdlog::logger& logger(const char* module) {
   const auto found = spdlog::get(module);
   RUNSTONE_ASSERT(found != nullptr);
-  return *found;  // the registry keeps it
+  return *found;  // spdlog's registry owns it
 }
 
 }  // namespace runstone

@@ -1,4 +1,5 @@
-// Loggers of the server program, one per module: world, net, store, app. Lines go to stderr.
+// The loggers of the server program, one for each module: world, net, store, app. Lines go to
+// stderr.
 #pragma once
 #include <spdlog/spdlog.h>
 
@@ -8,7 +9,7 @@ namespace runstone {
 
 /// Creates the loggers, or sets the level of existing ones.
 void start_logging(LogLevel level);
-/// A module's logger; start_logging() must have been called.
+/// Returns a module's logger. Requires start_logging().
 spdlog::logger& logger(const char* module);
 
 }  // namespace runstone

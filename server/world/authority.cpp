@@ -7,9 +7,10 @@
 namespace runstone {
 namespace {
 
-// What an edit costs at most in a commit message: fields and tables of OrderedEdit, the descriptor, and a
-// varint per touched chunk. Commits end well before kServerEditBytesMax.
-constexpr std::size_t kOrderedEditBytesMax = 128;  // beside the descriptor
+// Upper bounds of an edit's bytes in a commit message: the fields and tables of OrderedEdit, the
+// descriptor, and a varint for each touched chunk. A commit that reaches its target takes no more
+// edits, so it stays below kServerEditBytesMax.
+constexpr std::size_t kOrderedEditBytesMax = 128;  // without the descriptor
 constexpr std::size_t kPreviousBytesMax = 10;
 constexpr std::size_t kCommitBytesTarget = kServerEditBytesMax / 2;
 static_assert(kOrderedEditBytesMax + kDescriptorBytesMax + kPreviousBytesMax * kTouchedChunksMax <
@@ -37,7 +38,7 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_h
                                               : check_server_edit(offer.edit, limits_);
   if (!refusal && !log_has_room) refusal = RejectReason::busy;
   if (refusal) {
-    resolved_.refuse(offer.op, *refusal);
+    resolved_.reject(offer.op, *refusal);
     return refusal;
   }
   resolved_.raise(offer.op);
@@ -47,8 +48,8 @@ std::optional<RejectReason> Authority::submit(const EditOffer& offer, bool log_h
 
 std::optional<OrderedBatch> Authority::commit(const Clocks& now) {
   if (queue_.empty()) return std::nullopt;
-  last_time_us_ = std::max(
-      last_time_us_, now.utc_us);  // the wall clock may be set back; the log's time never goes
+  // The wall clock may be set back. The times of the log never decrease.
+  last_time_us_ = std::max(last_time_us_, now.utc_us);
   OrderedBatch batch;
   batch.commit.epoch = epoch_;
   batch.commit.first = head_ + 1;

@@ -1,11 +1,12 @@
-// Authority: gives edits their one order. An offered edit is checked and queued or refused at once; commit()
-// gives what is queued consecutive sequence numbers, moves the versions of the chunks touched, and publishes
-// each touched chunk that is in memory exactly once. It knows no clock, socket, disk or thread; same offers,
-// same result. Rules:
-//   - sequences have no gaps and continue the log of the last start; the epoch is that of this start;
-//   - a commit needs no voxels: a chunk that is not in memory keeps its edits on its stack until
-//     it is loaded;
-//   - an operation (author, instance, client sequence) is decided once: see OperationWatermarks.
+// Authority: orders the edits of the world. submit() checks an edit and queues or rejects it at
+// once. commit() gives the queued edits consecutive sequence numbers, raises the versions of the
+// touched chunks, and publishes each touched chunk that is in memory exactly once. It uses no
+// clock, socket, disk or thread: the same offers give the same result. Rules:
+//   - Sequences have no gaps and continue the log of the last start. The epoch is that of this
+//     start.
+//   - A commit needs no voxels. A chunk that is not in memory keeps its edits on its stack until it
+//     is loaded.
+//   - An operation (author, instance, client sequence) is resolved once: see OperationWatermarks.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -21,11 +22,11 @@
 
 namespace runstone {
 
-/// Where the log stands when a server starts.
+/// The end of the log when a server starts.
 struct LogPosition {
   Epoch epoch = 1;          // of this start, already raised
-  Sequence last = 0;        // last sequence in the log: all of it is durable
-  TimeUs last_time_us = 0;  // of that record; 0 without one
+  Sequence last = 0;        // last sequence in the log; every record of the log is durable
+  TimeUs last_time_us = 0;  // of that record; 0 if the log is empty
 };
 
 struct EditOffer {
@@ -33,7 +34,7 @@ struct EditOffer {
   Cause cause = Cause::player;
   TimeUs submitted_us = 0;
   EditDescriptor edit;
-  Sequence subject = 0;  // as in EditRecord: the edit this one answers; 0: none
+  Sequence subject = 0;  // the edit that this rollback, undo or redo is about; 0: none
 };
 
 /// One commit: the message, the records for the log, and the chunks it touched, ascending.
@@ -47,31 +48,31 @@ class Authority {
  public:
   Authority(const EditLimits& limits, const LogPosition& log);
 
-  // ---- start: before the first offer
   WorldChunks& chunks() { return chunks_; }
   const WorldChunks& chunks() const { return chunks_; }
   OperationWatermarks& resolved() { return resolved_; }
   const OperationWatermarks& resolved() const { return resolved_; }
-  /// A record of the log above the checkpoint: back on the stacks of the chunks it touches. In log order.
+  /// Puts a record of the log above the checkpoint back on the stacks of the chunks it touches.
+  /// Requires log order, before the first submit().
   void replay_onto_stack(const EditRecord& record);
 
-  // ---- edits
-  /// Nothing: queued, and its client sequence is decided. Else why not, which decides it too: busy (if
-  /// `log_has_room` is false) or what check_edit() says, for another cause than player check_server_edit(). An edit decided before is answered as it was then:
-  /// with its refusal, or already_resolved.
+  /// Queues an edit. Returns nullopt if it was queued, otherwise the reason for the rejection.
+  /// Either way the operation is resolved: submitting it again returns the same rejection, or
+  /// already_resolved. An edit of a player must pass check_edit(), any other edit
+  /// check_server_edit(). The reason is busy if `log_has_room` is false.
   std::optional<RejectReason> submit(const EditOffer& offer, bool log_has_room);
-  /// Decides a client sequence without an edit: it was refused for a reason outside the authority's sight.
-  void refuse(const OperationId& op, RejectReason reason) { resolved_.refuse(op, reason); }
+  /// Resolves an operation that was rejected by a check outside of Authority.
+  void reject(const OperationId& op, RejectReason reason) { resolved_.reject(op, reason); }
 
   std::size_t queued() const { return queue_.size(); }
-  /// Orders as many queued edits as one commit message may carry; nothing if none is queued. Call again until
-  /// then. O(per touched chunk: runs + its edits).
+  /// Orders as many queued edits as one commit message may carry. Returns nullopt if none is
+  /// queued; call it until then. Cost: O(runs + edits) for each touched chunk.
   std::optional<OrderedBatch> commit(const Clocks& now);
 
   Epoch epoch() const { return epoch_; }
-  /// The sequence that an edit which was ever accepted has at most.
+  /// Returns an upper bound of the sequences of all edits that were accepted so far.
   Sequence sequence_bound() const { return head_ + queue_.size(); }
-  /// Last sequence ordered.
+  /// Returns the last sequence ordered.
   Sequence head() const { return head_; }
 
  private:

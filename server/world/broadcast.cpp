@@ -21,8 +21,8 @@ std::vector<PlayerRow> unsaved_players_of(WorldState& world,
   return players;
 }
 
-/// Adds ascending sessions to ascending ones. Chunks in one place mostly have the same subscribers: those cost a
-/// comparison.
+/// Merges `more` into `sessions`; both ascend. Chunks in one place mostly have the same
+/// subscribers, and equal lists cost one comparison.
 void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessions,
                   std::vector<SessionId>& scratch) {
   RUNSTONE_DASSERT(std::ranges::is_sorted(more));
@@ -32,35 +32,36 @@ void add_sessions(std::span<const SessionId> more, std::vector<SessionId>& sessi
   sessions.swap(scratch);
 }
 
-/// Ascending. Also notes whose edits these are.
+/// Returns the receivers of a commit, ascending. Sessions of its authors now await durability up to
+/// it.
 std::vector<SessionId> receivers_of(WorldState& world, const OrderedBatch& batch) {
   std::set<std::pair<AuthorId, ClientInstance>> authors;
   for (const OrderedEdit& edit : batch.commit.edits)
     authors.emplace(edit.op.author, edit.op.instance);
-  std::vector<SessionId> receivers, own, scratch;
+  std::vector<SessionId> receivers, author_sessions, scratch;
   for (const ChunkKey& key : batch.touched)
     add_sessions(world.interest.subscribers(key), receivers, scratch);
   for (auto& [id, session] : world.sessions) {
     if (session.state == SessionStage::open &&
         authors.contains({session.author, session.instance})) {
-      own.push_back(id);
+      author_sessions.push_back(id);
       session.awaits_durable = world.authority.head();
     }
   }
-  add_sessions(own, receivers, scratch);
+  add_sessions(author_sessions, receivers, scratch);
   return receivers;
 }
 
-/// The commit did not fit. The session's chunks become stale; its own edits in it are answered by a small
-/// message, for the client cannot tell from a snapshot that they were applied.
+/// Handles a commit that did not fit the session's queue. The touched chunks become stale for the
+/// session. Each edit of its client gets a small answer, because a snapshot does not show whether
+/// an edit was applied.
 void drop_commit_for(WorldState& world, SessionId session, const OrderedBatch& batch,
                      const Clocks& now) {
   mark_stale(world, session, batch.touched, now);
   const WorldSession& mine = *world.find(session);
-  const OperationId own{mine.author, mine.instance, 0};
   for (std::size_t i = 0; i < batch.commit.edits.size(); ++i) {
     const OrderedEdit& edit = batch.commit.edits[i];
-    if (edit.op.author != own.author || edit.op.instance != own.instance) continue;
+    if (edit.op.author != mine.author || edit.op.instance != mine.instance) continue;
     answer(world, session,
            {edit.op.seq, RejectReason::already_resolved,
             "applied; its commit did not fit the queue", batch.commit.first + i});
@@ -76,24 +77,24 @@ void commit_and_broadcast(WorldState& world, const Clocks& now) {
     world.counters.commit_bytes += encoded.bytes->size();
     world.counters.edits_ordered += batch->records.size();
     std::vector<PlayerRow> players = unsaved_players_of(world, batch->records);
-    world.ports.log_append(std::move(players), std::move(batch->records));
+    world.environment.log_append(std::move(players), std::move(batch->records));
     const std::vector<SessionId> receivers = receivers_of(world, *batch);
-    const std::vector<SessionId> full = world.ports.send_to_all(receivers, encoded);
+    const std::vector<SessionId> full = world.environment.send_to_all(receivers, encoded);
     world.counters.commits_sent += receivers.size() - full.size();
     world.counters.queue_full += full.size();
     for (const SessionId session : full) drop_commit_for(world, session, *batch, now);
     for (const ChunkKey& key : batch->touched) {
-      if (world.authority.chunks().stack_size(key) > world.config.restack_load_edits)
-        ask_load(world, key);
+      if (world.authority.chunks().stack_size(key) > world.config.stack_load_edits)
+        request_load(world, key);
     }
   }
 }
 
-void tell_durable_to_authors(WorldState& world) {
+void send_durable_to_authors(WorldState& world) {
   const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
   for (const SessionId session : world.open_sessions()) {
     const WorldSession& mine = *world.find(session);
-    if (mine.durable_told < mine.awaits_durable) tell_durable(world, session, encoded);
+    if (mine.durable_sent < mine.awaits_durable) send_durable(world, session, encoded);
   }
 }
 
@@ -101,7 +102,7 @@ void broadcast_durable(WorldState& world, const Clocks& now) {
   if (now.steady_us - world.durable_us < world.config.durable_interval_us) return;
   world.durable_us = now.steady_us;
   const EncodedMessage encoded = encode_message(Durable{world.authority.epoch(), world.durable});
-  for (const SessionId session : world.open_sessions()) tell_durable(world, session, encoded);
+  for (const SessionId session : world.open_sessions()) send_durable(world, session, encoded);
 }
 
 }  // namespace runstone

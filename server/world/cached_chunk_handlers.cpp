@@ -7,19 +7,21 @@
 namespace runstone {
 namespace {
 
-/// Whether the edits behind a claim can be read: they are on disk, and it names a place that this log may have.
-bool may_lack_edits(const WorldState& world, const HeldChunk& claim, const Version& version) {
+/// Returns true if the log may hold the edits that the copy lacks: they are on disk, and the
+/// claimed version precedes the chunk's.
+bool can_read_missing_edits(const WorldState& world, const HeldChunk& claim,
+                            const Version& version) {
   return claim.version.seq < version.seq && claim.version.epoch <= version.epoch &&
          version.seq <= world.durable;
 }
 
 }  // namespace
 
-void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& held) {
+void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& cached) {
   WorldSession& mine = *world.find(session);
-  if (mine.visit) return;  // it looks at the past: nothing of the live world is due
+  if (mine.history) return;  // a session in the past gets nothing of the live world
   const SessionInterest& interest = *world.interest.find(session);
-  for (const HeldChunk& chunk : held.chunks) {
+  for (const HeldChunk& chunk : cached.chunks) {
     const auto state = interest.state(chunk.key);
     const bool is_answered =
         state && *state != ChunkInterest::wanted && *state != ChunkInterest::waiting;
@@ -30,44 +32,45 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   }
 }
 
-HeldAnswer answer_held(WorldState& world, SessionId session, const ChunkKey& key,
-                       const ChunkPtr& chunk) {
+ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& key,
+                         const ChunkPtr& chunk) {
   WorldSession& mine = *world.find(session);
   const HeldChunk* claim = mine.claims.find(key);
-  if (claim == nullptr) return HeldAnswer::none;
+  if (claim == nullptr) return ClaimAnswer::none;
   if (claim->version == chunk->version) {
     const bool is_same = claim->digest == claim_digest(chunk->digest);
     mine.claims.drop(key);
     if (is_same) {
-      mine.same_due.push_back({key, chunk->version.seq});
-      ++world.counters.same_sent;
-      return HeldAnswer::queued;
+      mine.not_modified_due.push_back({key, chunk->version.seq});
+      ++world.counters.not_modified_sent;
+      return ClaimAnswer::queued;
     }
     ++world.counters.claims_drifted;
-    world.ports.log(WorldLogLevel::warn,
-                    "session=" + std::to_string(session) + " chunk=" + text_of(key) +
-                        " is held with other voxels at the same version: sent anew");
-    return HeldAnswer::none;
+    world.environment.log(
+        WorldLogLevel::warn,
+        "session=" + std::to_string(session) + " chunk=" + text_of(key) +
+            " differs in the client's cache at the same version: sending a snapshot");
+    return ClaimAnswer::none;
   }
-  if (!may_lack_edits(world, *claim, chunk->version)) {
+  if (!can_read_missing_edits(world, *claim, chunk->version)) {
     mine.claims.drop(key);
-    return HeldAnswer::none;
+    return ClaimAnswer::none;
   }
-  if (!world.ports.send_update(session, key, chunk, claim->version)) return HeldAnswer::full;
+  if (!world.environment.send_update(session, key, chunk, claim->version)) return ClaimAnswer::full;
   mine.claims.drop(key);
   ++world.counters.updates_sent;
-  return HeldAnswer::queued;
+  return ClaimAnswer::queued;
 }
 
-bool send_same(WorldState& world, SessionId session, bool is_more) {
+bool send_not_modified(WorldState& world, SessionId session, bool is_more) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return true;
-  std::vector<SameChunk>& due = mine->same_due;
+  std::vector<SameChunk>& due = mine->not_modified_due;
   while (due.size() >= (is_more ? kSameChunksMax : 1)) {
     const std::size_t count = std::min(due.size(), kSameChunksMax);
     const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
     ChunksNotModified same{{due.begin(), end}};
-    // A chunk that left the view and came back may be due twice: the newer version counts.
+    // A chunk that left the view and came back may be due twice. The newer version is sent.
     const auto newest_first = [](const SameChunk& a, const SameChunk& b) {
       return a.key != b.key ? a.key < b.key : a.seq > b.seq;
     };
@@ -75,7 +78,7 @@ bool send_same(WorldState& world, SessionId session, bool is_more) {
     const auto one_key = [](const SameChunk& a, const SameChunk& b) { return a.key == b.key; };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key),
                       same.chunks.end());
-    if (!world.ports.send(session, encode_message(same))) {
+    if (!world.environment.send(session, encode_message(same))) {
       ++world.counters.queue_full;
       return false;
     }

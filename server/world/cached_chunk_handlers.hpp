@@ -1,26 +1,31 @@
-// Held steps: a session says which chunks it holds, and is told instead of a snapshot that one is the same, or which
-// edits it lacks. A claim waits until its chunk's turn comes. Then, in the step that subscribes the session, the chunk's
-// version V of that moment decides, and whatever is sent means V: a snapshot at V, "the same" if the copy is at V, or the
-// edits that lead from the copy to V. Commits behind V go to the session from that step on, so none is lost
-// between, whichever form a worker finds shorter later.
+// Cached chunk handlers: a client claims copies of chunks, and the server answers a claim with less
+// than a snapshot where it can. A claim waits until its chunk is about to be sent. The answer is
+// made in the call that subscribes the session, from the chunk's version V at that time. It is one
+// of:
+//   - "not modified", if the copy is at V;
+//   - the edits that lead from the copy to V;
+//   - a snapshot at V.
+// From that call on, every commit behind V goes to the session, so no commit is lost, even if a
+// worker chooses between edits and snapshot later.
 #pragma once
 #include "server/world/world_state.hpp"
 
 namespace runstone {
 
-/// Takes the claims of chunks that have not been answered; a session with more than kHeldClaimsMax of them is closed
-/// (flooding).
-void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& held);
-/// The answer to a claim of this chunk, if there is one that serves. Requires a chunk.
-enum class HeldAnswer {
-  none,    // no claim, or it does not serve: send a snapshot
-  queued,  // the session is answered
-  full,    // its queue is
+/// Stores the claims of chunks that were not sent yet. Closes the session (flooding) if it has more
+/// than kHeldClaimsMax claims.
+void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& cached);
+
+enum class ClaimAnswer {
+  none,    // there is no claim, or it is of no use: send a snapshot
+  queued,  // an answer is queued
+  full,    // the session's queue is full
 };
-HeldAnswer answer_held(WorldState& world, SessionId session, const ChunkKey& key,
-                       const ChunkPtr& chunk);
-/// Sends what is due of "the same": all of it, or, while more is to come (`is_more`), only a full message. False: the
-/// session's queue is full, and the rest stays due.
-bool send_same(WorldState& world, SessionId session, bool is_more);
+/// Answers the session's claim of this chunk, if there is one. Requires a chunk.
+ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& key,
+                         const ChunkPtr& chunk);
+/// Sends the "not modified" answers that are due. While more may follow (`is_more`), it sends only
+/// full messages. Returns false if the session's queue is full; the rest stays due.
+bool send_not_modified(WorldState& world, SessionId session, bool is_more);
 
 }  // namespace runstone

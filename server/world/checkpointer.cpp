@@ -30,7 +30,7 @@ void Checkpointer::next_slice() {
 }
 
 void Checkpointer::step(Authority& authority, Sequence durable, const Clocks& now,
-                        WorldEnvironment& ports, std::vector<ChunkKey>& to_load) {
+                        WorldEnvironment& environment, std::vector<ChunkKey>& to_load) {
   if (!last_round_us_) last_round_us_ = now.steady_us;
   if (in_flight_) return;
   WorldChunks& chunks = authority.chunks();
@@ -68,7 +68,7 @@ void Checkpointer::step(Authority& authority, Sequence durable, const Clocks& no
   }
   in_flight_ = InFlight{{}, checkpoint};
   for (const auto& [key, chunk] : r.captured) in_flight_->chunks.emplace_back(key, chunk->version);
-  ports.save_snapshots(std::move(r.captured), checkpoint);
+  environment.save_snapshots(std::move(r.captured), checkpoint);
   if (is_last) {
     round_.reset();
   } else {

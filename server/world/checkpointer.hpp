@@ -1,10 +1,13 @@
-// Checkpointer: writes changed chunks as snapshots and moves the checkpoint, in rounds.
-// A round takes the head sequence T and the chunks that are dirty then. In slices it captures each chunk's
-// published voxels (loading first those that are not in memory: their stacks need a base), waits until the
-// log is durable up to what it captured, and hands them over. Capturing once, instead of taking the newest
-// when durable, lets a round end while edits keep coming. With its last slice the checkpoint becomes T, or
-// stays below the first edit that only the log has because its chunk is quarantined. One thread (the world
-// strand).
+// Checkpointer: writes changed chunks as snapshots and moves the checkpoint, in rounds. A round
+// covers the chunks that are dirty when it begins, at head sequence T. It handles them in slices:
+//   1. It captures each chunk's published voxels. Chunks that are not in memory are loaded first,
+//      because their edit stacks need a base.
+//   2. It waits until the log is durable up to the newest captured version.
+//   3. It hands the captured chunks to the log writer.
+// A chunk is captured once, not again when its log is durable, so a round ends while edits keep
+// coming. With the last slice the checkpoint becomes T. It stays below the first edit that only the
+// log has because its chunk is quarantined.
+// Thread: the world strand.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,46 +20,49 @@
 namespace runstone {
 
 struct SnapshotPolicy {
-  std::uint64_t edits_max =
-      20'000;  // ordered since the last round began: bounds what a start has to replay_onto_stack
-  TimeUs interval_us = 30'000'000;  // at the latest, if anything was ordered
-  std::size_t slice_chunks = 128;   // captured, loaded and written at a time
+  // A round begins after so many edits, which bounds the edits that a start replays,
+  std::uint64_t edits_max = 20'000;
+  // or after this time, if anything was ordered.
+  TimeUs interval_us = 30'000'000;
+  std::size_t slice_chunks = 128;  // captured, loaded and written at a time
 };
 
 class Checkpointer {
  public:
   Checkpointer(const SnapshotPolicy& policy, Sequence checkpoint);
 
-  /// Goes on as far as it can; called on each tick, load, durable and saved. `ask_load` is called for chunks
-  /// that are absent; it must end in WorldChunks::loaded() or quarantine().
-  template <class AskLoad>
-  void step(Authority& authority, Sequence durable, const Clocks& now, WorldEnvironment& ports,
-            AskLoad&& ask_load) {
+  /// Advances the round as far as possible. Call it on each tick and after each load, durable
+  /// watermark and saved slice. Calls `request_load` for absent chunks; each load must end in
+  /// WorldChunks::loaded() or quarantine().
+  template <class RequestLoad>
+  void step(Authority& authority, Sequence durable, const Clocks& now,
+            WorldEnvironment& environment, RequestLoad&& request_load) {
     std::vector<ChunkKey> to_load;
-    step(authority, durable, now, ports, to_load);
-    for (const ChunkKey& key : to_load) ask_load(key);
+    step(authority, durable, now, environment, to_load);
+    for (const ChunkKey& key : to_load) request_load(key);
   }
-  /// The slice handed over last is on disk.
+  /// Reports that the slice handed over last is on disk.
   void saved(WorldChunks& chunks);
 
-  /// From now on rounds follow each other until nothing is dirty: the server stops.
+  /// Runs one round after the other from now on, until no chunk is dirty. For a server that stops.
   void finish() { finishing_ = true; }
-  /// Everything ordered is contained in snapshots, but for quarantined chunks.
+  /// Returns true if every ordered edit is contained in snapshots, except those of quarantined
+  /// chunks.
   bool is_clean(const Authority& authority) const;
 
   Sequence checkpoint() const { return checkpoint_; }
   std::uint64_t rounds() const { return rounds_; }
 
  private:
-  void step(Authority& authority, Sequence durable, const Clocks& now, WorldEnvironment& ports,
-            std::vector<ChunkKey>& to_load);
+  void step(Authority& authority, Sequence durable, const Clocks& now,
+            WorldEnvironment& environment, std::vector<ChunkKey>& to_load);
   bool is_due(const Authority& authority, const Clocks& now) const;
 
   struct Round {
     Sequence target = 0;
     std::vector<ChunkKey> keys;
     std::size_t next = 0;           // first key after the slice
-    std::vector<ChunkKey> missing;  // of the slice, not captured yet
+    std::vector<ChunkKey> missing;  // chunks of the slice that are not captured yet
     std::vector<std::pair<ChunkKey, ChunkPtr>> captured;
   };
   void next_slice();

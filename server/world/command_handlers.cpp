@@ -32,7 +32,7 @@ void on_command(WorldState& world, SessionId session, const CommandRequest& requ
                       false);
   }
   mine.command = request.id;
-  world.ports.command(session, mine.author, mine.key, request.text);
+  world.environment.command(session, mine.author, mine.key, request.text);
 }
 
 void send_command_output(WorldState& world, SessionId session,

@@ -1,5 +1,5 @@
-// Command steps: a client's command on its way through the world strand. Who carries it out stands behind the
-// ports; here it is made sure that a client has one command under way, and not too many a second.
+// Command handlers: accept a client's command and send its output. WorldEnvironment carries it out.
+// A client has at most one command under way and may give kCommandsPerSecond a second.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,10 +9,12 @@
 
 namespace runstone {
 
+/// Carries out the command, or rejects it with a line of output.
 void on_command(WorldState& world, SessionId session, const CommandRequest& request,
                 const Clocks& now);
 
-/// Output of the session's command under way; the last one is done. Nothing if the session is gone or has none.
+/// Sends output of the session's command under way. `is_done` ends the command. Does nothing if the
+/// session is closed or has no command under way.
 void send_command_output(WorldState& world, SessionId session,
                          const std::vector<std::string>& lines, bool is_done, bool is_ok);
 

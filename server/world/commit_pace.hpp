@@ -1,10 +1,12 @@
-// CommitPace: when the edits that wait become a commit. Alone or in small company at once: an edit waits for nobody. In
-// a crowd each commit is a send call per receiver, and a thousand receivers times a hundred commits a second are more
-// calls than two cores can make; so while sending commits takes more than half of one core, edits gather, up to
-// kGatherUsMax. Terrain does not count: it never delays a commit.
-// How: time to send with comes back at half of the clock's; what sending took is drawn from it, and what it will take
-// for receivers that have a commit and whose turn to send has not come; a commit waits until nothing is owed. Pure:
-// times are arguments (microseconds of a steady clock). One thread.
+// CommitPace: computes when queued edits become a commit. With few players an edit never waits.
+// With many players each commit costs one send call per receiver, and a thousand receivers times a
+// hundred commits a second are more calls than two cores can make. So while sending commits takes
+// more than half of one core, edits gather for up to kGatherUsMax. Sending terrain does not count
+// and never delays a commit.
+// Method: a balance of time grows with the clock. A microsecond of sending costs kPerSendingUs of
+// it. Calls that are still to be made for queued commits are estimated and cost the same. A commit
+// waits until the balance is not negative.
+// Pure: times are arguments (microseconds of one steady clock). One thread.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -13,29 +15,32 @@
 
 namespace runstone {
 
-/// What sending commits costs, all sessions together.
+/// The cost of sending commits, all sessions together.
 struct CommitSending {
   TimeUs spent_us = 0;      // since the start; never decreases
-  std::uint64_t calls = 0;  // that took it
-  std::uint64_t due = 0;    // calls still to be made for commits that are queued
+  std::uint64_t calls = 0;  // made in that time
+  std::uint64_t due = 0;    // still to be made for queued commits
 };
 
 class CommitPace {
  public:
-  static constexpr TimeUs kGatherUsMax = 25'000;  // no edit waits longer for others
-  static constexpr TimeUs kSavedUsMax =
-      5'000;  // sending time saved up in calm moments, for a burst
-  static constexpr TimeUs kPerSendingUs =
-      2;  // half a core: two microseconds pay for one of sending
-  static constexpr TimeUs kCallUsFirst = 10;  // what a call is taken to cost before one was made
+  /// No edit waits longer for others.
+  static constexpr TimeUs kGatherUsMax = 25'000;
+  /// Sending time that may be saved for a burst.
+  static constexpr TimeUs kSavedUsMax = 5'000;
+  /// Two microseconds of the clock pay for one of sending: half a core.
+  static constexpr TimeUs kPerSendingUs = 2;
+  /// The assumed cost of a call before the first one.
+  static constexpr TimeUs kCallUsFirst = 10;
 
-  /// An edit has come and none waited: when to commit, `now_us` at the earliest and kGatherUsMax later at the latest.
+  /// Returns the time of the next commit, between `now_us` and `now_us` + kGatherUsMax. Call it
+  /// when an edit is queued and no commit is scheduled.
   TimeUs due(TimeUs now_us, const CommitSending& sending) {
     const TimeUs passed = std::max<TimeUs>(now_us - last_us_, 0);
     const TimeUs spent = sending.spent_us - last_spent_us_;
     last_us_ = std::max(last_us_, now_us);
     last_spent_us_ = sending.spent_us;
-    // Debt is bounded too: after a stall the next commits gather for a while, not for ever.
+    // The debt is bounded, so that after a stall commits are delayed for a short time only.
     saved_ =
         std::clamp(saved_ + passed - kPerSendingUs * spent, -kDebtMax, kPerSendingUs * kSavedUsMax);
     const TimeUs call_us = sending.calls == 0
@@ -48,7 +53,7 @@ class CommitPace {
  private:
   static constexpr TimeUs kDebtMax = 4 * kGatherUsMax;
   TimeUs last_us_ = 0, last_spent_us_ = 0;
-  TimeUs saved_ = 0;  // microseconds of the clock; negative: owed
+  TimeUs saved_ = 0;  // the balance, in microseconds of the clock; negative: debt
 };
 
 }  // namespace runstone

@@ -13,26 +13,27 @@ bool is_stalled(const WorldState& world, const WorldSession& session, const Cloc
   return session.stalled_us && now.steady_us - *session.stalled_us < world.config.retry_interval_us;
 }
 
-/// The session's queue is full: the chunk has to wait for room.
+/// Leaves the chunk wanted because the session's queue is full.
 void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Clocks& now) {
   ++world.counters.queue_full;
   world.find(session)->stalled_us = now.steady_us;
   world.interest.set_state(session, key, ChunkInterest::wanted);
 }
 
-/// Sends what stands before the session's next chunk. False: its queue is full.
-bool send_moment(WorldState& world, SessionId session, const Clocks& now) {
+/// Sends the history states that must precede the session's next chunk. Returns false if its queue
+/// is full.
+bool send_history_states(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  // What was said of the live world comes before the past begins.
-  const bool turns = mine.begins_due || mine.word_due;
-  if (turns && !send_same(world, session, false)) {
+  if (!mine.history_start_due && !mine.history_report_due) return true;
+  // Answers about the live world precede the state that ends it.
+  if (!send_not_modified(world, session, false)) {
     mine.stalled_us = now.steady_us;
     return false;
   }
-  if (turns && !send_uniform(world, session, now)) return false;
-  for (std::optional<HistoryState>* due : {&mine.begins_due, &mine.word_due}) {
+  if (!send_uniform(world, session, now)) return false;
+  for (std::optional<HistoryState>* due : {&mine.history_start_due, &mine.history_report_due}) {
     if (!*due) continue;
-    if (!world.ports.send(session, encode_message(**due))) {
+    if (!world.environment.send(session, encode_message(**due))) {
       ++world.counters.queue_full;
       mine.stalled_us = now.steady_us;
       return false;
@@ -42,23 +43,23 @@ bool send_moment(WorldState& world, SessionId session, const Clocks& now) {
   return true;
 }
 
-/// Counts a chunk of one material as sent; it goes with others. False: too many wait already.
-bool gather_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
-                    const Clocks& now) {
+/// Queues a chunk of one material to be sent together with others. Returns false if too many wait.
+bool queue_uniform(WorldState& world, SessionId session, const ChunkKey& key, const Chunk& chunk,
+                   const Clocks& now) {
   WorldSession& mine = *world.find(session);
   const bool is_full =
       mine.uniform.size() >= kUniformWaitingMax && !send_uniform(world, session, now);
   if (is_full) return false;
   mine.uniform.push_back({key, material_at(chunk.voxels, {0, 0, 0}), chunk.version});
-  if (mine.uniform.size() >= kUniformGathered) send_uniform(world, session, now);
+  if (mine.uniform.size() >= kUniformPerMessage) send_uniform(world, session, now);
   return true;
 }
 
-/// Gathered chunks wait only while more may come soon.
+/// Sends the uniform chunks that are due unless loads under way may soon add more.
 void send_uniform_if_last(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   const bool more_come = world.interest.find(session)->count(ChunkInterest::waiting) > 0 ||
-                         (mine.visit && mine.visit->loading > 0);
+                         (mine.history && mine.history->loading > 0);
   if (!more_come) send_uniform(world, session, now);
 }
 
@@ -68,7 +69,7 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (mine.uniform.empty()) return true;
   if (is_stalled(world, mine, now)) return false;
-  // A chunk that was gathered twice goes at its newer version.
+  // A chunk that is due twice is sent at its newer version.
   const auto before = [](const UniformChunk& a, const UniformChunk& b) {
     return a.key != b.key ? is_before_in_list(a.key.at, b.key.at) : b.version < a.version;
   };
@@ -77,7 +78,7 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   std::sort(message.chunks.begin(), message.chunks.end(), before);
   message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same),
                        message.chunks.end());
-  if (!world.ports.send(session, encode_message(message))) {
+  if (!world.environment.send(session, encode_message(message))) {
     ++world.counters.queue_full;
     mine.stalled_us = now.steady_us;
     return false;
@@ -92,14 +93,14 @@ void forget_unsent(WorldState& world, SessionId session) {
   const View& view = *world.interest.find(session)->view();
   std::erase_if(mine.uniform,
                 [&](const UniformChunk& chunk) { return !view.contains(chunk.key.at); });
-  world.ports.forget_outside(session, view);
+  world.environment.forget_outside(session, view);
 }
 
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
                   ChunkInterest then, const Clocks& now) {
   if (chunk == nullptr) {
     const ChunkUnavailable unavailable{{key}, UnavailableReason::damaged};
-    if (!world.ports.send(session, encode_message(unavailable))) {
+    if (!world.environment.send(session, encode_message(unavailable))) {
       put_off(world, session, key, now);
       return false;
     }
@@ -107,18 +108,18 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
     ++world.counters.unavailable_sent;
     return true;
   }
-  const HeldAnswer held = then == ChunkInterest::subscribed
-                              ? answer_held(world, session, key, chunk)
-                              : HeldAnswer::none;
-  if (held == HeldAnswer::queued) {
+  const ClaimAnswer held = then == ChunkInterest::subscribed
+                               ? answer_claim(world, session, key, chunk)
+                               : ClaimAnswer::none;
+  if (held == ClaimAnswer::queued) {
     world.interest.set_state(session, key, then);
     return true;
   }
   const auto send = [&] {
-    return chunk->voxels.is_uniform() ? gather_uniform(world, session, key, *chunk, now)
-                                      : world.ports.send_snapshot(session, key, chunk);
+    return chunk->voxels.is_uniform() ? queue_uniform(world, session, key, *chunk, now)
+                                      : world.environment.send_snapshot(session, key, chunk);
   };
-  if (held == HeldAnswer::full || !send()) {
+  if (held == ClaimAnswer::full || !send()) {
     put_off(world, session, key, now);
     return false;
   }
@@ -127,17 +128,18 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
   return true;
 }
 
-void ask_load(WorldState& world, const ChunkKey& key) {
+void request_load(WorldState& world, const ChunkKey& key) {
   if (world.authority.chunks().residency(key) != Residency::absent) return;
-  world.loads.ask_own(key);
+  world.loads.request_for_world(key);
   start_loads(world);
 }
 
 void start_loads(WorldState& world) {
   while (const auto key = world.loads.next()) {
-    if (!world.authority.chunks().begin_load(*key)) continue;  // another lane's turn came first
-    world.loads.began();
-    world.ports.load_chunk(*key);
+    // Another session may have requested the same chunk before.
+    if (!world.authority.chunks().begin_load(*key)) continue;
+    world.loads.load_started();
+    world.environment.load_chunk(*key);
   }
 }
 
@@ -145,9 +147,9 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionStage::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
-  if (!send_moment(world, session, now)) return;
-  if (mine->visit) {
-    deliver_past(world, session, now);
+  if (!send_history_states(world, session, now)) return;
+  if (mine->history) {
+    deliver_history(world, session, now);
     return send_uniform_if_last(world, session, now);
   }
   WorldChunks& chunks = world.authority.chunks();
@@ -161,12 +163,12 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
       if (!answer_chunk(world, session, *key, chunk, ChunkInterest::subscribed, now)) break;
     } else {
       world.interest.set_state(session, *key, ChunkInterest::waiting);
-      if (residency == Residency::absent) world.loads.ask(session, *key);
+      if (residency == Residency::absent) world.loads.request(session, *key);
     }
   }
   const bool is_more =
       world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
-  send_same(world, session, is_more);
+  send_not_modified(world, session, is_more);
   send_uniform_if_last(world, session, now);
   start_loads(world);
 }
@@ -174,7 +176,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now) {
   const ChunkPtr chunk = world.authority.chunks().find(key);
   for (const SessionId session : world.interest.waiting(key)) {
-    world.loads.take_back(session, key);  // another lane's turn came first
+    world.loads.cancel(session, key);  // the load was requested by another session too
     if (is_stalled(world, *world.find(session), now)) {
       world.interest.set_state(session, key, ChunkInterest::wanted);
     } else {

@@ -1,5 +1,5 @@
-// Delivery: chunks on their way to sessions. Subscribing and taking the snapshot's version are one step here,
-// so whatever commit comes after the snapshot reaches the session.
+// Delivery: sends chunks to sessions. A session is subscribed in the same call that takes the
+// snapshot's version, so every commit after the snapshot reaches the session.
 #pragma once
 #include <string>
 
@@ -7,28 +7,30 @@
 
 namespace runstone {
 
-/// Sends the session's nearest wanted chunks: those in memory at once, the others after a load. Stops when
-/// its queue is full or it waits for enough loads.
+/// Sends the session's wanted chunks, nearest first: chunks in memory at once, the others after a
+/// load. Stops when the session's queue is full or it waits for loads_per_session_max loads.
 void deliver(WorldState& world, SessionId session, const Clocks& now);
-/// Sends the uniform chunks that were gathered for the session. False: its queue is full, and they go on waiting.
+/// Sends the uniform chunks that are due for the session, in one message. Returns false if its
+/// queue is full; the chunks stay due.
 bool send_uniform(WorldState& world, SessionId session, const Clocks& now);
-/// What left the session's view and was not sent yet need not be.
+/// Drops chunks that are queued for the session and lie outside of its view.
 void forget_unsent(WorldState& world, SessionId session);
-/// Queues the snapshot of a wanted chunk, which gets the state `then`; without a chunk, the word that there is none. False:
-/// the session's queue is full, and the chunk stays wanted.
+/// Queues a wanted chunk for the session and moves it to the state `then`. Sends "chunk
+/// unavailable" if `chunk` is null. Returns false if the session's queue is full; the chunk stays
+/// wanted.
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
                   ChunkInterest then, const Clocks& now);
-/// The world itself needs a chunk: queues its load unless it is here, on its way or quarantined.
-void ask_load(WorldState& world, const ChunkKey& key);
-/// Hands queued loads to the port, as many as may be under way.
+/// Queues a load that the world itself needs. Does nothing unless the chunk is absent.
+void request_load(WorldState& world, const ChunkKey& key);
+/// Starts queued loads, up to loads_in_flight_max.
 void start_loads(WorldState& world);
-/// A load ended: whoever waits gets the chunk, or the word that it is unavailable.
+/// Sends a loaded chunk, or "chunk unavailable", to the sessions that wait for it.
 void deliver_loaded(WorldState& world, const ChunkKey& key, const Clocks& now);
-/// A commit did not fit the session's queue: these chunks are stale for it, are unsubscribed and will be sent
-/// again as snapshots once the queue has room.
+/// Marks chunks as stale for a session because a commit did not fit its queue. The session is
+/// unsubscribed from them and gets them again as snapshots when its queue has room.
 void mark_stale(WorldState& world, SessionId session, std::span<const ChunkKey> keys,
                 const Clocks& now);
-/// Hands chunks that lost their last user to eviction.
+/// Makes chunks that lost their last user candidates for eviction.
 void collect_released(WorldState& world);
 
 }  // namespace runstone

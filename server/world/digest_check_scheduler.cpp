@@ -9,42 +9,43 @@
 namespace runstone {
 namespace {
 
-void send_audit(WorldState& world, SessionId session) {
-  DigestCheck audit;
+void send_digest_check(WorldState& world, SessionId session) {
+  DigestCheck check;
   std::set<ChunkKey> seen;
-  while (audit.entries.size() < world.config.audit_chunks) {
-    const auto key = world.interest.next_for_audit(session);
+  while (check.entries.size() < world.config.digest_check_chunks) {
+    const auto key = world.interest.next_for_digest_check(session);
     if (!key || !seen.insert(*key).second) break;
     const ChunkPtr chunk = world.authority.chunks().find(*key);
     if (chunk == nullptr) continue;
     const Digest digest = digest_of(chunk->voxels);
     if (digest != chunk->digest) {
-      ++world.counters.audit_mismatches;
-      world.ports.log(WorldLogLevel::error, "chunk=" + text_of(*key) + " digest of runs " +
-                                                to_hex(digest) + " is not the one kept " +
-                                                to_hex(chunk->digest));
+      ++world.counters.digest_mismatches;
+      world.environment.log(WorldLogLevel::error,
+                            "chunk=" + text_of(*key) + " digest of runs " + to_hex(digest) +
+                                " differs from the stored one " + to_hex(chunk->digest));
     }
-    audit.entries.push_back({*key, chunk->version, digest});
+    check.entries.push_back({*key, chunk->version, digest});
   }
-  if (audit.entries.empty()) return;
-  if (send_or_skip(world, session, encode_message(audit))) ++world.counters.audits_sent;
+  if (check.entries.empty()) return;
+  if (send_or_skip(world, session, encode_message(check))) ++world.counters.digest_checks_sent;
 }
 
 }  // namespace
 
-void give_audit_turns(WorldState& world, const Clocks& now) {
+void send_due_digest_checks(WorldState& world, const Clocks& now) {
   const std::vector<SessionId> open = world.open_sessions();
-  const TimeUs interval = world.config.audit_interval_us;
-  const TimeUs passed = std::min(now.steady_us - world.audits_us, interval);
-  const auto turns = static_cast<TimeUs>(open.size()) * passed / interval;
-  if (turns == 0) return;
-  // What is left of a turn counts next time.
-  world.audits_us = now.steady_us - passed + turns * interval / static_cast<TimeUs>(open.size());
-  const auto next = std::upper_bound(open.begin(), open.end(), world.audit_served);
+  const TimeUs interval = world.config.digest_check_interval_us;
+  const TimeUs passed = std::min(now.steady_us - world.digest_checks_us, interval);
+  const auto count = static_cast<TimeUs>(open.size()) * passed / interval;
+  if (count == 0) return;
+  // The remainder of the division counts on the next tick.
+  world.digest_checks_us =
+      now.steady_us - passed + count * interval / static_cast<TimeUs>(open.size());
+  const auto next = std::upper_bound(open.begin(), open.end(), world.digest_check_last);
   const auto first = static_cast<std::size_t>(next - open.begin());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(turns); ++i) {
-    world.audit_served = open[(first + i) % open.size()];
-    send_audit(world, world.audit_served);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    world.digest_check_last = open[(first + i) % open.size()];
+    send_digest_check(world, world.digest_check_last);
   }
 }
 

@@ -19,10 +19,10 @@ std::optional<RejectReason> check_edit(const EditDescriptor& edit, const EditLim
 
 std::optional<RejectReason> check_server_edit(const EditDescriptor& edit,
                                               const EditLimits& limits) {
-  EditLimits own = limits;
-  own.heights = {};
-  own.volume_max = std::numeric_limits<std::uint64_t>::max();
-  return check_edit(edit, own);
+  EditLimits wider = limits;
+  wider.heights = {};
+  wider.volume_max = std::numeric_limits<std::uint64_t>::max();
+  return check_edit(edit, wider);
 }
 
 std::uint64_t edit_tokens(const EditDescriptor& edit, std::uint16_t chunk_edge) {

@@ -36,7 +36,8 @@ Welcome welcome_of(const WorldState& world) {
   return welcome;
 }
 
-/// Only open sessions count: silent sockets must not keep players out.
+/// Closes the session if the server is full. Only open sessions count, so that sockets which never
+/// authenticate do not keep players out.
 bool close_if_full(WorldState& world, SessionId session) {
   const auto open = static_cast<std::size_t>(
       std::count_if(world.sessions.begin(), world.sessions.end(),
@@ -67,20 +68,20 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.key = hello.key;
   mine.instance = hello.instance;
   mine.name = hello.name;
-  mine.proof_transcript = client_transcript(hello, welcome);
-  mine.durable_told = welcome.durable;
-  mine.state = SessionStage::awaits_proof;
-  world.ports.set_encoding(session, welcome.encoding);
-  world.ports.set_features(session, welcome.features);
+  mine.auth_transcript = client_transcript(hello, welcome);
+  mine.durable_sent = welcome.durable;
+  mine.state = SessionStage::awaits_auth;
+  world.environment.set_encoding(session, welcome.encoding);
+  world.environment.set_features(session, welcome.features);
   send_or_close(world, session, welcome);
 }
 
-void on_client_auth(WorldState& world, SessionId session, const ClientAuth& proof,
+void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  if (!verify(mine.key, mine.proof_transcript, proof.signature)) {
+  if (!verify(mine.key, mine.auth_transcript, auth.signature)) {
     close_session(world, session, GoodbyeReason::not_authenticated,
-                  "the proof does not fit the key");
+                  "the signature does not match the key");
     return;
   }
   for (const auto& [other, theirs] : world.sessions) {
@@ -88,30 +89,30 @@ void on_client_auth(WorldState& world, SessionId session, const ClientAuth& proo
     if (theirs.key != mine.key || theirs.instance != mine.instance) continue;
     close_session(world, other, GoodbyeReason::already_connected,
                   "the same client connected again");
-    break;  // there was one at most; the loop's iterators end here
+    break;  // there is at most one, and closing it invalidates the iterators
   }
   if (close_if_full(world, session)) return;
-  mine.proof_transcript = {};
+  mine.auth_transcript = {};
   mine.state = SessionStage::open;
   mine.author = world.players.enter(mine.key, mine.name);
   if (world.players.is_renamed(mine.author) &&
-      world.ports.log_has_room(world.authority.queued() + 1)) {
-    world.ports.log_append({*world.players.take_unsaved(mine.author)}, {});
+      world.environment.log_has_room(world.authority.queued() + 1)) {
+    world.environment.log_append({*world.players.take_unsaved(mine.author)}, {});
   }
   mine.pose.at = world.config.spawn;
   mine.pose_changed = true;
   mine.edits = TokenBucket(world.config.edits_per_second, world.config.edit_burst);
-  mine.heard_us = now.steady_us;
+  mine.last_message_us = now.steady_us;
   world.interest.open(session);
-  world.ports.opened(session);
+  world.environment.opened(session);
   ++world.counters.sessions_opened;
-  world.ports.log(WorldLogLevel::info, "session=" + std::to_string(session) +
-                                           " open author=" + std::to_string(mine.author) +
-                                           " name=\"" + mine.name + "\"");
-  world.roster_changed = true;
-  const SessionAccepted ready{mine.author,
-                              world.authority.resolved().of(mine.author, mine.instance)};
-  if (send_or_close(world, session, ready)) send_all_poses_to(world, session);
+  world.environment.log(WorldLogLevel::info, "session=" + std::to_string(session) +
+                                                 " open author=" + std::to_string(mine.author) +
+                                                 " name=\"" + mine.name + "\"");
+  world.player_list_changed = true;
+  const SessionAccepted accepted{mine.author,
+                                 world.authority.resolved().of(mine.author, mine.instance)};
+  if (send_or_close(world, session, accepted)) send_all_poses_to(world, session);
 }
 
 }  // namespace runstone

@@ -1,15 +1,17 @@
-// Handshake steps of a session: hello -> welcome, proof -> ready. Nothing of the world flows before ready.
+// Handshake handlers: hello is answered with welcome, client auth with session accepted. The server
+// sends nothing of the world before session accepted.
 #pragma once
 #include "server/world/world_state.hpp"
 
 namespace runstone {
 
-/// Answers with a signed welcome, or closes: wrong_protocol (the text names both versions), server_full.
+/// Sends a signed welcome, or closes the session: wrong_protocol (the text names both versions) or
+/// server_full.
 void on_hello(WorldState& world, SessionId session, const Hello& hello);
-/// Opens the session, or closes it: not_authenticated. An older session of the same key and client instance
-/// is closed (already_connected): the newer one wins, because the older is most often a dead connection that
-/// nobody has noticed yet, and the proof shows that both are the same client.
-void on_client_auth(WorldState& world, SessionId session, const ClientAuth& proof,
+/// Opens the session, or closes it: not_authenticated or server_full. Closes an older session of
+/// the same key and client instance (already_connected). The signature shows that both are the same
+/// client, and the older connection is usually dead without a sign of it.
+void on_client_auth(WorldState& world, SessionId session, const ClientAuth& auth,
                     const Clocks& now);
 
 }  // namespace runstone

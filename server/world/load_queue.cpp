@@ -6,16 +6,16 @@
 
 namespace runstone {
 
-void LoadQueue::ask(SessionId session, const ChunkKey& key) { lanes_[session].push_back(key); }
+void LoadQueue::request(SessionId session, const ChunkKey& key) { lanes_[session].push_back(key); }
 
-void LoadQueue::take_back(SessionId session, const ChunkKey& key) {
+void LoadQueue::cancel(SessionId session, const ChunkKey& key) {
   const auto lane = lanes_.find(session);
   if (lane == lanes_.end()) return;
   std::erase(lane->second, key);
   if (lane->second.empty()) lanes_.erase(lane);
 }
 
-std::vector<ChunkKey> LoadQueue::take_back(SessionId session) {
+std::vector<ChunkKey> LoadQueue::cancel(SessionId session) {
   const auto lane = lanes_.find(session);
   if (lane == lanes_.end()) return {};
   std::vector<ChunkKey> keys(lane->second.begin(), lane->second.end());
@@ -25,21 +25,21 @@ std::vector<ChunkKey> LoadQueue::take_back(SessionId session) {
 
 std::optional<ChunkKey> LoadQueue::next() {
   if (in_flight_ >= in_flight_max_) return std::nullopt;
-  auto lane = served_ ? lanes_.upper_bound(*served_) : lanes_.begin();
-  if (lane == lanes_.end() && own_.empty()) lane = lanes_.begin();
+  auto lane = last_served_ ? lanes_.upper_bound(*last_served_) : lanes_.begin();
+  if (lane == lanes_.end() && world_keys_.empty()) lane = lanes_.begin();
   if (lane == lanes_.end()) {
-    served_.reset();
-    if (own_.empty()) return std::nullopt;
-    return own_.extract(own_.begin()).value();
+    last_served_.reset();
+    if (world_keys_.empty()) return std::nullopt;
+    return world_keys_.extract(world_keys_.begin()).value();
   }
-  served_ = lane->first;
+  last_served_ = lane->first;
   const ChunkKey key = lane->second.front();
   lane->second.pop_front();
   if (lane->second.empty()) lanes_.erase(lane);
   return key;
 }
 
-void LoadQueue::ended() {
+void LoadQueue::load_ended() {
   RUNSTONE_ASSERT(in_flight_ > 0);
   --in_flight_;
 }

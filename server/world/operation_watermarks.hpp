@@ -1,10 +1,13 @@
-// OperationWatermarks: per author and client instance the highest client sequence that was applied or refused.
-// Client sequences of one instance ascend (gaps are allowed), so one number says of any operation whether it
-// was decided. Every refusal is final, or an edit offered again could end up behind a later one. Refusals are
-// remembered with their reason, so that a client whose answer was lost with its connection can ask again; the
-// oldest are forgotten beyond kRefusalsMax an instance, and beyond kRefusalsTotalMax in all those of the
-// instances that were not refused anything for longest. A start fills the marks from the store, which knows
-// applied edits only; refusals count until the server stops.
+// OperationWatermarks: the highest resolved client sequence of each author and client instance. An
+// operation is resolved when its edit was accepted or rejected. Client sequences of one instance
+// ascend (gaps are allowed), so one number tells of any operation whether it is resolved. A
+// rejection is final: if an edit could be accepted later, it could be ordered behind a newer edit
+// of the same client. Rejections are kept with their reasons, so that a client that lost the answer
+// with its connection gets it again. Bounds: kRejectionsMax per instance, the oldest are dropped
+// first; kRejectionsTotalMax in all, the instances whose last rejection is oldest lose theirs
+// first.
+// A start restores the watermarks from the store, which knows accepted edits only. Rejections are
+// lost when the server stops.
 #pragma once
 #include <algorithm>
 #include <list>
@@ -23,68 +26,70 @@ class OperationWatermarks {
     return found == marks_.end() ? 0 : found->second;
   }
   bool knows(const OperationId& op) const { return op.seq <= of(op.author, op.instance); }
-  /// Decides an edit by refusing it.
-  void refuse(const OperationId& op, RejectReason reason) {
+  /// Resolves an operation as rejected.
+  void reject(const OperationId& op, RejectReason reason) {
     raise(op);
-    const auto [mine, is_new] = refusals_.try_emplace({op.author, op.instance});
+    const auto [mine, is_new] = rejections_.try_emplace({op.author, op.instance});
     if (is_new) mine->second.place = by_use_.insert(by_use_.end(), mine->first);
     by_use_.splice(by_use_.end(), by_use_, mine->second.place);
     auto& reasons = mine->second.reasons;
-    refusal_count_ += reasons.insert_or_assign(op.seq, reason).second ? 1 : 0;
-    if (reasons.size() > kRefusalsMax) {
+    rejection_count_ += reasons.insert_or_assign(op.seq, reason).second ? 1 : 0;
+    if (reasons.size() > kRejectionsMax) {
       reasons.erase(reasons.begin());
-      --refusal_count_;
+      --rejection_count_;
     }
-    // The newest instance has kRefusalsMax at most, so this ends before it comes to that one.
-    while (refusal_count_ > kRefusalsTotalMax) forget_refusals(refusals_.find(by_use_.front()));
+    // The newest instance has at most kRejectionsMax, so the loop ends before it reaches that one.
+    while (rejection_count_ > kRejectionsTotalMax)
+      forget_rejections(rejections_.find(by_use_.front()));
   }
-  /// How a decided edit was answered: its refusal, or already_resolved (applied, as far as this run knows).
+  /// Returns the answer to a resolved operation: the reason of its rejection, or already_resolved
+  /// if no rejection is kept.
   RejectReason answer_to(const OperationId& op) const {
-    const auto instance = refusals_.find({op.author, op.instance});
-    if (instance == refusals_.end()) return RejectReason::already_resolved;
+    const auto instance = rejections_.find({op.author, op.instance});
+    if (instance == rejections_.end()) return RejectReason::already_resolved;
     const auto found = instance->second.reasons.find(op.seq);
     return found == instance->second.reasons.end() ? RejectReason::already_resolved : found->second;
   }
-  /// Never lowers a mark.
+  /// Resolves an operation as accepted. Never lowers a watermark.
   void raise(const OperationId& op) {
     ClientSequence& mark = marks_[{op.author, op.instance}];
     mark = std::max(mark, op.seq);
   }
-  /// Nobody will ask for this author again: its number is not given a second time.
+  /// Drops everything about an author whose number is not used any more.
   void forget(AuthorId author) {
     const Instance first{author, 0};
     const auto is_mine = [&](const auto& entry) { return entry.first.first == author; };
-    for (auto at = refusals_.lower_bound(first); at != refusals_.end() && is_mine(*at);) {
-      forget_refusals(at++);
+    for (auto at = rejections_.lower_bound(first); at != rejections_.end() && is_mine(*at);) {
+      forget_rejections(at++);
     }
     auto end = marks_.lower_bound(first);
     while (end != marks_.end() && is_mine(*end)) ++end;
     marks_.erase(marks_.lower_bound(first), end);
   }
 
-  std::size_t refusal_count() const { return refusal_count_; }
+  std::size_t rejection_count() const { return rejection_count_; }
   std::size_t mark_count() const { return marks_.size(); }
 
-  static constexpr std::size_t kRefusalsMax = 1024;
-  static constexpr std::size_t kRefusalsTotalMax = 65'536;
-  static_assert(kRefusalsMax < kRefusalsTotalMax);
+  static constexpr std::size_t kRejectionsMax = 1024;
+  static constexpr std::size_t kRejectionsTotalMax = 65'536;
+  static_assert(kRejectionsMax < kRejectionsTotalMax);
 
  private:
   using Instance = std::pair<AuthorId, ClientInstance>;
-  struct Refusals {
+  struct Rejections {
     std::map<ClientSequence, RejectReason> reasons;
     std::list<Instance>::iterator place;  // in by_use_
   };
-  void forget_refusals(std::map<Instance, Refusals>::iterator of) {
-    refusal_count_ -= of->second.reasons.size();
+  void forget_rejections(std::map<Instance, Rejections>::iterator of) {
+    rejection_count_ -= of->second.reasons.size();
     by_use_.erase(of->second.place);
-    refusals_.erase(of);
+    rejections_.erase(of);
   }
 
   std::map<Instance, ClientSequence> marks_;
-  std::map<Instance, Refusals> refusals_;
-  std::list<Instance> by_use_;  // of refusals_, the one refused last at the end
-  std::size_t refusal_count_ = 0;
+  std::map<Instance, Rejections> rejections_;
+  std::list<Instance> by_use_;  // the keys of rejections_; the last rejection is at the end
+  std::size_t rejection_count_ = 0;
 };
 
 }  // namespace runstone

@@ -1,5 +1,6 @@
-// PlayerRow and HighWater: what world strand and store both know of players: who has an author number, and
-// how far each of their client processes got. Plain values.
+// PlayerRow and HighWater: the values about players that the world strand and the store share.
+// PlayerRow maps an author number to a key and a name. HighWater is the watermark of one client
+// process.
 #pragma once
 #include <string>
 
@@ -14,12 +15,12 @@ struct PlayerRow {
   std::string name;  // last used
 };
 
-/// Highest client sequence decided per client instance; survives compaction of the log.
+/// The highest resolved client sequence of a client instance. It survives compaction of the log.
 struct HighWater {
   AuthorId author = 0;
   ClientInstance instance = 0;
   ClientSequence resolved = 0;
-  TimeUs last_us = 0;  // UTC, of the instance's last record: old instances may be forgotten one day
+  TimeUs last_us = 0;  // UTC, of the instance's last record
 };
 
 }  // namespace runstone

@@ -1,7 +1,8 @@
-// Players: which author a public key is. A key gets the next free author number when it first shows that it
-// owns its secret, but the row is written only with the author's first edit: keys that never edit leave
-// nothing on disk, and nothing in memory once they are gone. Within a run no number is given twice. A name
-// that an author with a row comes back under is written anew: the last one wins.
+// Players: maps public keys to author numbers. A key gets the next free number when it first
+// authenticates. Its row is written with the author's first edit, so a key that never edits leaves
+// nothing on disk, and nothing in memory after its last session. A number is never used twice
+// within a run. If an author with a row joins under another name, the row is written again with
+// that name.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -21,13 +22,13 @@ class Players {
  public:
   static constexpr std::size_t kVisitorsMax = 100;
 
-  /// A row of the store, at the start.
+  /// Adds a row of the store. Call it before the first enter().
   void restore(const PlayerRow& stored) {
     by_key_[stored.key] = stored.author;
     known_[stored.author] = {stored, stored.name};
     next_ = std::max(next_, stored.author + 1);
   }
-  /// The key's author; a new one for a new key. The name replaces the one known.
+  /// Returns the key's author, a new one for a new key, and sets its name.
   AuthorId enter(const PublicKey& key, const std::string& name) {
     const auto found = by_key_.find(key);
     if (found != by_key_.end()) {
@@ -40,7 +41,8 @@ class Players {
     known_[author] = {{author, key, name}, std::nullopt};
     return author;
   }
-  /// Forgets an author that has no row and no session; true if it is forgotten.
+  /// Removes an author that has no row. Returns true if it was removed. Requires that it has no
+  /// session.
   bool forget_unsaved(AuthorId author) {
     const auto found = known_.find(author);
     if (found == known_.end() || found->second.stored_name) return false;
@@ -53,13 +55,14 @@ class Players {
   /// Returns the last kVisitorsMax players of this run that left without an edit, the latest last.
   const std::deque<PlayerRow>& visitors() const { return visitors_; }
   std::size_t count() const { return known_.size(); }
-  /// Whether the store has the author under another name.
+  /// Returns true if the author's row in the store has another name.
   bool is_renamed(AuthorId author) const {
     const auto found = known_.find(author);
     return found != known_.end() && found->second.stored_name &&
            *found->second.stored_name != found->second.row.name;
   }
-  /// The row to be written, at the latest with the author's next record; nothing if the store has it so.
+  /// Returns the author's row if it must be written, at the latest with the author's next record,
+  /// or nullopt if the store has it.
   std::optional<PlayerRow> take_unsaved(AuthorId author) {
     const auto found = known_.find(author);
     if (found == known_.end()) return std::nullopt;
@@ -72,7 +75,7 @@ class Players {
  private:
   struct Known {
     PlayerRow row;
-    std::optional<std::string> stored_name;  // nothing: the store has no row
+    std::optional<std::string> stored_name;  // nullopt: the store has no row
   };
   std::map<PublicKey, AuthorId> by_key_;
   std::map<AuthorId, Known> known_;

@@ -7,7 +7,7 @@
 namespace runstone {
 namespace {
 
-/// Two clients of one player are one line.
+/// Returns the names of the players with open sessions. Two clients of one player are one entry.
 std::map<AuthorId, std::string> names_of(const WorldState& world) {
   std::map<AuthorId, std::string> names;
   for (const auto& [id, session] : world.sessions) {
@@ -16,11 +16,11 @@ std::map<AuthorId, std::string> names_of(const WorldState& world) {
   return names;
 }
 
-PlayerList whole_roster(const std::map<AuthorId, std::string>& names) {
-  PlayerList roster;
-  roster.players.reserve(names.size());
-  for (const auto& [author, name] : names) roster.players.push_back({author, name});
-  return roster;
+PlayerList full_player_list(const std::map<AuthorId, std::string>& names) {
+  PlayerList list;
+  list.players.reserve(names.size());
+  for (const auto& [author, name] : names) list.players.push_back({author, name});
+  return list;
 }
 
 PlayerList change_between(const std::map<AuthorId, std::string>& before,
@@ -39,23 +39,24 @@ PlayerList change_between(const std::map<AuthorId, std::string>& before,
 
 }  // namespace
 
-void broadcast_roster(WorldState& world) {
-  if (!world.roster_changed) return;
-  world.roster_changed = false;
+void broadcast_player_list(WorldState& world) {
+  if (!world.player_list_changed) return;
+  world.player_list_changed = false;
   std::map<AuthorId, std::string> names = names_of(world);
-  const PlayerList change = change_between(world.roster, names);
+  const PlayerList change = change_between(world.sent_player_list, names);
   const bool has_change = !change.players.empty() || !change.left.empty();
   const EncodedMessage encoded_change = encode_message(change);
-  std::optional<EncodedMessage> encoded_whole;  // most of the time nobody needs it
+  std::optional<EncodedMessage> encoded_full;  // made only if a session needs it
   for (const SessionId session : world.open_sessions()) {
     WorldSession& mine = *world.find(session);
-    if (mine.has_roster && !has_change) continue;
-    if (!mine.has_roster && !encoded_whole) encoded_whole = encode_message(whole_roster(names));
-    mine.has_roster =
-        send_or_skip(world, session, mine.has_roster ? encoded_change : *encoded_whole);
-    if (!mine.has_roster) world.roster_changed = true;
+    if (mine.has_player_list && !has_change) continue;
+    if (!mine.has_player_list && !encoded_full)
+      encoded_full = encode_message(full_player_list(names));
+    mine.has_player_list =
+        send_or_skip(world, session, mine.has_player_list ? encoded_change : *encoded_full);
+    if (!mine.has_player_list) world.player_list_changed = true;
   }
-  world.roster = std::move(names);
+  world.sent_player_list = std::move(names);
 }
 
 void broadcast_poses(WorldState& world, const Clocks& now) {
@@ -65,14 +66,14 @@ void broadcast_poses(WorldState& world, const Clocks& now) {
   if (now.steady_us - world.poses_us < interval) return;
   world.poses_us = now.steady_us;
   PlayerPoses poses;
-  const auto next = std::upper_bound(open.begin(), open.end(), world.pose_served);
+  const auto next = std::upper_bound(open.begin(), open.end(), world.pose_sent_last);
   const auto first = static_cast<std::size_t>(next - open.begin());
   for (std::size_t i = 0; i < open.size() && poses.players.size() < kPosesMax; ++i) {
     const SessionId id = open[(first + i) % open.size()];
     WorldSession& session = *world.find(id);
     if (!session.pose_changed) continue;
     session.pose_changed = false;
-    world.pose_served = id;
+    world.pose_sent_last = id;
     poses.players.push_back({session.author, session.pose});
   }
   if (poses.players.empty()) return;

@@ -11,12 +11,13 @@ void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& 
                       const Clocks& now) {
   WorldSession& mine = *world.find(session);
   for (const ChunkKey& key : request.keys) {
-    mine.claims.drop(key);  // what it holds is not what it wants
+    mine.claims.drop(key);  // the client rejects its copy
     const auto state = world.interest.find(session)->state(key);
-    const bool is_settled = state == ChunkInterest::subscribed ||
-                            state == ChunkInterest::unavailable || state == ChunkInterest::recalled;
-    if (is_settled) {
-      if (mine.visit) mine.visit->sent.erase(key);
+    const bool is_answered = state == ChunkInterest::subscribed ||
+                             state == ChunkInterest::unavailable ||
+                             state == ChunkInterest::history_sent;
+    if (is_answered) {
+      if (mine.history) mine.history->sent.erase(key);
       world.interest.set_state(session, key, ChunkInterest::wanted);
       ++world.counters.chunks_requested;
     }
@@ -36,13 +37,13 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
     refusal = world.authority.resolved().answer_to(op);
   } else if (!mine.edits.take(tokens, now.steady_us)) {
     refusal = RejectReason::rate_limited;
-    world.authority.refuse(op, *refusal);
+    world.authority.reject(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
     refusal = RejectReason::out_of_reach;
-    world.authority.refuse(op, *refusal);
+    world.authority.reject(op, *refusal);
   } else {
     const bool has_room =
-        world.accepts_edits && world.ports.log_has_room(world.authority.queued() + 1);
+        world.accepts_edits && world.environment.log_has_room(world.authority.queued() + 1);
     refusal = world.authority.submit({op, Cause::player, request.submitted_us, request.edit, 0},
                                      has_room);
   }

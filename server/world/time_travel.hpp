@@ -1,7 +1,8 @@
-// Time travel: a session looks at its view as it was at an earlier sequence, read-only; the live world goes on and nobody
-// else notices. Its chunks then come from workers (base, keyframe and log), no commit concerns them, and a chunk whose
-// version it has already is not sent again: to scrub costs what changed. A `moment` message stands before the first
-// chunk of each moment, in the class of chunks, so the order tells which moment a chunk belongs to.
+// Time travel: a session sees its view as it was after an earlier edit, read-only. Workers make its
+// chunks from base, keyframes and log. It gets no commits meanwhile; other sessions are not
+// affected. A chunk whose version the session has already is not sent again, so moving in time
+// costs what differs. A history state message precedes the first chunk of each view, in the frame
+// class of chunks, so the order of messages tells to which view a chunk belongs.
 #pragma once
 #include <string>
 
@@ -9,26 +10,30 @@
 
 namespace runstone {
 
-/// The newest wish of a session replaces those before it. Back to the live world at once; to the past when a worker has
-/// opened the moment, of which kMomentsOpeningMax are under way at a time.
-void on_history_request(WorldState& world, SessionId session, const HistoryRequest& travel,
+/// Replaces the session's earlier request, if that is still waiting. A return to the live world
+/// takes effect at once. A request for the past takes effect when a worker has opened it;
+/// kHistoriesOpeningMax are opened at a time.
+void on_history_request(WorldState& world, SessionId session, const HistoryRequest& request,
                         const Clocks& now);
-/// A new tick: wishes that had to wait.
-void open_waiting_moments(WorldState& world);
-/// The port's answer: where the moment lies, or why there is none.
-void on_moment_opened(WorldState& world, SessionId session, std::uint32_t request,
-                      const Result<OpenedMoment, std::string>& opened, const Clocks& now);
-/// The port's answer; null if the chunk cannot be read.
-void on_past_chunk(WorldState& world, SessionId session, std::uint32_t visit, const ChunkKey& key,
-                   const ChunkPtr& chunk, const Clocks& now);
+/// Opens requests that had to wait. Call it on every tick.
+void open_waiting_history(WorldState& world);
+/// Handles the answer to WorldEnvironment::open_history(): the end of the view, or the reason of a
+/// failure.
+void on_history_opened(WorldState& world, SessionId session, std::uint32_t request,
+                       const Result<OpenedHistory, std::string>& opened, const Clocks& now);
+/// Handles the answer to WorldEnvironment::load_history_chunk(). `chunk` is null if it cannot be
+/// read.
+void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view, const ChunkKey& key,
+                      const ChunkPtr& chunk, const Clocks& now);
 
-/// Asks for the session's nearest wanted chunks as they were. Requires a visit.
-void deliver_past(WorldState& world, SessionId session, const Clocks& now);
-/// The session's view has changed: what it may have forgotten is not known.
+/// Loads the session's wanted chunks as they were, nearest first. Requires a history view.
+void deliver_history(WorldState& world, SessionId session, const Clocks& now);
+/// Forgets which chunks of the past the session has. Call it when the session's view changed,
+/// because the client may have dropped chunks.
 void forget_sent(WorldSession& session);
 
-inline constexpr std::size_t kMomentsOpeningMax =
-    2;  // all sessions together: each reads a stretch of the log
-inline constexpr std::size_t kPastChunksLoadingMax = 8;  // per session
+/// All sessions together. Each reads a part of the log.
+inline constexpr std::size_t kHistoriesOpeningMax = 2;
+inline constexpr std::size_t kHistoryChunksLoadingMax = 8;  // per session
 
 }  // namespace runstone

@@ -1,15 +1,17 @@
-// View turns: when a session's view takes effect. A view replaces the last one, so only the newest waits, and
-// a session gets a turn at most every view_interval_us; all sessions together bring in no more than
-// view_chunks_per_tick chunks in one tick (and one view more). So a peer that looks elsewhere a thousand
-// times a second costs the world strand what one that does so twenty times costs, and edits go on in between.
+// View scheduler: decides when a session's view takes effect. Only the newest view of a session
+// waits. A session's view takes effect at most once in view_interval_us, and on one tick the views
+// of all sessions add at most view_chunks_per_tick chunks (the last view may exceed it). So a
+// client that moves its view a thousand times a second costs the world strand no more than one that
+// moves it twenty times.
 #pragma once
 #include "server/world/world_state.hpp"
 
 namespace runstone {
 
-/// Cuts the radii to the server's limit; the view takes effect at once or on a later tick.
+/// Limits the radii to the server's maximum. The view takes effect at once or on a later tick.
 void on_view(WorldState& world, SessionId session, View view, const Clocks& now);
-/// A new tick: views that wait take effect, going round, as far as the tick's chunks reach.
-void give_view_turns(WorldState& world, const Clocks& now);
+/// Applies views that wait, round robin, until the tick's chunks are used up. Call it on every
+/// tick.
+void apply_due_views(WorldState& world, const Clocks& now);
 
 }  // namespace runstone

@@ -9,7 +9,7 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kChunkOverheadBytes = 192;  // entry, control block, vectors: about
+constexpr std::size_t kChunkOverheadBytes = 192;  // estimate: entry, control block, vectors
 
 std::size_t bytes_of(const Chunk& chunk) {
   return chunk.voxels.runs.byte_capacity() + kChunkOverheadBytes;
@@ -54,8 +54,8 @@ Sequence WorldChunks::push(const ChunkKey& key, Version version, const EditDescr
   return previous;
 }
 
-void WorldChunks::settle(const ChunkKey& key, Entry& e, Chunk chunk) {
-  // Edits the loaded chunk already contains lie at the bottom of the stack.
+void WorldChunks::apply_and_publish(const ChunkKey& key, Entry& e, Chunk chunk) {
+  // Edits that the loaded chunk already contains are at the bottom of the stack.
   const auto first_new =
       std::upper_bound(e.stack_seqs.begin(), e.stack_seqs.end(), chunk.version.seq);
   const auto skip = static_cast<std::size_t>(first_new - e.stack_seqs.begin());
@@ -84,7 +84,7 @@ void WorldChunks::publish(const ChunkKey& key) {
   if (e == nullptr || e->residency != Residency::resident || e->stack.empty()) return;
   Chunk copy = *e->published;
   unpublish(*e);
-  settle(key, *e, std::move(copy));
+  apply_and_publish(key, *e, std::move(copy));
 }
 
 Residency WorldChunks::residency(const ChunkKey& key) const {
@@ -129,16 +129,16 @@ std::optional<std::string> WorldChunks::loaded(const ChunkKey& key, Chunk chunk)
   if (e == nullptr || e->residency != Residency::loading) return std::nullopt;
   std::string wrong;
   if (chunk.voxels.extent != Extent::cube(static_cast<unsigned>(edge_))) {
-    wrong = "its sides are not the world's";
+    wrong = "its size differs from the world's chunk edge";
   } else if (chunk.version < e->saved || e->version < chunk.version) {
-    wrong = "it stands at version " + text_of(chunk.version) + ", the world at " +
-            text_of(e->version) + " with a snapshot at " + text_of(e->saved);
+    wrong = "its version is " + text_of(chunk.version) + ", the world's is " + text_of(e->version) +
+            " with a snapshot at " + text_of(e->saved);
   }
   if (!wrong.empty()) {
     quarantine(key);
     return wrong;
   }
-  settle(key, *e, std::move(chunk));
+  apply_and_publish(key, *e, std::move(chunk));
   return std::nullopt;
 }
 
@@ -167,9 +167,11 @@ void WorldChunks::evict(std::size_t bytes_max, std::size_t steps_max,
     idle_.pop_front();
     Entry& e = *entry(key);
     e.is_candidate = false;
-    if (is_used(key)) continue;  // it becomes a candidate again when its last user leaves
+    // A used chunk becomes a candidate again when its last user leaves. A chunk that is not in a
+    // snapshot becomes one at once.
+    if (is_used(key)) continue;
     if (e.version != e.saved) {
-      released(key);  // not yet in a snapshot: look again later
+      released(key);
       continue;
     }
     unpublish(e);

@@ -1,13 +1,13 @@
-// WorldChunks: every chunk the world strand knows: its version, its edit stack and, if it is in memory, its
-// published voxels. Invariants:
-//   - the version is that of the last ordered edit that touches the chunk, whether its voxels are here or
-//   not;
-//   - a resident chunk has an empty stack between commits; an absent one keeps in its stack every edit above
-//   its
-//     saved version, in order;
-//   - a chunk is evicted only when its saved version is its version, so a load finds all of it.
-// Memory: edited chunks keep a small entry for ever (their version); chunks at version (0, 0) leave with
-// their voxels. One thread (the world strand).
+// WorldChunks: every chunk that the world strand knows: its version, its edit stack and, if it is
+// in memory, its published voxels. Invariants:
+//   - The version is that of the last ordered edit that touches the chunk, in memory or not.
+//   - A resident chunk has an empty stack between commits. An absent chunk keeps in its stack every
+//     edit above its saved version, in order.
+//   - A chunk is evicted only when its saved version is its version, so a load finds all of its
+//     edits.
+// Memory: an edited chunk keeps a small entry (its version) until the server stops. A chunk at
+// version (0, 0) is removed with its voxels.
+// Thread: the world strand.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -26,59 +26,64 @@
 
 namespace runstone {
 
-/// absent: not in memory. loading: asked for. resident: published. quarantined: it could not be loaded; its
-/// edits are ordered and logged, but nobody gets it (they are told) and it is never made anew.
-enum class Residency { absent, loading, resident, quarantined };
+enum class Residency {
+  absent,    // not in memory
+  loading,   // a load is under way
+  resident,  // in memory and published
+  // It could not be loaded. Its edits are ordered and logged, but it is sent to nobody and never
+  // regenerated. Sessions get "chunk unavailable".
+  quarantined,
+};
 
 class WorldChunks {
  public:
   explicit WorldChunks(std::int32_t edge) : edge_(edge) {}
 
-  // ---- start
-  /// Says at which version a chunk's snapshot stands. Before any replay_onto_stack().
+  /// Sets the version of a chunk's snapshot. Requires that no replay_onto_stack() came before.
   void set_saved(const ChunkKey& key, Version version);
-  /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot has it. In log order.
+  /// Puts a logged edit back on the stack of a chunk it touches, unless the snapshot contains it.
+  /// Requires log order.
   void replay_onto_stack(const ChunkKey& key, Version version, const EditDescriptor& edit);
 
-  // ---- order
-  /// Puts an ordered edit on top of the chunk's stack and moves its version. Returns the sequence it stood
-  /// at.
+  /// Puts an ordered edit on top of the chunk's stack and raises its version. Returns the sequence
+  /// of its version before.
   Sequence push(const ChunkKey& key, Version version, const EditDescriptor& edit);
-  /// Applies a resident chunk's stack in one sweep to a private copy and publishes that. O(runs + stack).
+  /// Applies a resident chunk's stack to a private copy in one sweep and publishes the copy.
+  /// Cost: O(runs + stack).
   void publish(const ChunkKey& key);
 
-  // ---- memory
   Residency residency(const ChunkKey& key) const;
-  /// Null unless resident.
+  /// Returns the published chunk, or null unless it is resident.
   ChunkPtr find(const ChunkKey& key) const;
   Version version(const ChunkKey& key) const;
-  /// Resident chunks that were ever edited, ascending. O(entries).
+  /// Returns the resident chunks that were ever edited, ascending. Cost: O(entries).
   std::vector<std::pair<ChunkKey, ChunkPtr>> edited() const;
   std::size_t stack_size(const ChunkKey& key) const;
-  /// Absent becomes loading; true if the caller has to ask for it.
+  /// Makes an absent chunk loading. Returns true if it was absent; the caller must load it then.
   bool begin_load(const ChunkKey& key);
-  /// Takes what was asked for, applies the stack above its version and publishes it. A chunk that does not
-  /// fit what the log says (size, version) is quarantined; the text says why. Chunks not asked for are
-  /// ignored.
+  /// Applies the stack above its version to a loaded chunk and publishes it. Returns nullopt, or
+  /// the reason why the chunk was quarantined: its size or version contradicts the log. Ignores
+  /// chunks that are not loading.
   std::optional<std::string> loaded(const ChunkKey& key, Chunk chunk);
-  /// The load failed: quarantined from now on. The stack goes: only a later start can use it, from the log.
+  /// Quarantines a chunk whose load failed, and drops its stack. A later start reads it from the
+  /// log again.
   void quarantine(const ChunkKey& key);
-  /// Marks a chunk that nobody uses as a candidate for eviction.
+  /// Makes a chunk without users a candidate for eviction.
   void released(const ChunkKey& key);
-  /// Evicts clean chunks that nobody uses, longest unused first, until the voxels fit `bytes_max`. Looks at
-  /// `steps_max` chunks at most.
+  /// Evicts clean chunks without users, longest unused first, until the voxels take at most
+  /// `bytes_max` bytes. Cost: O(steps_max).
   void evict(std::size_t bytes_max, std::size_t steps_max,
              const std::function<bool(const ChunkKey&)>& is_used);
 
-  // ---- snapshots
-  /// Chunks edited since their snapshot, ascending.
+  /// Returns the chunks that were edited since their snapshot, ascending.
   const std::set<ChunkKey>& dirty() const { return dirty_; }
   void mark_saved(const ChunkKey& key, Version version);
-  /// Lowest sequence that only the log has because its chunk is quarantined; nothing if there is none. A
-  /// checkpoint must stay below it, so that a start after a repair stacks those edits again.
+  /// Returns the lowest sequence that only the log has because its chunk is quarantined, or nullopt
+  /// if there is none. A checkpoint must stay below it, so that a start after a repair replays
+  /// those edits.
   std::optional<Sequence> first_quarantined_edit() const;
 
-  /// Of all chunks published since the start.
+  /// Returns the depths of the edit stacks that were applied since the start.
   const StackDepths& stack_depths() const { return stack_depths_; }
   std::size_t resident_count() const { return resident_count_; }
   std::size_t resident_bytes() const { return resident_bytes_; }
@@ -87,7 +92,7 @@ class WorldChunks {
  private:
   struct Entry {
     Residency residency = Residency::absent;
-    bool is_candidate = false;  // in idle_
+    bool is_candidate = false;  // is in idle_
     Version version, saved;
     ChunkPtr published;
     std::vector<EditDescriptor> stack;
@@ -95,14 +100,15 @@ class WorldChunks {
   };
   Entry* entry(const ChunkKey& key);
   const Entry* entry(const ChunkKey& key) const;
-  void settle(const ChunkKey& key, Entry& e, Chunk chunk);
+  /// Applies the stack above the chunk's version and publishes the chunk.
+  void apply_and_publish(const ChunkKey& key, Entry& e, Chunk chunk);
   void unpublish(Entry& e);
 
   std::int32_t edge_;
   std::unordered_map<ChunkKey, Entry, ChunkKeyHash> entries_;
   std::set<ChunkKey> dirty_;
-  std::unordered_map<ChunkKey, std::optional<Sequence>, ChunkKeyHash>
-      quarantined_;  // first edit not in a snapshot
+  // The first edit of each quarantined chunk that is not in a snapshot.
+  std::unordered_map<ChunkKey, std::optional<Sequence>, ChunkKeyHash> quarantined_;
   std::deque<ChunkKey> idle_;
   std::size_t resident_count_ = 0, resident_bytes_ = 0;
   StackDepths stack_depths_;

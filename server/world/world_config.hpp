@@ -1,4 +1,5 @@
-// What the world strand is told at its start: the world, its limits, and what the store remembers.
+// WorldConfig and WorldStart: the parameters of the world strand: the world and its limits, and
+// what the store remembers when a server starts.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -19,14 +20,14 @@ struct WorldConfig {
   // The world.
   WorldId world_id{};
   std::uint16_t chunk_edge = 32;
-  HeightLimits heights;  // of edits, voxels
+  HeightLimits heights;  // edits must stay within them
   WorldPos spawn;
   MaterialTable materials;
   KeyPair server_keys;
   std::uint64_t features = kFeaturesKnown;  // optional parts of the protocol
   // Limits of sessions.
   std::size_t sessions_max = 256;             // beyond it: server_full
-  std::uint8_t view_radius_max = 16;          // chunks; larger views are cut to it
+  std::uint8_t view_radius_max = 16;          // chunks; larger views are reduced to it
   std::uint64_t edit_volume_max = 1'000'000;  // voxels per edit
   double reach_max = 0;                    // voxels from the player's pose to the edit; 0: no limit
   std::uint64_t edits_per_second = 2'000;  // per session; 0: no limit
@@ -34,25 +35,26 @@ struct WorldConfig {
   std::size_t loads_per_session_max = 64;  // chunks one session may wait for at a time
   std::size_t loads_in_flight_max = 8;     // with the workers at a time, at least 1
   TimeUs view_interval_us = 50'000;        // between two views of a session that take effect
-  std::size_t view_chunks_per_tick =
-      65'536;  // that views bring in, all sessions together, at least 1
+  // Chunks that views add, all sessions together, at least 1.
+  std::size_t view_chunks_per_tick = 65'536;
   TimeUs handshake_us_max = kHandshakeMsMax * 1'000;
   TimeUs idle_us_max = 60'000'000;                           // without any message; clients ping
   ChunkEncoding preferred_encoding = ChunkEncoding::packed;  // if the client offers it
-  // Rhythm.
-  TimeUs pose_interval_us = 100'000;  // at least; longer in a crowd (people.hpp)
-  TimeUs durable_interval_us =
-      1'000'000;  // of the watermark, to sessions without edits of their own
-  TimeUs audit_interval_us = 1'000'000;
-  std::size_t audit_chunks = 8;            // per session and interval
-  TimeUs retry_interval_us = 100'000;      // after a full queue, unless drained() comes first
-  std::size_t restack_load_edits = 1'024;  // an absent chunk with a longer stack is loaded
+  // Intervals.
+  TimeUs pose_interval_us = 100'000;  // at least; longer with many sessions (presence.hpp)
+  // Between two durable watermarks to a session that awaits none.
+  TimeUs durable_interval_us = 1'000'000;
+  TimeUs digest_check_interval_us = 1'000'000;
+  std::size_t digest_check_chunks = 8;   // per session and interval
+  TimeUs retry_interval_us = 100'000;    // after a full queue, unless drained() is called before
+  std::size_t stack_load_edits = 1'024;  // an absent chunk with a longer stack is loaded
   // Memory and disk.
   std::size_t resident_bytes_max = 512ULL << 20;
   SnapshotPolicy snapshots;
 };
 
-/// What the store remembers. Log records above the checkpoint follow by WorldServer::replay_onto_stack().
+/// The state that the store remembers. The log above the checkpoint follows by
+/// WorldServer::replay_onto_stack().
 struct WorldStart {
   LogPosition log;
   Sequence checkpoint = 0;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kEvictionStepsPerTick = 512;
 
-/// Messages that an open session may send.
+/// Returns true for messages that only an open session may send.
 bool needs_open(const Message& message) {
   return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
          std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
@@ -45,8 +45,8 @@ void on_open_message(WorldState& world, SessionId session, const Message& messag
     return on_edit(world, session, *edit, now);
   if (const auto* move = std::get_if<Move>(&message)) return on_move(world, session, *move);
   if (const auto* ping = std::get_if<Ping>(&message)) return on_ping(world, session, *ping, now);
-  if (const auto* travel = std::get_if<HistoryRequest>(&message))
-    return on_history_request(world, session, *travel, now);
+  if (const auto* request = std::get_if<HistoryRequest>(&message))
+    return on_history_request(world, session, *request, now);
   if (const auto* command = std::get_if<CommandRequest>(&message)) {
     return on_command(world, session, *command, now);
   }
@@ -56,7 +56,7 @@ void close_silent_sessions(WorldState& world, const Clocks& now) {
   std::vector<std::pair<SessionId, bool>> silent;
   for (const auto& [id, session] : world.sessions) {
     const bool is_open = session.state == SessionStage::open;
-    const TimeUs since = is_open ? session.heard_us : session.connected_us;
+    const TimeUs since = is_open ? session.last_message_us : session.connected_us;
     const TimeUs limit = is_open ? world.config.idle_us_max : world.config.handshake_us_max;
     if (now.steady_us - since >= limit) silent.emplace_back(id, is_open);
   }
@@ -66,26 +66,27 @@ void close_silent_sessions(WorldState& world, const Clocks& now) {
   }
 }
 
-void retry_owed(WorldState& world, const Clocks& now) {
+void retry_pending(WorldState& world, const Clocks& now) {
   for (const SessionId id : world.open_sessions()) {
-    send_owed(world, id);
+    send_pending_answers(world, id);
     deliver(world, id, now);
     if (world.find(id) == nullptr) continue;
-    send_same(world, id, false);  // more may come, but not for long
+    send_not_modified(world, id, false);  // answers wait for more of them until the next tick
     send_uniform(world, id, now);
   }
 }
 
-/// A worker is free again.
-void load_ended(WorldState& world, const ChunkKey& key) {
-  if (world.authority.chunks().residency(key) == Residency::loading) world.loads.ended();
+/// Counts the end of a load that was under way.
+void count_load_end(WorldState& world, const ChunkKey& key) {
+  if (world.authority.chunks().residency(key) == Residency::loading) world.loads.load_ended();
 }
 
 }  // namespace
 
-WorldServer::WorldServer(WorldConfig config, const WorldStart& start, WorldEnvironment& ports,
+WorldServer::WorldServer(WorldConfig config, const WorldStart& start, WorldEnvironment& environment,
                          RandomBytes random)
-    : state_(std::make_unique<WorldState>(std::move(config), start, ports, std::move(random))) {}
+    : state_(
+          std::make_unique<WorldState>(std::move(config), start, environment, std::move(random))) {}
 WorldServer::~WorldServer() = default;
 
 void WorldServer::replay_onto_stack(const EditRecord& record) {
@@ -94,7 +95,7 @@ void WorldServer::replay_onto_stack(const EditRecord& record) {
 
 void WorldServer::connected(SessionId session, const Clocks& now) {
   WorldSession fresh;
-  fresh.connected_us = fresh.heard_us = now.steady_us;
+  fresh.connected_us = fresh.last_message_us = now.steady_us;
   const bool is_new = state_->sessions.emplace(session, std::move(fresh)).second;
   RUNSTONE_ASSERT(is_new);
   if (state_->is_stopping)
@@ -106,14 +107,14 @@ void WorldServer::received(SessionId session, Message&& message, const Clocks& n
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return;
   ++world.counters.messages;
-  mine->heard_us = now.steady_us;
+  mine->last_message_us = now.steady_us;
   if (std::holds_alternative<Goodbye>(message)) {
-    close_session(world, session, GoodbyeReason::closing, "as you wish");
+    close_session(world, session, GoodbyeReason::closing, "the client said goodbye");
     return;
   }
   if (mine->state == SessionStage::awaits_hello && std::holds_alternative<Hello>(message)) {
     on_hello(world, session, *std::get_if<Hello>(&message));
-  } else if (mine->state == SessionStage::awaits_proof &&
+  } else if (mine->state == SessionStage::awaits_auth &&
              std::holds_alternative<ClientAuth>(message)) {
     on_client_auth(world, session, *std::get_if<ClientAuth>(&message), now);
   } else if (mine->state == SessionStage::open && needs_open(message)) {
@@ -122,7 +123,7 @@ void WorldServer::received(SessionId session, Message&& message, const Clocks& n
     close_session(world, session, GoodbyeReason::not_authenticated, "the handshake comes first");
   } else {
     close_session(world, session, GoodbyeReason::unexpected_message,
-                  "not now, or not from a client");
+                  "this message is not allowed at this stage, or not from a client");
   }
 }
 
@@ -135,7 +136,7 @@ void WorldServer::drained(SessionId session, const Clocks& now) {
   WorldSession* mine = state_->find(session);
   if (mine == nullptr) return;
   mine->stalled_us.reset();
-  send_owed(*state_, session);
+  send_pending_answers(*state_, session);
   deliver(*state_, session, now);
 }
 
@@ -143,32 +144,33 @@ bool WorldServer::has_queued() const { return state_->authority.queued() > 0; }
 
 void WorldServer::commit(const Clocks& now) { commit_and_broadcast(*state_, now); }
 
-WorldServer::OwnEdits WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
-                                                      AuthorId payer, const Clocks& now) {
-  using State = OwnEdits::State;
+WorldServer::ServerEditsResult WorldServer::order_server_edits(const std::vector<EditOffer>& offers,
+                                                               AuthorId payer, const Clocks& now) {
+  using State = ServerEditsResult::State;
   WorldState& world = *state_;
   commit(now);
   if (!world.accepts_edits) return {State::closed};
   if (offers.empty()) return {};
-  // Anybody sees the instance of an edit, so the author's own client can come under it and take numbers.
+  // Instances are public, so a client of the author can join with this one and use its client
+  // sequences.
   if (world.authority.resolved().knows(offers.front().op) || offers.back().op.seq > kSequenceMax)
     return {State::taken};
-  std::vector<WorldSession*> purses;
+  std::vector<WorldSession*> payers;
   for (auto& [id, session] : world.sessions) {
     const bool pays = payer != 0 && session.state == SessionStage::open && session.author == payer;
-    if (pays) purses.push_back(&session);
+    if (pays) payers.push_back(&session);
   }
-  OwnEdits out;
+  ServerEditsResult out;
   for (const EditOffer& offer : offers) {
     RUNSTONE_ASSERT(offer.cause != Cause::player);
-    if (!world.ports.log_has_room(out.count + 1)) {
+    if (!world.environment.log_has_room(out.count + 1)) {
       out.reason = "the log is full (log_queue_records)";
       break;
     }
     const std::uint64_t tokens =
         std::min(edit_tokens(offer.edit, world.config.chunk_edge), world.config.edit_burst);
     const auto can_pay = [&](WorldSession* s) { return s->edits.take(tokens, now.steady_us); };
-    if (!purses.empty() && std::none_of(purses.begin(), purses.end(), can_pay)) {
+    if (!payers.empty() && std::none_of(payers.begin(), payers.end(), can_pay)) {
       out.reason = "the author's edits per second are used up (edits_per_second)";
       break;
     }
@@ -186,8 +188,8 @@ void WorldServer::answer_command(SessionId session, const std::vector<std::strin
   send_command_output(*state_, session, lines, is_done, is_ok);
 }
 
-std::vector<WorldServer::Present> WorldServer::present() const {
-  std::vector<Present> out;
+std::vector<WorldServer::OnlinePlayer> WorldServer::online_players() const {
+  std::vector<OnlinePlayer> out;
   for (const auto& [id, session] : state_->sessions) {
     if (session.state != SessionStage::open) continue;
     out.push_back({id, session.author, session.name, session.key, session.pose.at});
@@ -200,10 +202,10 @@ std::vector<PlayerRow> WorldServer::visitors() const {
   return {visitors.begin(), visitors.end()};
 }
 
-void WorldServer::step_keeper(const Clocks& now) {
+void WorldServer::step_checkpointer(const Clocks& now) {
   WorldState& world = *state_;
-  world.keeper.step(world.authority, world.durable, now, world.ports,
-                    [&](const ChunkKey& key) { ask_load(world, key); });
+  world.checkpointer.step(world.authority, world.durable, now, world.environment,
+                          [&](const ChunkKey& key) { request_load(world, key); });
 }
 
 void WorldServer::tick(const Clocks& now) {
@@ -211,14 +213,14 @@ void WorldServer::tick(const Clocks& now) {
   commit(now);
   forget_gone_authors(world);
   close_silent_sessions(world, now);
-  give_view_turns(world, now);
-  broadcast_roster(world);
+  apply_due_views(world, now);
+  broadcast_player_list(world);
   broadcast_poses(world, now);
   broadcast_durable(world, now);
-  give_audit_turns(world, now);
-  open_waiting_moments(world);
-  retry_owed(world, now);
-  step_keeper(now);
+  send_due_digest_checks(world, now);
+  open_waiting_history(world);
+  retry_pending(world, now);
+  step_checkpointer(now);
   collect_released(world);
   world.authority.chunks().evict(world.config.resident_bytes_max, kEvictionStepsPerTick,
                                  [&](const ChunkKey& key) { return world.interest.is_used(key); });
@@ -226,41 +228,45 @@ void WorldServer::tick(const Clocks& now) {
 
 void WorldServer::chunk_loaded(const ChunkKey& key, Chunk chunk, const Clocks& now) {
   WorldState& world = *state_;
-  load_ended(world, key);
+  count_load_end(world, key);
   if (const auto wrong = world.authority.chunks().loaded(key, std::move(chunk))) {
     ++world.counters.chunks_failed;
-    world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + *wrong);
+    world.environment.log(WorldLogLevel::error,
+                          "chunk=" + text_of(key) + " quarantined: " + *wrong);
   }
   deliver_loaded(world, key, now);
-  // A chunk that was loaded for its stack alone has no user; it may go once it is written.
+  // A chunk that was loaded for its stack alone has no user, so nothing else makes it a candidate
+  // for eviction.
   if (!world.interest.is_used(key)) world.authority.chunks().released(key);
-  step_keeper(now);
+  step_checkpointer(now);
   start_loads(world);
 }
 
 void WorldServer::chunk_failed(const ChunkKey& key, const std::string& what, const Clocks& now) {
   WorldState& world = *state_;
-  load_ended(world, key);
+  count_load_end(world, key);
   ++world.counters.chunks_failed;
   world.authority.chunks().quarantine(key);
-  world.ports.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
+  world.environment.log(WorldLogLevel::error, "chunk=" + text_of(key) + " quarantined: " + what);
   deliver_loaded(world, key, now);
-  step_keeper(now);
+  step_checkpointer(now);
   start_loads(world);
 }
 
-void WorldServer::moment_opened(SessionId session, std::uint32_t request,
-                                const Result<OpenedMoment, std::string>& opened,
-                                const Clocks& now) {
-  on_moment_opened(*state_, session, request, opened, now);
+void WorldServer::history_opened(SessionId session, std::uint32_t request,
+                                 const Result<OpenedHistory, std::string>& opened,
+                                 const Clocks& now) {
+  on_history_opened(*state_, session, request, opened, now);
 }
 
-void WorldServer::past_chunk(SessionId session, std::uint32_t request, const ChunkKey& key,
-                             const Result<ChunkPtr, std::string>& chunk, const Clocks& now) {
+void WorldServer::history_chunk_loaded(SessionId session, std::uint32_t request,
+                                       const ChunkKey& key,
+                                       const Result<ChunkPtr, std::string>& chunk,
+                                       const Clocks& now) {
   if (!chunk)
-    state_->ports.log(WorldLogLevel::error,
-                      "chunk=" + text_of(key) + " of the past: " + chunk.error());
-  on_past_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
+    state_->environment.log(WorldLogLevel::error,
+                            "chunk=" + text_of(key) + " of the past: " + chunk.error());
+  on_history_chunk(*state_, session, request, key, chunk ? *chunk : nullptr, now);
 }
 
 void WorldServer::durable(Sequence seq, const Clocks& now) {
@@ -268,33 +274,33 @@ void WorldServer::durable(Sequence seq, const Clocks& now) {
   RUNSTONE_ASSERT(seq <= world.authority.head());
   if (seq <= world.durable) return;
   world.durable = seq;
-  tell_durable_to_authors(world);
-  step_keeper(now);
+  send_durable_to_authors(world);
+  step_checkpointer(now);
 }
 
 void WorldServer::snapshots_saved(const Clocks& now) {
-  state_->keeper.saved(state_->authority.chunks());
-  step_keeper(now);
+  state_->checkpointer.saved(state_->authority.chunks());
+  step_checkpointer(now);
 }
 
 void WorldServer::log_failed() { state_->accepts_edits = false; }
 
 void WorldServer::begin_stop(const Clocks& now) {
   WorldState& world = *state_;
-  commit(now);  // what was accepted is ordered
+  commit(now);  // orders the edits that were accepted
   world.accepts_edits = false;
   world.is_stopping = true;
-  world.keeper.finish();
+  world.checkpointer.finish();
   while (!world.sessions.empty()) {
     close_session(world, world.sessions.begin()->first, GoodbyeReason::closing, "the server stops");
   }
   collect_released(world);
-  step_keeper(now);
+  step_checkpointer(now);
 }
 
-bool WorldServer::is_settled() const {
+bool WorldServer::is_flushed() const {
   return state_->authority.queued() == 0 && state_->durable == state_->authority.head() &&
-         state_->keeper.is_clean(state_->authority);
+         state_->checkpointer.is_clean(state_->authority);
 }
 
 bool WorldServer::accepts_edits() const { return state_->accepts_edits; }
@@ -304,7 +310,7 @@ ClientSequence WorldServer::resolved(AuthorId author, ClientInstance instance) c
   return state_->authority.resolved().of(author, instance);
 }
 Sequence WorldServer::durable() const { return state_->durable; }
-Sequence WorldServer::checkpoint() const { return state_->keeper.checkpoint(); }
+Sequence WorldServer::checkpoint() const { return state_->checkpointer.checkpoint(); }
 std::size_t WorldServer::session_count() const { return state_->sessions.size(); }
 std::size_t WorldServer::resident_chunks() const {
   return state_->authority.chunks().resident_count();

@@ -1,5 +1,5 @@
-// WorldSession: what the world strand knows of one connection, and the states it goes through:
-//   awaits_hello -> awaits_proof -> open. Closing forgets it at once.
+// WorldSession: the state of one connection on the world strand. Its stages are awaits_hello,
+// awaits_auth, open, in this order. A session that is closed is removed at once.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -9,70 +9,79 @@
 
 #include "common/core/bytes.hpp"
 #include "protocol/codec/messages.hpp"
-#include "server/interest/held_claims.hpp"
+#include "server/interest/cache_claims.hpp"
 #include "server/limits/token_bucket.hpp"
 
 namespace runstone {
 
-enum class SessionStage { awaits_hello, awaits_proof, open };
+enum class SessionStage { awaits_hello, awaits_auth, open };
 
-inline constexpr std::size_t kPassedViewsMax = 8;
-inline constexpr std::size_t kUniformGathered = 256;     // then they go
-inline constexpr std::size_t kUniformWaitingMax = 1024;  // for a queue with room: then chunks wait
+/// Views that were replaced before they took effect. Beyond so many, every chunk counts as dropped
+/// by the client.
+inline constexpr std::size_t kSkippedViewsMax = 8;
+/// Uniform chunks are sent when so many are due.
+inline constexpr std::size_t kUniformPerMessage = 256;
+/// Uniform chunks that may be due while the session's queue is full. Further chunks stay wanted.
+inline constexpr std::size_t kUniformWaitingMax = 1024;
 static_assert(kUniformWaitingMax <= kUniformChunksMax);
-/// An undo reads the log, so a session may not ask for very many.
+/// The rate of commands is low because an undo reads the log.
 inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 
-/// A session's stay in the past.
+/// A session's view of the past.
 struct HistoryView {
-  std::uint32_t number = 0;  // of all visits of the server: what workers bring belongs to it
+  std::uint32_t number =
+      0;  // counts all history views of the server; identifies answers of workers
   std::uint32_t request = 0;
-  Sequence seq = 0;  // the last edit it sees
-  std::map<ChunkKey, Version>
-      sent;                  // what it has of the past: need not be sent again while the view stays
-  std::size_t loading = 0;   // chunks that workers are at for this request
-  bool is_complete = false;  // it was told that all of its view was sent
+  Sequence seq = 0;  // the last edit that it contains
+  // Chunks of the past that the session has. They are not sent again while the view stays.
+  std::map<ChunkKey, Version> sent;
+  std::size_t loading = 0;   // chunks that workers make for this view
+  bool is_complete = false;  // the session got the report that its whole view was sent
 };
 
+/// Times are of the steady clock.
 struct WorldSession {
   SessionStage state = SessionStage::awaits_hello;
-  TimeUs connected_us = 0;  // steady clock, as the others
-  TimeUs heard_us = 0;      // last message
+  TimeUs connected_us = 0;
+  TimeUs last_message_us = 0;
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
-  Bytes proof_transcript;  // what the client has to sign; empty outside of awaits_proof
-  AuthorId author = 0;     // from open on
+  Bytes auth_transcript;  // the bytes that the client must sign; empty outside of awaits_auth
+  AuthorId author = 0;    // valid when open
   Pose pose;
-  bool pose_changed = false;  // since the last poses
-  bool has_roster = false;    // it knows who was here when the roster was last told
-  Sequence durable_told = 0;  // the last watermark it got, by welcome at first
+  bool pose_changed = false;     // since poses were sent last
+  bool has_player_list = false;  // it got the full player list and all changes since
+  // Durable watermark.
+  Sequence durable_sent = 0;  // the last one sent; welcome sends the first
   Sequence awaits_durable =
-      0;  // its own edits reach up to here: it is told at once when that is on disk
-  std::vector<Reject> owed;  // answers that did not fit its queue, in order: again when it drains
+      0;  // the client's last edit; the session gets the watermark at once until then
+  // Answers to edits that did not fit the session's queue, in order. They are sent when it drains.
+  std::vector<Reject> pending_answers;
   TokenBucket edits{0, 0};
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
-  std::optional<std::uint32_t> command;  // id of the one under way
-  // Views (view_turns.hpp).
-  std::optional<View> next_view;    // the newest, while it has not taken effect
-  std::optional<TimeUs> viewed_us;  // when the last one did
-  std::vector<View>
-      passed_views;  // that next_view replaced before they did: kPassedViewsMax at most,
-  bool has_passed_too_many = false;  // more of them count as having left everything
-  // What it holds already (held_steps.hpp).
-  HeldClaims claims;
-  std::vector<SameChunk> same_due;  // subscribed, but not told yet
-  // Chunks of one material that were counted as sent, at these versions, and go in one message soon: a few
-  // wait for more while loads are under way.
+  std::optional<std::uint32_t> command;  // id of the command under way
+  // Views (view_scheduler.hpp).
+  std::optional<View> next_view;          // the newest view, until it takes effect
+  std::optional<TimeUs> view_applied_us;  // when a view took effect last
+  std::vector<View> skipped_views;    // replaced before they took effect, at most kSkippedViewsMax
+  bool has_skipped_too_many = false;  // there were more
+  // Cached chunks (cached_chunk_handlers.hpp).
+  CacheClaims claims;
+  std::vector<SameChunk> not_modified_due;  // subscribed, and not answered yet
+  // Chunks of one material that are subscribed at these versions and not sent yet. While loads are
+  // under way, a few wait for more, to be sent in one message.
   std::vector<UniformChunk> uniform;
   // Time travel (time_travel.hpp).
-  std::optional<HistoryRequest> next_travel;  // the newest wish that nothing was done for yet
-  bool opens_moment = false;                  // a worker is at one
-  std::optional<HistoryView> visit;           // nothing: it sees the live world
-  std::optional<HistoryState> begins_due;     // to be sent before any further chunk
-  std::optional<HistoryState> word_due;       // after it: all was sent, or a wish was refused
-  std::optional<TimeUs>
-      stalled_us;  // its queue was full then: no snapshots until drained or the retry interval
+  std::optional<HistoryRequest> next_history_request;  // the newest request, until it is answered
+  bool is_opening_history = false;                     // a worker opens a request
+  std::optional<HistoryView> history;                  // nullopt: the session sees the live world
+  std::optional<HistoryState> history_start_due;       // must be sent before any further chunk
+  std::optional<HistoryState>
+      history_report_due;  // then this: the view is complete, or a request failed
+  // When the session's queue was full. No chunks are sent until it drains or the retry interval has
+  // passed.
+  std::optional<TimeUs> stalled_us;
 };
 
 }  // namespace runstone

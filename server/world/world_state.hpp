@@ -1,5 +1,5 @@
-// WorldState: all that belongs to the world strand, as plain parts. The steps (handshake, requests, delivery,
-// broadcast) are free functions over it; WorldServer is its face.
+// WorldState: the data of the world strand, as plain parts. The handlers and schedulers beside it
+// are free functions over it. WorldServer is its interface.
 #pragma once
 #include <map>
 #include <string>
@@ -18,35 +18,40 @@
 namespace runstone {
 
 struct WorldState {
-  WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& ports_,
+  WorldState(WorldConfig config_, const WorldStart& start, WorldEnvironment& environment_,
              RandomBytes random_);
 
   WorldConfig config;
-  WorldEnvironment& ports;
+  WorldEnvironment& environment;
   RandomBytes random;
   Authority authority;
-  Checkpointer keeper;
+  Checkpointer checkpointer;
   Interest interest;
   LoadQueue loads;
   Players players;
-  std::map<SessionId, WorldSession>
-      sessions;                        // by number: who receives first never depends on a hash
-  std::vector<AuthorId> gone_authors;  // of sessions that ended since the last tick
+  std::map<SessionId, WorldSession> sessions;  // ordered, so that no result depends on a hash
+  std::vector<AuthorId> gone_authors;          // of sessions that ended since the last tick
   WorldCounters counters;
   Sequence durable = 0;
-  bool accepts_edits = true;  // false: rejected busy (stopping, or the log failed)
+  bool accepts_edits =
+      true;  // false: edits are rejected busy, because the server stops or the log failed
   bool is_stopping = false;
-  bool roster_changed = false;
-  std::map<AuthorId, std::string> roster;  // as it was told
-  TimeUs poses_us = 0, durable_us = 0;     // when everybody was told
-  SessionId pose_served = 0;               // whose pose was told last
-  TimeUs audits_us = 0;                    // of the last turn
-  SessionId audit_served = 0;              // whose turn that was
-  std::size_t view_chunks_left;            // of this tick's
-  bool views_wait = false;                 // some had to be left for the next tick
-  std::uint32_t visits = 0;                // to the past, ever
-  std::size_t moments_opening = 0;         // by workers (time_travel.hpp)
-  SessionId view_served = 0;               // whose view took effect last on a tick
+  // Presence.
+  bool player_list_changed = false;
+  std::map<AuthorId, std::string> sent_player_list;
+  TimeUs poses_us = 0;           // when poses were sent last
+  SessionId pose_sent_last = 0;  // the session whose pose was sent last
+  TimeUs durable_us = 0;         // when every session got the durable watermark last
+  // Digest checks.
+  TimeUs digest_checks_us = 0;      // up to this time, all that were due are sent
+  SessionId digest_check_last = 0;  // the session served last
+  // Views.
+  std::size_t view_chunks_left;     // that views may still add on this tick
+  bool views_wait = false;          // some views had to wait for the next tick
+  SessionId view_applied_last = 0;  // the session whose view took effect last on a tick
+  // Time travel.
+  std::uint32_t history_count = 0;    // history views since the start
+  std::size_t histories_opening = 0;  // requests that workers open
 
   std::vector<SessionId> open_sessions() const {
     std::vector<SessionId> open;
@@ -55,30 +60,35 @@ struct WorldState {
     }
     return open;
   }
+  /// Returns the session, or null if there is none.
   WorldSession* find(SessionId session) {
     const auto found = sessions.find(session);
     return found == sessions.end() ? nullptr : &found->second;
   }
 };
 
-/// Sends goodbye with a reason and forgets the session. Unknown sessions are allowed.
+/// Sends goodbye with a reason and removes the session, if there is one.
 void close_session(WorldState& world, SessionId session, GoodbyeReason reason,
                    const std::string& text);
-/// Once no edit is queued: forgets what only authors without a row and without a session have left.
+/// Removes authors without a row and without a session from players and watermarks. Requires that
+/// no edit is queued.
 void forget_gone_authors(WorldState& world);
-/// Forgets a session that is gone.
+/// Removes a session that has disconnected.
 void forget_session(WorldState& world, SessionId session);
-/// Sends a message the session must not miss: closes the session if its queue is full. True if it is queued.
+/// Sends a message that the session must not miss. Closes the session if its queue is full. Returns
+/// true if the message is queued.
 bool send_or_close(WorldState& world, SessionId session, const Message& message);
-/// Answers an edit. What does not fit is owed and sent later, in order; a session that is owed too much is
-/// closed.
+/// Answers an edit. If the session's queue is full, the answer is sent later, in order. A session
+/// with too many pending answers is closed.
 void answer(WorldState& world, SessionId session, Reject reject);
-/// Sends what the session is owed, as far as it fits: answers, then the durable watermark if it waits for it.
-void send_owed(WorldState& world, SessionId session);
-/// Tells the session what is on disk; `encoded` says it. Not before the answers it is owed: the watermark speaks of
-/// them. What does not fit is sent by a later turn.
-void tell_durable(WorldState& world, SessionId session, const EncodedMessage& encoded);
-/// Sends a message that a later one of its kind replaces: a full queue only counts.
+/// Sends pending answers as far as they fit, then the durable watermark if the session awaits it.
+void send_pending_answers(WorldState& world, SessionId session);
+/// Sends the durable watermark, which `encoded` holds, unless the session has it. Does nothing
+/// while answers are pending, because they precede it. If the session's queue is full, a later call
+/// sends it.
+void send_durable(WorldState& world, SessionId session, const EncodedMessage& encoded);
+/// Sends a message that a later one of its kind replaces. Returns false, and only counts, if the
+/// session's queue is full.
 bool send_or_skip(WorldState& world, SessionId session, const EncodedMessage& message);
 
 }  // namespace runstone

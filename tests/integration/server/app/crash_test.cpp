@@ -1,4 +1,5 @@
-// kill -9: what was said to be durable is there, what was not is offered again, and nothing happens twice.
+// kill -9: edits that were acknowledged as durable are kept, others are offered again, and none is
+// applied twice.
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,7 +18,7 @@ constexpr ClientSequence kEdits = 4'000;
 constexpr ClientInstance kInstance = 33;
 constexpr int kStartMs = 60'000;
 
-/// Each edit has a voxel of its own in the chunk at the origin, well above and below ground alike.
+/// Each edit sets another voxel of the chunk at the origin, above and below ground.
 VoxelPos place_of(ClientSequence seq) {
   const auto n = static_cast<std::int32_t>(seq);
   return {n % 16, n / 16 % 16, n / 256 % 16};
@@ -33,8 +34,9 @@ ServerConfig crash_config(const std::string& world) {
   return config;
 }
 
-/// A server in a process of its own, which can be killed. Requires that this one has no second thread yet: a
-/// lock that one holds at the fork stays locked in the child. So the child alone starts to log.
+/// A server in another process, which can be killed. Requires that this process has no second
+/// thread yet: a lock that such a thread holds at the fork stays locked in the child. So only the
+/// child starts to log.
 class ServerProcess {
  public:
   explicit ServerProcess(const std::string& world) {
@@ -49,7 +51,7 @@ class ServerProcess {
       if (::write(ends[1], &port, sizeof port) != sizeof port) ::_exit(1);
       for (;;) ::pause();
     }
-    ::close(ends[1]);  // so that the end of the child ends the wait for its port
+    ::close(ends[1]);  // so that the wait for the port ends if the child ends
     pollfd port_is_known{ends[0], POLLIN, 0};
     const bool is_told =
         ::poll(&port_is_known, 1, kStartMs) > 0 &&
@@ -76,7 +78,7 @@ class ServerProcess {
   std::uint16_t port_ = 0;
 };
 
-TEST_CASE("after kill -9 the durable edits are there and the others, offered again, happen once",
+TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, are applied once",
           "[integration]") {
   const TempFolder folder;
   Sequence durable = 0;
@@ -94,13 +96,13 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
   }
   const auto server = start_server(crash_config(folder / "world"), flat_creation());
   RawClient client(server->port());
-  const auto ready = client.join(1, kInstance);
-  REQUIRE(ready.has_value());
-  CHECK(ready->resolved >= durable);
-  CHECK(ready->resolved == client.welcome.durable);  // one client made the whole log
+  const auto accepted = client.join(1, kInstance);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->resolved >= durable);
+  CHECK(accepted->resolved == client.welcome.durable);  // every edit of the log is of one client
   CHECK(client.welcome.epoch == 2);
 
-  // Offers again what it does not know to be durable: from before the watermark to the end.
+  // Offers again every edit that may not be durable, and some that are.
   std::thread sender([&] {
     for (ClientSequence seq = durable - 50; seq <= kEdits; ++seq) client.send(edit(seq));
   });
@@ -112,11 +114,11 @@ TEST_CASE("after kill -9 the durable edits are there and the others, offered aga
     if (const auto* reject = std::get_if<Reject>(&*message)) {
       CHECK(reject->client_seq == ++answered);
       CHECK(reject->reason == RejectReason::already_resolved);
-      CHECK(answered <= ready->resolved);
+      CHECK(answered <= accepted->resolved);
     } else if (const auto* commit = std::get_if<Commit>(&*message)) {
       for (const OrderedEdit& e : commit->edits) {
         CHECK(e.op.seq == ++answered);
-        CHECK(answered > ready->resolved);
+        CHECK(answered > accepted->resolved);
         ++last;
       }
     }

@@ -1,5 +1,5 @@
-// One damaged row in the database: who looks at its chunk is told, everybody and everything else goes on, and
-// the row stays as it is for whoever repairs it.
+// One damaged row in the database: sessions that see its chunk get "chunk unavailable", everything
+// else works, and the row stays as it is, so that it can be repaired.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -26,10 +26,11 @@ const char* const kRow =
 
 EditRequest edit(ClientSequence seq, VoxelPos at) { return {seq, 0, {SetVoxel{at}, {}, 1}}; }
 
-/// What came for each chunk of a view until `count` of them were answered.
+/// The answers for the chunks of a view.
 struct Answers {
   std::set<ChunkKey> sent, unavailable;
 };
+/// Reads until `count` chunks are answered.
 Answers answers(RawClient& client, std::size_t count) {
   Answers got;
   while (got.sent.size() + got.unavailable.size() < count) {
@@ -66,7 +67,7 @@ void make_damaged_world(const std::string& folder) {
   REQUIRE(raw_sql(folder + "/world.sqlite", damage) == "1");
 }
 
-TEST_CASE("a damaged chunk is named to those who see it, and nobody else is disturbed",
+TEST_CASE("a damaged chunk is unavailable to the sessions that see it, and others are not affected",
           "[integration]") {
   const TempFolder folder;
   make_damaged_world(folder / "world");
@@ -88,16 +89,16 @@ TEST_CASE("a damaged chunk is named to those who see it, and nobody else is dist
     far.send(View{{5, 0, 0}, 1, 0});
     CHECK(answers(far, 5).sent.size() == 5);
 
-    near.send(edit(1, {18, 1, 1}));  // the neighbour can be built on
+    near.send(edit(1, {18, 1, 1}));  // the neighbouring chunk accepts edits
     auto commit = near.next_of<Commit>();
     REQUIRE(commit.has_value());
     CHECK(commit->first == 3);
     CHECK(commit->edits.at(0).previous == std::vector<Sequence>{2});
-    far.send(edit(1, {2, 1, 1}));  // into the damaged chunk: ordered like any other
+    far.send(edit(1, {2, 1, 1}));  // an edit of the damaged chunk is ordered like any other
     commit = far.next_of<Commit>();
     REQUIRE(commit.has_value());
     CHECK(commit->edits.at(0).previous == std::vector<Sequence>{1});
-    far.send(ChunkRequest{{kDamaged}});  // not in its view
+    far.send(ChunkRequest{{kDamaged}});  // the chunk is not in the session's view
     near.send(ChunkRequest{{kDamaged}});
     CHECK(answers(near, 1).unavailable == std::set{kDamaged});
     static_cast<void>(server->stop());

@@ -1,4 +1,5 @@
-// A running server makes keyframes of what it finds in its log and of what it adds to it, and goes on where it cannot.
+// A running server makes keyframes of old and new edits of its log. If it cannot, it goes on
+// without them.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
@@ -20,7 +21,7 @@ EditDescriptor nth_edit(Sequence n) {
   return {SetVoxel{{i % 16, i / 16 % 16, i / 256 % 16}}, {}, static_cast<Material>(1 + n % 3)};
 }
 
-/// A closed world whose log has `count` edits in one chunk.
+/// Makes a closed world whose log has `count` edits in one chunk.
 void make_world(const std::string& folder, Sequence count) {
   WorldMeta meta = sample_meta();
   meta.generator.name = "flat";
@@ -49,7 +50,7 @@ std::vector<Sequence> places(const std::string& folder) {
   return found;
 }
 
-/// Waits, in vain for half a minute at most, until the world has so many keyframes.
+/// Waits until the world has so many keyframes, for at most half a minute.
 bool wait_for(const std::string& folder, std::size_t keyframes) {
   for (int i = 0; i < 3000; ++i) {
     if (places(folder).size() >= keyframes) return true;
@@ -64,7 +65,7 @@ std::vector<Sequence> multiples(std::size_t count) {
   return out;
 }
 
-TEST_CASE("a server makes the keyframes that its log lacks, and new ones as it grows",
+TEST_CASE("a server makes the keyframes that its log lacks, and new ones as the log grows",
           "[integration][keyframe]") {
   const TempFolder folder;
   make_world(folder.path(), 130);
@@ -72,8 +73,8 @@ TEST_CASE("a server makes the keyframes that its log lacks, and new ones as it g
     const auto server = start_server(keyframe_config(folder.path()), {});
     CHECK(wait_for(folder.path(), 6));
     RawClient client(server->port());
-    const auto ready = client.join(1);
-    REQUIRE(ready.has_value());
+    const auto accepted = client.join(1);
+    REQUIRE(accepted.has_value());
     for (Sequence seq = 131; seq <= 185; ++seq)
       client.send(EditRequest{seq - 130, 0, nth_edit(seq)});
     CHECK(client.sees_durable(185));
@@ -92,7 +93,7 @@ TEST_CASE("a server makes the keyframes that its log lacks, and new ones as it g
   CHECK(world.chunk({0, {0, 0, 0}})->digest == (*store->load_snapshot({0, {0, 0, 0}}))->digest);
 }
 
-TEST_CASE("a server that shall make no keyframes makes none", "[integration][keyframe]") {
+TEST_CASE("a server configured without keyframes makes none", "[integration][keyframe]") {
   const TempFolder folder;
   make_world(folder.path(), 60);
   ServerConfig config = keyframe_config(folder.path());
@@ -101,13 +102,12 @@ TEST_CASE("a server that shall make no keyframes makes none", "[integration][key
   CHECK(places(folder.path()).empty());
 }
 
-TEST_CASE("a damaged edit ends the making of keyframes, not the server",
-          "[integration][keyframe]") {
+TEST_CASE("a damaged edit ends the keyframe thread, not the server", "[integration][keyframe]") {
   const TempFolder folder;
   make_world(folder.path(), 100);
   CHECK(start_server(quiet_config(folder.path()), {})
             ->stop()
-            .is_clean);  // snapshots: the next start reads no old edit
+            .is_clean);  // every edit is in a snapshot, so the next start reads no old edit
   REQUIRE(raw_sql(folder / "world.sqlite",
                   "UPDATE edit_log SET time_us = time_us + 1 WHERE seq = 50; SELECT changes()") ==
           "1");

@@ -1,6 +1,6 @@
-// RawClient: a blocking socket that speaks frames and messages and nothing more: it does only what a test
-// says, and can send anything, broken bytes included. Reads and writes end with a deadline, so a test fails
-// instead of hanging.
+// RawClient: a blocking socket that sends and receives frames and messages. It does only what the
+// test does, and it can send any bytes, also invalid ones. Reads and writes have a deadline, so a
+// test fails instead of hanging.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -31,7 +31,7 @@ class RawClient {
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface requires it
     is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     const timeval deadline{kSendSeconds, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof deadline);
@@ -59,7 +59,7 @@ class RawClient {
   }
   void shutdown_send() { ::shutdown(socket_, SHUT_WR); }
 
-  /// The next message, or nothing at the end of the stream or the deadline.
+  /// Returns the next message, or nullopt at the end of the stream or at the deadline.
   std::optional<Message> next(int deadline_ms = 10'000) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(deadline_ms);
     while (arrived_.empty()) {
@@ -71,7 +71,8 @@ class RawClient {
     arrived_.pop_front();
     return message;
   }
-  /// The next message of one kind; others are dropped on the way, unless `seen` takes them.
+  /// Returns the next message of one kind. Earlier messages are passed to `seen`, if any, and
+  /// dropped.
   template <class Kind>
   std::optional<Kind> next_of(std::vector<Message>* seen = nullptr) {
     while (auto message = next()) {
@@ -80,21 +81,21 @@ class RawClient {
     }
     return std::nullopt;
   }
-  /// Reads until everything up to `seq` is durable; false if the server closes before.
+  /// Reads until every edit up to `seq` is durable. Returns false if the server closes before.
   bool sees_durable(Sequence seq) {
     while (const auto durable = next_of<Durable>()) {
       if (durable->seq >= seq) return true;
     }
     return false;
   }
-  /// Reads until the server closes; the goodbye, if there was one.
+  /// Reads until the server closes. Returns its goodbye, or nullopt if there was none.
   std::optional<Goodbye> goodbye() {
     auto found = next_of<Goodbye>();
     while (found && next()) {
     }
     return found;
   }
-  /// True once the server has closed the connection.
+  /// Returns true if the server has closed the connection.
   bool sees_the_end() {
     while (next()) {
     }
@@ -110,7 +111,7 @@ class RawClient {
     h.name = name.empty() ? "player" + std::to_string(who) : name;
     return h;
   }
-  /// The whole handshake; nothing if the server closed.
+  /// Does the whole handshake. Returns nullopt if the server closed.
   std::optional<SessionAccepted> join(std::uint8_t who, ClientInstance instance = 1) {
     const Hello h = hello(who, instance);
     send(h);
@@ -125,8 +126,8 @@ class RawClient {
   }
 
   Welcome welcome;
-  std::uint64_t features = 0;  // that hello offers
-  std::string name;            // to be called by; empty: "player" and the number
+  std::uint64_t features = 0;  // offered in hello
+  std::string name;            // of the player; empty: "player" and the number
 
  private:
   static constexpr time_t kSendSeconds = 60;
@@ -144,10 +145,10 @@ class RawClient {
     const auto on_message = [this](FrameClass frame_class, ByteView body) -> Result<void> {
       auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
       if (!message) return Unexpected<Error>{message.error()};
-      // The edge counts from welcome on, also for messages of the same read.
+      // The chunk edge is known from welcome on, also for messages of the same read.
       if (const auto* w = std::get_if<Welcome>(&*message)) chunk_edge_ = w->chunk_edge;
       if (const auto* uniform = std::get_if<UniformChunks>(&*message)) {
-        for (const UniformChunk& each : uniform->chunks) {  // to tests a chunk is a chunk
+        for (const UniformChunk& each : uniform->chunks) {  // tests get them as snapshots
           Chunk chunk{uniform_chunk(Extent::cube(chunk_edge_), each.material), each.version, {}};
           chunk.digest = digest_of(chunk.voxels);
           arrived_.emplace_back(ChunkSnapshot{each.key, std::move(chunk)});
@@ -159,7 +160,7 @@ class RawClient {
     };
     const auto fed =
         reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(got)), on_message);
-    RUNSTONE_ASSERT(fed.has_value());  // the server never sends what its own decoder refuses
+    RUNSTONE_ASSERT(fed.has_value());  // the server never sends a message that its decoder rejects
     return true;
   }
 

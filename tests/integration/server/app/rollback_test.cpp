@@ -1,5 +1,5 @@
-// Undo, redo and rollback on a running server: from a client, through the control socket, and while somebody
-// else goes on building. Afterwards server, snapshots and a replay of the log agree.
+// Undo, redo and rollback on a running server: from a client, through the control socket, and while
+// another player builds. Afterwards server, snapshots and a replay of the log agree.
 #include <sys/stat.h>
 
 #include <array>
@@ -35,7 +35,7 @@ Answer control(const std::string& world, const std::vector<std::string>& words) 
   return {*done, out.str()};
 }
 
-/// The client's command, until it is done.
+/// Gives a client's command and waits until it is done.
 Answer command(RawClient& client, const std::string& text) {
   static std::uint32_t id = 0;
   client.send(CommandRequest{++id, text});
@@ -55,7 +55,7 @@ void build(RawClient& client, ClientSequence seq, const EditShape& shape, Materi
   client.send(EditRequest{seq, 0, {shape, {}, material}});
 }
 
-/// Voxels of the world by its log alone.
+/// Returns the voxels of the world from its log alone.
 std::string replayed(const std::string& world) {
   const auto replay = run_replay({"verify", "--world", world});
   INFO(replay.out << replay.err);
@@ -65,7 +65,7 @@ std::string replayed(const std::string& world) {
 
 }  // namespace
 
-TEST_CASE("players undo and redo by a command; the rest is for operators",
+TEST_CASE("players undo and redo by a command; other commands are for operators",
           "[integration][rollback]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
@@ -75,7 +75,7 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   auto server = start_server(config, flat_creation());
   RawClient ana(server->port());
   REQUIRE(ana.join(1).has_value());
-  CHECK((ana.welcome.features & kFeatureCommands) == 0);  // this client did not offer it
+  CHECK((ana.welcome.features & kFeatureCommands) == 0);  // the client did not offer the feature
   build(ana, 1, FillBox{{{0, 70, 0}, {4, 74, 4}}}, 1);
   build(ana, 2, FillBox{{{2, 70, 0}, {6, 74, 4}}}, 2);
   CHECK(command(ana, "undo").text == "undo: 64 voxels in 1 chunk\n");
@@ -103,7 +103,7 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   CHECK(command(boss, "rollback preview author nobody").text.find("nobody of that name") !=
         std::string::npos);
 
-  // Faster than anybody types.
+  // Faster than any player types.
   for (std::uint32_t i = 0; i < 60; ++i) ana.send(CommandRequest{1000 + i, "help"});
   int too_many = 0;
   for (std::uint32_t i = 0; i < 60;) {
@@ -119,8 +119,7 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   replayed(folder / "world");
 }
 
-TEST_CASE("a griefer is rolled back by control while a builder goes on",
-          "[integration][rollback]") {
+TEST_CASE("a griefer is rolled back by control while a builder builds", "[integration][rollback]") {
   const TempFolder folder;
   const std::string world = folder / "world";
   auto server = start_server(quiet_config(world), flat_creation());
@@ -144,7 +143,7 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on",
   REQUIRE(preview.is_ok);
   CHECK(preview.text.find("would take back 40 edits") != std::string::npos);
 
-  // The builder sets voxels all over the place until the rollback is done.
+  // The builder sets voxels everywhere until the rollback is done.
   std::atomic<bool> is_done{false};
   std::atomic<int> rounds{0};
   std::thread building([&] {
@@ -174,7 +173,7 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on",
   CHECK_FALSE(std::filesystem::exists(world + "/" + kControlSocketName));
   replayed(world);
 
-  // The house stands as its builder left it: what the griefer did shows nowhere.
+  // The house is as its builder left it, without any of the griefer's edits.
   const auto store = *open_world(world, StoreAccess::read_only);
   std::set<VoxelPos> touched;
   for (ClientSequence i = 2; i < 2 + static_cast<ClientSequence>(built); ++i) {
@@ -199,7 +198,7 @@ TEST_CASE("a griefer is rolled back by control while a builder goes on",
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a control connection that says nothing does not keep a server from stopping",
+TEST_CASE("a silent control connection does not keep a server from stopping",
           "[integration][rollback]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
@@ -214,7 +213,7 @@ TEST_CASE("a control connection that says nothing does not keep a server from st
   CHECK(error == asio::error::eof);
 }
 
-TEST_CASE("control says so when no server runs the world, or its path is too long",
+TEST_CASE("control reports that no server runs the world, or that its path is too long",
           "[integration][rollback]") {
   const TempFolder folder;
   std::ostringstream out;
@@ -226,7 +225,7 @@ TEST_CASE("control says so when no server runs the world, or its path is too lon
   CHECK(too_long.error().find("has at most 107 bytes") != std::string::npos);
 }
 
-TEST_CASE("a socket that a dead server left behind is replaced", "[integration][rollback]") {
+TEST_CASE("the socket file of a killed server is replaced", "[integration][rollback]") {
   const TempFolder folder;
   const std::string world = folder / "world";
   start_server(quiet_config(world), flat_creation())->stop();

@@ -1,4 +1,4 @@
-// ServerBench: a real server on a free loopback port over a world folder of its own, for integration tests.
+// ServerBench: a server on a free loopback port with its own world folder, for integration tests.
 #pragma once
 #include <catch2/catch.hpp>
 #include <memory>

@@ -18,7 +18,7 @@ EditRequest edit(ClientSequence seq, VoxelPos at, Material material) {
 
 Material some_material(ClientSequence seq) { return static_cast<Material>(1 + seq % 3); }
 
-/// Reads until that many snapshots have come, in their order.
+/// Reads until so many snapshots have arrived. Returns them in order.
 std::vector<ChunkSnapshot> snapshots(RawClient& client, std::size_t count) {
   std::vector<ChunkSnapshot> got;
   while (got.size() < count) {
@@ -29,18 +29,18 @@ std::vector<ChunkSnapshot> snapshots(RawClient& client, std::size_t count) {
   return got;
 }
 
-TEST_CASE("a client joins, sees its view nearest first, edits, and learns that it is durable",
+TEST_CASE("a client joins, gets its view nearest first, edits, and gets the durable watermark",
           "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
-  config.worker_threads = 1;  // one worker answers loads in the order in which they were asked for
+  config.worker_threads = 1;  // one worker answers loads in the order of the requests
   const auto server = start_server(config, flat_creation());
   const std::uint64_t dense_before = dense_expansions();
 
   RawClient client(server->port());
-  const auto ready = client.join(1);
-  REQUIRE(ready.has_value());
-  CHECK(ready->author == 1);
+  const auto accepted = client.join(1);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->author == 1);
   CHECK(client.welcome.chunk_edge == 16);
   const View view{{0, 0, 0}, 3, 1};
   client.send(view);
@@ -48,7 +48,7 @@ TEST_CASE("a client joins, sees its view nearest first, edits, and learns that i
   std::set<ChunkKey> keys;
   std::int64_t last = 0;
   for (const auto& s : got) {
-    if (!s.chunk.voxels.is_uniform()) {  // those of one material come together
+    if (!s.chunk.voxels.is_uniform()) {  // uniform chunks come together
       CHECK(distance2(view, s.key.at) >= last);
       last = distance2(view, s.key.at);
     }
@@ -101,7 +101,7 @@ TEST_CASE("several clients see each other's edits as equal commits", "[integrati
       REQUIRE(commit.has_value());
       CHECK(commit->first == next);
       for (const OrderedEdit& e : commit->edits) {
-        CHECK(e.previous == std::vector<Sequence>{next - 1});  // all in one chunk
+        CHECK(e.previous == std::vector<Sequence>{next - 1});  // every edit is in one chunk
         order.push_back(e.op);
         ++next;
       }
@@ -112,7 +112,7 @@ TEST_CASE("several clients see each other's edits as equal commits", "[integrati
   CHECK(orders[0] == orders[2]);
 }
 
-TEST_CASE("a broken peer ends its own session with a numbered reason and nobody else's",
+TEST_CASE("a client that breaks a rule ends its own session only, with a numbered reason",
           "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
@@ -180,7 +180,7 @@ TEST_CASE("a broken peer ends its own session with a numbered reason and nobody 
     FrameWriter writer;
     writer.append(encode_message(Pong{1, 2}), bytes);
     bad.send_bytes(bytes);
-    // Decoder or state machine, whichever sees it first.
+    // The decoder or the world strand rejects it, whichever is first.
     const auto goodbye = bad.goodbye();
     REQUIRE(goodbye.has_value());
     const bool is_known = goodbye->reason == GoodbyeReason::malformed_message ||
@@ -201,7 +201,7 @@ TEST_CASE("a broken peer ends its own session with a numbered reason and nobody 
   CHECK(pong->sent_us == 42);
 }
 
-TEST_CASE("a peer that stops in the middle of a frame leaves nothing behind", "[integration]") {
+TEST_CASE("a client that stops in the middle of a frame leaves nothing behind", "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   for (std::size_t length : {0U, 1U, 11U, 12U, 40U}) {
@@ -218,7 +218,7 @@ TEST_CASE("a peer that stops in the middle of a frame leaves nothing behind", "[
   CHECK(client.join(1).has_value());
 }
 
-TEST_CASE("a frame split into single bytes is still a frame", "[integration]") {
+TEST_CASE("a frame that arrives in single bytes is still a frame", "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient client(server->port());
@@ -242,7 +242,7 @@ TEST_CASE("a wrong protocol is answered with both versions", "[integration]") {
   CHECK(goodbye->text.find("77") != std::string::npos);
 }
 
-TEST_CASE("a peer that floods is closed", "[integration]") {
+TEST_CASE("a client that floods is closed", "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   config.messages_per_second = 100;
@@ -255,7 +255,8 @@ TEST_CASE("a peer that floods is closed", "[integration]") {
   CHECK(goodbye->reason == GoodbyeReason::flooding);
 }
 
-TEST_CASE("who sends faster than a session is read is held back, not sent away", "[integration]") {
+TEST_CASE("a client that sends faster than it is read has to wait and is not closed",
+          "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   config.read_kib_per_second = 1;
@@ -264,7 +265,7 @@ TEST_CASE("who sends faster than a session is read is held back, not sent away",
   REQUIRE(greedy.join(1).has_value());
   RawClient calm(server->port());
   REQUIRE(calm.join(2).has_value());
-  constexpr int kPings = 4'000;  // a minute and more of what is read
+  constexpr int kPings = 4'000;  // more than a minute at the read limit
   for (int i = 0; i < kPings; ++i) greedy.send(Ping{i});
   for (int i = 0; i < 3; ++i) {
     calm.send(Ping{i});
@@ -278,7 +279,7 @@ TEST_CASE("who sends faster than a session is read is held back, not sent away",
   CHECK(greedy.is_open());
 }
 
-TEST_CASE("who claims to have read more than was sent is told so, and so is who may not say it",
+TEST_CASE("a wrong receive ack closes the session, and so does one without the feature",
           "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
@@ -302,8 +303,7 @@ TEST_CASE("who claims to have read more than was sent is told so, and so is who 
   CHECK(refused->reason == GoodbyeReason::unexpected_message);
 }
 
-TEST_CASE("a client that says nothing of what it read gets its view all the same",
-          "[integration]") {
+TEST_CASE("a client that sends no receive acks still gets its view", "[integration]") {
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient quiet(server->port());
@@ -313,7 +313,8 @@ TEST_CASE("a client that says nothing of what it read gets its view all the same
   CHECK(snapshots(quiet, 13 * 3).size() == 13 * 3);
 }
 
-TEST_CASE("a peer that never reads loses chunks and commits, not the server", "[integration]") {
+TEST_CASE("a client that never reads loses chunks and commits, and the server goes on",
+          "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   config.chunk_queue_kib = 64;
@@ -328,7 +329,8 @@ TEST_CASE("a peer that never reads loses chunks and commits, not the server", "[
   REQUIRE(good.join(2).has_value());
   good.send(View{{0, 0, 0}, 1, 0});
   snapshots(good, 5);
-  // The small queue may fill for the one who reads as well: then a commit is dropped, and a reject answers.
+  // The small queue may also fill for the client that reads. Then a commit is dropped, and a reject
+  // answers the edit.
   constexpr ClientSequence kEdits = 4'000;
   std::set<ClientSequence> answered;
   std::size_t answers = 0;
@@ -355,7 +357,7 @@ TEST_CASE("a peer that never reads loses chunks and commits, not the server", "[
   CHECK(answered.size() == kEdits);
 }
 
-TEST_CASE("a restarted server continues the world: sequences, voxels, authors and decided edits",
+TEST_CASE("a restarted server continues the world: sequences, voxels, authors and resolved edits",
           "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
@@ -383,10 +385,10 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
   }
   const auto server = start_server(config, flat_creation());
   RawClient client(server->port());
-  const auto ready = client.join(5, 33);
-  REQUIRE(ready.has_value());
-  CHECK(ready->author == 1);
-  CHECK(ready->resolved == 20);
+  const auto accepted = client.join(5, 33);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->author == 1);
+  CHECK(accepted->resolved == 20);
   CHECK(client.welcome.epoch == 2);
   CHECK(client.welcome.durable == 20);
   client.send(edit(20, {0, 1, 2}, 1));
@@ -403,7 +405,7 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
   CHECK(report.world_digest == before);
 }
 
-TEST_CASE("the last name of a player is the one that is stored, edit or no edit", "[integration]") {
+TEST_CASE("the last name of a player is stored, with or without an edit", "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   const auto stored_names = [&] {
@@ -419,17 +421,17 @@ TEST_CASE("the last name of a player is the one that is stored, edit or no edit"
     const auto server = start_server(config, flat_creation());
     RawClient client(server->port());
     client.name = name;
-    const auto ready = client.join(1);
-    REQUIRE(ready.has_value());
-    CHECK(ready->author == 1);
+    const auto accepted = client.join(1);
+    REQUIRE(accepted.has_value());
+    CHECK(accepted->author == 1);
     if (edits) {
-      client.send(edit(ready->resolved + 1, {1, 1, 1}, 2));
-      REQUIRE(client.sees_durable(ready->resolved + 1));
+      client.send(edit(accepted->resolved + 1, {1, 1, 1}, 2));
+      REQUIRE(client.sees_durable(accepted->resolved + 1));
     }
     CHECK(server->stop().is_clean);
   };
   come_as("ada", false);
-  CHECK(stored_names().empty());  // who never edited leaves nothing
+  CHECK(stored_names().empty());  // players who never edited leave no row
   come_as("ada", true);
   CHECK(stored_names() == std::vector<std::string>{"ada"});
   come_as("grace", false);

@@ -17,7 +17,7 @@ void connect(Clients& clients, std::uint16_t port, std::size_t count) {
   }
 }
 
-/// Reads until the server ends the connection; false if it did not within a second.
+/// Reads until the server ends the connection. Returns false if it did not within a second.
 bool is_ended(RawClient& client) {
   while (client.is_open()) {
     if (!client.next(1'000)) break;
@@ -25,7 +25,7 @@ bool is_ended(RawClient& client) {
   return !client.is_open();
 }
 
-TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them go",
+TEST_CASE("silent sockets do not keep a player out: the oldest of them are closed",
           "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
@@ -39,13 +39,13 @@ TEST_CASE("sockets that say nothing do not keep a player out: the oldest of them
   RawClient late(server->port());
   REQUIRE(late.join(2).has_value());
   CHECK(is_ended(*silent.front()));
-  CHECK(is_ended(*silent[10]));  // one player, 65 silent ones and the newcomer were too many
+  CHECK(is_ended(*silent[10]));  // one player, 65 silent sockets and the new one were too many
   CHECK_FALSE(is_ended(*silent.back()));
   early.send(Ping{5});
-  CHECK(early.next_of<Pong>().has_value());  // a player's connection never goes
+  CHECK(early.next_of<Pong>().has_value());  // a player's connection is never closed
 }
 
-TEST_CASE("one address has few connections in the handshake, and players do not count",
+TEST_CASE("one address may have few connections in the handshake, and players do not count",
           "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");

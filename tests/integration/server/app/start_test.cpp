@@ -1,4 +1,4 @@
-// What a server does when it cannot start, or meets damage: one clear line, and nothing overwritten.
+// A server that cannot start or finds damage writes one clear line and overwrites nothing.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -50,7 +50,7 @@ TEST_CASE("a busy port is named, and the world keeps its epoch", "[integration]"
   CHECK(client.welcome.epoch == 2);
 }
 
-TEST_CASE("an address that is none is named, and no world is made for it", "[integration]") {
+TEST_CASE("an invalid address is named, and no world is made", "[integration]") {
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
   for (const char* address : {"localhost", "127.0.0.1:", "127.0.0.1:70000", "127.0.0.1:x"}) {
@@ -94,7 +94,7 @@ TEST_CASE("an unknown generator, edge or materials file makes no world", "[integ
   CHECK_FALSE(has_world(config.world));
 }
 
-TEST_CASE("a second server on the same world is refused", "[integration]") {
+TEST_CASE("a second server on the same world does not start", "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   const auto first = start_server(config, flat_creation());
@@ -103,7 +103,7 @@ TEST_CASE("a second server on the same world is refused", "[integration]") {
   CHECK(client.join(1).has_value());
 }
 
-TEST_CASE("a file that is no world is refused and left as it is", "[integration]") {
+TEST_CASE("a file that is no world is named and left as it is", "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   std::filesystem::create_directories(config.world);
@@ -139,7 +139,7 @@ void make_edited_world(const ServerConfig& config) {
   REQUIRE(server->stop().is_clean);
 }
 
-TEST_CASE("a damaged snapshot is quarantined: not sent, not made anew, its edits still ordered",
+TEST_CASE("a damaged snapshot is quarantined: not sent, not regenerated, its edits still ordered",
           "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
@@ -167,7 +167,7 @@ TEST_CASE("a damaged snapshot is quarantined: not sent, not made anew, its edits
     CHECK(report.is_clean);
     CHECK(contains(report.error, "chunk=1,0,0"));
   }
-  // The damaged row is as it was: nothing replaced it.
+  // The damaged row was not replaced.
   run_sql(config.world + "/world.sqlite",
           "UPDATE snapshot SET data = data WHERE x = 1 AND data = zeroblob(40)");
 }
@@ -202,7 +202,7 @@ TEST_CASE(
   CHECK(*(*store)->log_range() == LogRange{4, {{2, 4}, kFuture}});
 }
 
-TEST_CASE("a damaged last log row stops the start even if nothing waits above the checkpoint",
+TEST_CASE("a damaged last log row stops the start even if no edit is above the checkpoint",
           "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
@@ -212,7 +212,7 @@ TEST_CASE("a damaged last log row stops the start even if nothing waits above th
   CHECK(contains(start_error(config, flat_creation()), "edit_log seq=3"));
 }
 
-TEST_CASE("a world of a newer version is refused", "[integration]") {
+TEST_CASE("a world of a newer version does not start", "[integration]") {
   const TempFolder folder;
   const ServerConfig config = quiet_config(folder / "world");
   make_edited_world(config);

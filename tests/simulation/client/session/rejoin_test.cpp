@@ -40,8 +40,8 @@ class Joined {
 
   void connect() {
     ++id_;
-    bench.ports.sent.clear();
-    bench.ports.snapshots.clear();
+    bench.environment.sent.clear();
+    bench.environment.snapshots.clear();
     bench.server.connected(id_, bench.now());
     session_.connected({static_cast<std::uint8_t>(id_)}, bench.time_us);
     exchange();
@@ -63,15 +63,15 @@ class Joined {
         bench.server.received(id_, std::move(*decoded), bench.now());
       }
       bench.server.commit(bench.now());
-      while (!bench.ports.loads.empty()) {
+      while (!bench.environment.loads.empty()) {
         goes_on = true;
-        const ChunkKey key = bench.ports.loads.front();
-        bench.ports.loads.pop_front();
+        const ChunkKey key = bench.environment.loads.front();
+        bench.environment.loads.pop_front();
         bench.server.chunk_loaded(key, hills(key.at), bench.now());
       }
-      for (const auto& sent : std::exchange(bench.ports.sent, {}))
+      for (const auto& sent : std::exchange(bench.environment.sent, {}))
         goes_on |= deliver(sent.session, sent.message);
-      for (const auto& snapshot : std::exchange(bench.ports.snapshots, {})) {
+      for (const auto& snapshot : std::exchange(bench.environment.snapshots, {})) {
         goes_on |= deliver(snapshot.session,
                            encode_snapshot(snapshot.key, *snapshot.chunk, ChunkEncoding::packed));
       }
@@ -169,7 +169,7 @@ TEST_CASE("a rejoin of an unchanged view costs at most 32 bytes a chunk, both wa
   joined.second();
   require_equal(joined);
   CHECK(joined.bench.server.counters().snapshots_sent == snapshots);
-  CHECK(joined.bench.server.counters().same_sent == 1265);
+  CHECK(joined.bench.server.counters().not_modified_sent == 1265);
   const double per_chunk = static_cast<double>(joined.to_server + joined.to_client) / 1265;
   CHECK(per_chunk <= 32);
   WARN("a chunk: " << static_cast<double>(joined.to_server) / 1265 << " bytes claimed, "
@@ -225,10 +225,10 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
     for (int i = 0; i < 64; ++i) held.chunks.push_back({{0, {next++, 0, 0}}, {}, 1});
     bench.server.received(1, held, bench.now());
   }
-  REQUIRE(bench.ports.closed.size() == 1);
-  CHECK(bench.ports.closed[0].session == 1);
-  CHECK(bench.ports.closed[0].reason == GoodbyeReason::flooding);
-  CHECK(bench.ports.closed[0].text == "claims to hold more than 32768 chunks");
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].session == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::flooding);
+  CHECK(bench.environment.closed[0].text == "claims to hold more than 32768 chunks");
   bench.edit(2, 1, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.commits(2).size() == 1);
@@ -245,7 +245,7 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
     bench.view(3, {{round, 0, 0}, 1, 0});
     bench.tick();
   }
-  CHECK(bench.ports.closed.size() == 1);
+  CHECK(bench.environment.closed.size() == 1);
 }
 
 }  // namespace runstone::test

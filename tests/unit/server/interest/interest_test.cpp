@@ -13,7 +13,7 @@ constexpr CoordLimit kLimit{1000};
 
 ChunkKey key_of(std::int32_t x, std::int32_t y, std::int32_t z) { return {0, {x, y, z}}; }
 
-/// The definition, by trying every chunk near the view.
+/// The definition: tries every chunk near the view.
 std::set<ChunkCoord> cells_by_trying(const View& view, CoordLimit limit) {
   std::set<ChunkCoord> cells;
   for (std::int32_t x = view.centre.x - 12; x <= view.centre.x + 12; ++x) {
@@ -52,7 +52,7 @@ TEST_CASE("a view difference is exactly the chunks of one view outside of the ot
   }
 }
 
-TEST_CASE("a view at the rim of the world ends there and does not overflow", "[interest]") {
+TEST_CASE("a view at the border of the world ends there and does not overflow", "[interest]") {
   const CoordLimit limit{kWorldLimit / 16};
   std::vector<ChunkCoord> cells;
   append_difference({{INT32_MAX, INT32_MIN, INT32_MAX}, 64, 64}, std::nullopt, limit, cells);
@@ -100,7 +100,7 @@ TEST_CASE(
     if (distance2(view, c) <= 4) return 0;
     return c.x >= 0 && c.x * c.x * 2 >= distance2(view, c) ? 1 : 2;  // cos(45 degrees)^2 is a half
   };
-  // On the cone's very edge rounding decides.
+  // Chunks exactly on the cone depend on rounding.
   std::erase_if(order, [](const ChunkKey& key) {
     const ChunkCoord c = key.at;
     return c.x * c.x == c.y * c.y + c.z * c.z;
@@ -113,7 +113,7 @@ TEST_CASE(
   }));
 }
 
-TEST_CASE("who only turns changes the order of what is wanted, and nothing is sent again",
+TEST_CASE("a view that only turns changes the order of wanted chunks, and nothing is sent again",
           "[interest]") {
   SessionInterest interest(kLimit);
   View view{{0, 0, 0}, 12, 4};
@@ -133,7 +133,8 @@ TEST_CASE("who only turns changes the order of what is wanted, and nothing is se
   CHECK(4 * (first.at.y * first.at.y + first.at.z * first.at.z) <= first.at.x * first.at.x);
 }
 
-TEST_CASE("a step costs what it changes and what still waits, not the view", "[interest]") {
+TEST_CASE("a moved view costs the chunks that change and those that are wanted, not the whole view",
+          "[interest]") {
   SessionInterest interest(kLimit);
   constexpr std::uint8_t kRadius = 16;
   interest.set_view({{0, 0, 0}, kRadius, kRadius});
@@ -148,7 +149,8 @@ TEST_CASE("a step costs what it changes and what still waits, not the view", "[i
   CHECK(interest.set_view({{1, 0, 0}, kRadius, kRadius}).steps == 0);
 }
 
-TEST_CASE("a moved view wants only the new shell and releases what it left", "[interest]") {
+TEST_CASE("a moved view makes only new chunks wanted and releases the chunks that it left",
+          "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
   interest.set_view(1, {{0, 0, 0}, 8, 2});
@@ -172,7 +174,7 @@ TEST_CASE("a moved view wants only the new shell and releases what it left", "[i
   CHECK(wanted == shell);
 }
 
-TEST_CASE("subscribers of a chunk are those who got it, until they leave", "[interest]") {
+TEST_CASE("subscribers of a chunk are the sessions that got it, until they leave", "[interest]") {
   Interest interest(kLimit);
   for (const SessionId session : {7U, 3U, 5U}) {
     interest.open(session);
@@ -187,7 +189,7 @@ TEST_CASE("subscribers of a chunk are those who got it, until they leave", "[int
   interest.set_state(3, key, ChunkInterest::subscribed);
   CHECK(
       std::vector<SessionId>(interest.subscribers(key).begin(), interest.subscribers(key).end()) ==
-      std::vector<SessionId>{3, 7});  // ascending, not as they came
+      std::vector<SessionId>{3, 7});  // ascending, not in the order of subscription
   CHECK(interest.waiting(key).empty());
   CHECK_FALSE(interest.set_state(5, key_of(9, 9, 9), ChunkInterest::subscribed));
 
@@ -199,13 +201,13 @@ TEST_CASE("subscribers of a chunk are those who got it, until they leave", "[int
   CHECK_FALSE(interest.is_used(key));
   CHECK(interest.nearest_wanted(3) == key_of(0, 0, 0));
   interest.close(3);
-  interest.close(99);  // unknown: allowed
+  interest.close(99);  // unknown keys are ignored
 }
 
-TEST_CASE("audits go round all subscribed chunks and no others", "[interest]") {
+TEST_CASE("digest checks visit all subscribed chunks in turn and no others", "[interest]") {
   Interest interest(kLimit);
   interest.open(1);
-  CHECK_FALSE(interest.next_for_audit(1).has_value());
+  CHECK_FALSE(interest.next_for_digest_check(1).has_value());
   interest.set_view(1, {{0, 0, 0}, 2, 0});
   std::set<ChunkKey> subscribed;
   for (int i = 0; i < 6; ++i) {
@@ -214,11 +216,11 @@ TEST_CASE("audits go round all subscribed chunks and no others", "[interest]") {
     subscribed.insert(key);
   }
   std::set<ChunkKey> seen;
-  for (int i = 0; i < 6; ++i) seen.insert(*interest.next_for_audit(1));
+  for (int i = 0; i < 6; ++i) seen.insert(*interest.next_for_digest_check(1));
   CHECK(seen == subscribed);
 }
 
-TEST_CASE("random views and states keep users and states in step", "[interest][property]") {
+TEST_CASE("random views and states keep users and states consistent", "[interest][property]") {
   SplitMix64 rng(Catch::rngSeed() + 1);
   Interest interest(kLimit);
   for (SessionId s = 1; s <= 4; ++s) interest.open(s);
@@ -246,7 +248,7 @@ TEST_CASE("random views and states keep users and states in step", "[interest][p
         subscribed += state == ChunkInterest::subscribed ? 1 : 0;
       }
       REQUIRE(interest.find(s)->count(ChunkInterest::subscribed) == subscribed);
-      std::optional<ChunkKey> expected;  // the definition, by trying every chunk near the views
+      std::optional<ChunkKey> expected;  // the definition: tries every chunk near the views
       const auto view = interest.find(s)->view();
       for (std::int32_t x = -6; x <= 6; ++x) {
         for (std::int32_t y = -2; y <= 2; ++y) {

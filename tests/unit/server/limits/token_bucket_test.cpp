@@ -13,11 +13,11 @@ TEST_CASE("a token bucket allows its burst, then its rate", "[world]") {
   CHECK(bucket.take(1, 100'000));
   CHECK_FALSE(bucket.take(2, 250'000));
   CHECK(bucket.take(1, 250'000));
-  CHECK(bucket.take(5, 10'000'000'000'000));  // never more than the burst, however long it rested
+  CHECK(bucket.take(5, 10'000'000'000'000));  // never more than the burst, after any pause
   CHECK_FALSE(bucket.take(1, 10'000'000'000'000));
 }
 
-TEST_CASE("a clock that goes back gives no tokens, and no rate is no limit", "[world]") {
+TEST_CASE("a clock that goes back adds no tokens, and a rate of 0 is no limit", "[world]") {
   TokenBucket bucket(1, 1);
   CHECK(bucket.take(1, 5'000'000));
   CHECK_FALSE(bucket.take(1, 1'000'000));

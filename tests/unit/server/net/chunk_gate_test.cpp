@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kFrame = kFragmentBytesMax + kFrameHeaderBytes;
 
-/// Sends all it may for a while, a step each 200 microseconds; returns the bytes.
+/// Sends as much as possible for a while, in steps of 200 microseconds. Returns the bytes.
 std::uint64_t send_for(ChunkGate& gate, TimeUs from_us, TimeUs span_us) {
   std::uint64_t bytes = 0;
   for (TimeUs now_us = from_us; now_us < from_us + span_us; now_us += 200) {
@@ -22,16 +22,14 @@ std::uint64_t send_for(ChunkGate& gate, TimeUs from_us, TimeUs span_us) {
   return bytes;
 }
 
-TEST_CASE("without budgets and without words of the client, TCP alone holds terrain back",
-          "[net]") {
+TEST_CASE("without budgets and acknowledgements only TCP limits terrain", "[net]") {
   ByteBudget none(0);
   ChunkGate gate(0, none);
   CHECK(gate.open(0) == kFragmentBytesMax);
   CHECK(send_for(gate, 0, 1'000) > 1'000'000'000);
 }
 
-TEST_CASE("terrain takes what room there is in the socket, and costs no turn where there is none",
-          "[net]") {
+TEST_CASE("terrain uses the socket's room, and books no slot if there is none", "[net]") {
   ByteBudget none(0);
   ChunkGate gate(1'000'000, none);
   for (TimeUs now_us = 0; now_us < 10'000'000; now_us += 1'000) {
@@ -55,7 +53,7 @@ TEST_CASE("a session sends no more terrain than its budget, and nearly all of it
   CHECK(gate.open(next_us) > 0);
 }
 
-TEST_CASE("edits do not wait for a budget, but their bytes count, and terrain still goes",
+TEST_CASE("edits do not wait for a budget, but their bytes count, and terrain is still sent",
           "[net]") {
   ByteBudget none(0);
   ChunkGate gate(1'000'000, none);
@@ -98,8 +96,7 @@ TEST_CASE(
   CHECK(bytes[1] >= 14'000'000);
 }
 
-TEST_CASE("a session whose link is slow gets its share of the server's budget all the same",
-          "[net]") {
+TEST_CASE("a session with a slow link still gets its share of the server's budget", "[net]") {
   ByteBudget all(1'000'000);
   ChunkGate fast(0, all), slow(0, all);
   slow.pace();

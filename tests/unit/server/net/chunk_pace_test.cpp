@@ -22,12 +22,12 @@ constexpr Profile kProfiles[] = {{"lan", 400, 0, 125'000'000},
                                  {"broadband", 40'000, 0, 6'250'000},
                                  {"mobile", 120'000, 20'000, 625'000}};
 
-/// One direction: a transmitter before an endless queue, then a delay that never reorders.
+/// One direction of a link: an unbounded queue, a transmitter, then a delay that never reorders.
 struct Way {
   const Profile& profile;
   SplitMix64& random;
   double free_us = 0, last_due_us = 0;
-  /// When the last bit arrives.
+  /// Returns when the last bit arrives.
   TimeUs push(std::size_t bytes, TimeUs now_us) {
     const double rate = static_cast<double>(profile.bytes_per_second) / 1e6;
     free_us = std::max(free_us, static_cast<double>(now_us)) + static_cast<double>(bytes) / rate;
@@ -45,7 +45,8 @@ struct Outcome {
   std::uint64_t in_flight_max = 0;
 };
 
-/// A server that has terrain without end, a client that reads at once, and edits now and then, in virtual time.
+/// A server with unlimited terrain and some edits, and a client that reads at once, in virtual
+/// time.
 struct Run {
   explicit Run(const Profile& p, std::uint64_t seed) : profile(p), random(seed) {}
 
@@ -64,14 +65,14 @@ struct Run {
   Way down{profile, random}, up{profile, random};
   ChunkPace pace;
   ReceiveAckScheduler report;
-  bool is_telling = true, has_terrain = true;
+  bool is_acknowledging = true, has_terrain = true;
   TimeUs now_us = 0;
   std::uint64_t order = 0, read = 0;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
   std::vector<TimeUs> edits_us;
   std::uint64_t in_flight_max = 0;
   TimeUs wakes_us = 0;
-  // TCP below, where it is at its own start: what is beyond its window waits. 0: it holds nothing back.
+  // The window of TCP in its slow start: bytes beyond it wait. 0: TCP does not limit.
   std::size_t tcp_window = 0, tcp_in_flight = 0;
   std::deque<std::size_t> tcp_waiting;
 
@@ -79,7 +80,7 @@ struct Run {
     events.push({at_us, order++, kind, value});
   }
 
-  /// A fragment, cut into the link's packets.
+  /// Sends a fragment as packets of the link.
   void send_one() {
     constexpr std::size_t kPacket = 1'448;
     const std::size_t bytes = pace.fragment_bytes() + kFrameHeaderBytes;
@@ -101,7 +102,7 @@ struct Run {
       at(down.push(packet + 52, now_us), Event::Kind::arrives, packet);
     }
   }
-  /// The writer of a session: fragments while there is room.
+  /// The writer of a session: sends fragments while there is room.
   void write() {
     while (has_terrain) {
       if (pace.room(now_us) == 0) {
@@ -113,20 +114,20 @@ struct Run {
       send_one();
     }
   }
-  void tell() {
-    if (!is_telling || !report.is_due(read, now_us)) return;
+  void acknowledge() {
+    if (!is_acknowledging || !report.is_due(read, now_us)) return;
     report.told(read, now_us);
     at(up.push(100, now_us), Event::Kind::told, read);
   }
   void edit() {
-    // Half a round trip there, free of terrain; then behind what is under way.
+    // Half a round trip to the server without terrain, then back behind the bytes in flight.
     const TimeUs there_us = profile.round_trip_us / 2 +
                             random.between(0, static_cast<std::int32_t>(2 * profile.jitter_us)) -
                             profile.jitter_us;
     edits_us.push_back(there_us + down.push(250, now_us) - now_us);
     at(now_us + random.between(5'000, 45'000), Event::Kind::edit);
   }
-  /// Goes on until then.
+  /// Runs until this time.
   Outcome run(TimeUs until_us) {
     if (now_us == 0) at(0, Event::Kind::edit);
     write();
@@ -138,11 +139,11 @@ struct Run {
         case Event::Kind::arrives:
           read += e.value;
           at(now_us + profile.round_trip_us / 2, Event::Kind::tcp_ack, e.value);
-          tell();
+          acknowledge();
           if (const auto due = report.due(read)) at(std::max(*due, now_us), Event::Kind::report);
           break;
         case Event::Kind::report:
-          tell();
+          acknowledge();
           break;
         case Event::Kind::told:
           REQUIRE(pace.acked(e.value, now_us).has_value());
@@ -174,7 +175,8 @@ struct Run {
   }
 };
 
-TEST_CASE("an edit waits little behind terrain, and terrain still uses the link", "[net][pace]") {
+TEST_CASE("an edit waits only shortly behind terrain, and terrain still uses the link",
+          "[net][pace]") {
   for (const Profile& profile : kProfiles) {
     const unsigned seeds = profile.jitter_us > 0 ? 12 : 2;
     for (unsigned seed = 1; seed <= seeds; ++seed) {
@@ -191,7 +193,7 @@ TEST_CASE("an edit waits little behind terrain, and terrain still uses the link"
   }
 }
 
-TEST_CASE("neither uneven delay nor TCP's own start leaves a new session on a share of its link",
+TEST_CASE("a new session uses its whole link despite varying delay and TCP's slow start",
           "[net][pace]") {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     Run run(kProfiles[2], seed);
@@ -202,7 +204,7 @@ TEST_CASE("neither uneven delay nor TCP's own start leaves a new session on a sh
   }
 }
 
-TEST_CASE("a link that becomes slower or faster is followed", "[net][pace]") {
+TEST_CASE("the pace follows a link that becomes slower or faster", "[net][pace]") {
   Profile profile{"changing", 40'000, 0, 6'250'000};
   Run run(profile, 3);
   run.run(5'000'000);
@@ -220,23 +222,24 @@ TEST_CASE("a link that becomes slower or faster is followed", "[net][pace]") {
   CHECK(run.read - before >= 5 * profile.bytes_per_second * 85 / 100);
 }
 
-TEST_CASE("a client that says nothing gets the start, then a fragment a second", "[net][pace]") {
+TEST_CASE("a client without acknowledgements gets the start, then a fragment a second",
+          "[net][pace]") {
   const Profile profile{"silent", 40'000, 0, 6'250'000};
   Run run(profile, 4);
-  run.is_telling = false;
+  run.is_acknowledging = false;
   run.run(900'000);
   CHECK(run.pace.in_flight() <= ChunkPace::kStartBytes);
   const std::uint64_t start = run.pace.in_flight();
   run.run(10'900'000);
-  CHECK(run.pace.in_flight() > start);  // never quite still
+  CHECK(run.pace.in_flight() > start);  // it continues slowly
   CHECK(run.pace.in_flight() - start <= 10 * (kFragmentBytesMax + kFrameHeaderBytes));
 }
 
-TEST_CASE("a client that stops telling is held at what was under way", "[net][pace]") {
+TEST_CASE("a client that stops to acknowledge is limited to the bytes in flight", "[net][pace]") {
   const Profile profile{"stopped", 40'000, 0, 6'250'000};
   Run run(profile, 5);
   run.run(5'000'000);
-  run.is_telling = false;
+  run.is_acknowledging = false;
   run.run(6'000'000);
   const std::uint64_t held = run.pace.in_flight();
   CHECK(held <= run.pace.window());
@@ -244,7 +247,7 @@ TEST_CASE("a client that stops telling is held at what was under way", "[net][pa
   CHECK(run.pace.in_flight() - held <= 11 * (kFragmentBytesMax + kFrameHeaderBytes));
 }
 
-TEST_CASE("words about bytes that were never sent, or fewer than before, are errors",
+TEST_CASE("acknowledgements of bytes that were not sent, or of fewer than before, are errors",
           "[net][pace]") {
   ChunkPace pace;
   CHECK_FALSE(pace.acked(1, 0).has_value());
@@ -256,7 +259,7 @@ TEST_CASE("words about bytes that were never sent, or fewer than before, are err
   CHECK(pace.in_flight() == 400);
 }
 
-TEST_CASE("a client that claims all at once makes no number overflow", "[net][pace]") {
+TEST_CASE("an acknowledgement of all bytes at once overflows no number", "[net][pace]") {
   ChunkPace pace;
   std::uint64_t total = 0;
   for (TimeUs now_us = 0; now_us < 2'000'000; now_us += 7) {
@@ -270,18 +273,17 @@ TEST_CASE("a client that claims all at once makes no number overflow", "[net][pa
   CHECK(pace.in_flight() == 0);
 }
 
-TEST_CASE("what was sent while there was little to send does not make the link look slow",
-          "[net][pace]") {
+TEST_CASE("bytes sent while there was little to send do not lower the rate", "[net][pace]") {
   const Profile profile{"pauses", 40'000, 0, 6'250'000};
   Run run(profile, 6);
   run.run(5'000'000);
   const std::uint64_t rate = run.pace.rate();
   run.has_terrain = false;
-  for (int i = 0; i < 100; ++i) {  // a fragment now and then
+  for (int i = 0; i < 100; ++i) {  // a fragment from time to time
     run.run(run.now_us + 50'000);
-    run.pace.ran_dry();
+    run.pace.mark_app_limited();
     run.send_one();
-    run.pace.ran_dry();
+    run.pace.mark_app_limited();
   }
   CHECK(run.pace.rate() >= rate * 9 / 10);
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
-/// A peer that has sent all its bytes, and takes what it is sent, however little room there is.
+/// A client that has sent all its bytes and accepts every write, whatever the room.
 class FedStream final : public ByteStream {
  public:
   FedStream(asio::io_context& io, Bytes bytes) : bytes_(std::move(bytes)), closed_(io) {
@@ -26,7 +26,7 @@ class FedStream final : public ByteStream {
     const std::size_t count = std::min(into.size(), bytes_.size() - at_);
     if (count == 0) {
       const auto [error] = co_await closed_.async_wait(kTuple);
-      (void)error;  // cancelled: that is the end
+      (void)error;  // cancelled at the end
       co_return IoResult{asio::error::operation_aborted, 0, 0};
     }
     std::memcpy(into.data(), bytes_.data() + at_, count);
@@ -58,19 +58,19 @@ class FedStream final : public ByteStream {
   asio::steady_timer closed_;
 };
 
-/// Takes messages, and is done with none until it is told.
+/// Keeps messages unhandled until the test handles them.
 struct SlowWorld final : NetEvents {
   void on_connected(SessionId /*session*/) override {}
   void on_message(SessionId /*session*/, Message&& /*message*/, std::size_t bytes) override {
     waiting.push_back(bytes);
     most = std::max(most, waiting.size());
-    ++told;
+    ++received;
   }
   void on_drained(SessionId /*session*/) override {}
-  void on_disconnected(SessionId /*session*/) override { gone = true; }
+  void on_disconnected(SessionId /*session*/) override { is_disconnected = true; }
   std::vector<std::size_t> waiting;
-  std::size_t told = 0, most = 0;
-  bool gone = false;
+  std::size_t received = 0, most = 0;
+  bool is_disconnected = false;
 };
 
 Bytes frames_of(const Message& message, std::size_t count) {
@@ -95,7 +95,7 @@ struct Bench {
     session->abort();
     io.run();
   }
-  /// Bytes of bodies that the peer got, of chunks and of edits.
+  /// Returns the bytes of bodies that the client got, of chunks and of edits.
   std::pair<std::size_t, std::size_t> sent() const {
     std::size_t chunks = 0, edits = 0;
     for (std::size_t at = 0; at < stream->written.size();) {
@@ -106,7 +106,7 @@ struct Bench {
     }
     return {chunks, edits};
   }
-  /// Terrain of so many bytes waits to be sent.
+  /// Queues so many bytes of terrain.
   void fill_chunk(std::size_t bytes) {
     const auto place = session->reserve_chunk({0, {0, 0, 0}});
     REQUIRE(place);
@@ -128,40 +128,39 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("a session waits with few messages for the world: of large ones fewer than of small ones",
-          "[net]") {
-  ChunkRequest wish;
+TEST_CASE("a session has few unhandled messages, fewer large ones than small ones", "[net]") {
+  ChunkRequest request;
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(kChunkRequestKeysMax); ++i) {
-    wish.keys.push_back({0, {i, 0, 0}});
+    request.keys.push_back({0, {i, 0, 0}});
   }
   const bool is_large = GENERATE(true, false);
   CAPTURE(is_large);
   constexpr std::size_t kCount = 1'000;
-  Bench bench(frames_of(is_large ? Message(wish) : Message(Ping{1}), kCount));
+  Bench bench(frames_of(is_large ? Message(request) : Message(Ping{1}), kCount));
   const std::size_t size = bench.world.waiting.at(0);
   constexpr std::size_t kBoundBytes = 8 * 1024, kReadBytes = 4 * 1024, kMessageBytes = 64;
   const std::size_t in_bound = kBoundBytes / (size + kMessageBytes) + 1;
   const std::size_t in_read = kReadBytes / (size + kFrameHeaderBytes) + 1;
-  CHECK(bench.world.told >= in_bound);
-  CHECK(bench.world.told <= in_bound + in_read);
+  CHECK(bench.world.received >= in_bound);
+  CHECK(bench.world.received <= in_bound + in_read);
   CHECK(bench.stream->read() <= kBoundBytes + 2 * kReadBytes);
-  while (bench.world.told < kCount) {
+  while (bench.world.received < kCount) {
     const auto waiting = std::exchange(bench.world.waiting, {});
     REQUIRE_FALSE(waiting.empty());
     for (const std::size_t bytes : waiting) bench.session->handled(bytes);
     bench.io.poll();
-    REQUIRE_FALSE(bench.world.gone);
+    REQUIRE_FALSE(bench.world.is_disconnected);
   }
   CHECK(bench.world.most <= in_bound + in_read);
 }
 
-TEST_CASE("where the socket has no room edits go, and terrain waits and asks ever more seldom",
+TEST_CASE("without room in the socket edits are sent, and terrain waits with growing pauses",
           "[net]") {
   Bench bench({}, {0, 1'000});
   bench.fill_chunk(5'000);
   bench.edit(100);
   CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
-  // The last pauses alone are 4, 8, 16 and 32 ms: a slow machine makes them longer, and none makes them shorter.
+  // The last pauses are 4, 8, 16 and 32 ms. A slow machine makes them longer, never shorter.
   const auto began = std::chrono::steady_clock::now();
   for (const std::size_t asked = bench.stream->asked; bench.stream->asked < asked + 5;)
     bench.io.run_one();

@@ -21,7 +21,7 @@ SendLimits limits() {
   return l;
 }
 
-/// Everything the queue gives out, as the reader on the other side sees it.
+/// Returns everything that the queue sends, as the client's reader gets it.
 struct Wire {
   Bytes bytes;
   void take_all(SendQueue& queue) {
@@ -46,7 +46,7 @@ struct Wire {
   }
 };
 
-TEST_CASE("each class is bounded by itself, and says no instead of growing", "[net]") {
+TEST_CASE("each class has its own bound and rejects messages beyond it", "[net]") {
   SendQueue queue(limits());
   CHECK(queue.push(message(FrameClass::edits, 600)));
   CHECK(queue.push(message(FrameClass::edits, 400)));
@@ -57,7 +57,7 @@ TEST_CASE("each class is bounded by itself, and says no instead of growing", "[n
   CHECK_FALSE(queue.reserve_chunk().has_value());  // places count even before they are filled
 }
 
-TEST_CASE("each class holds so many messages, however small they are", "[net]") {
+TEST_CASE("each class has a maximal number of messages, also of small ones", "[net]") {
   SendLimits few = limits();
   few.control_count = 3;
   few.edit_count = 5;
@@ -75,14 +75,14 @@ TEST_CASE("each class holds so many messages, however small they are", "[net]") 
   CHECK(queue.push(message(FrameClass::control, 8)));
 }
 
-TEST_CASE("small messages of the chunk class take places as chunks do", "[net]") {
+TEST_CASE("small messages of the chunk class use places as chunks do", "[net]") {
   SendQueue queue(limits());
   CHECK(queue.reserve_chunk().has_value());
   for (int i = 0; i < 3; ++i) CHECK(queue.push(message(FrameClass::chunks, 8)));
   CHECK_FALSE(queue.push(message(FrameClass::chunks, 8)));
   CHECK_FALSE(queue.reserve_chunk().has_value());
   for (int i = 0; i < 10; ++i)
-    CHECK(queue.push(message(FrameClass::edits, 8)));  // they have places of their own
+    CHECK(queue.push(message(FrameClass::edits, 8)));  // edits have their own places
 }
 
 TEST_CASE("a message larger than its bound still fits an empty class", "[net]") {
@@ -112,7 +112,7 @@ TEST_CASE("an edit overtakes terrain at the next fragment", "[net]") {
   CHECK(queue.empty());
 }
 
-TEST_CASE("terrain goes only as far as it may, in fragments as large as they may be", "[net]") {
+TEST_CASE("terrain is sent only as allowed, in fragments of the allowed size", "[net]") {
   SendQueue queue(limits());
   const auto place = queue.reserve_chunk();
   CHECK_FALSE(queue.has_chunk());
@@ -121,14 +121,14 @@ TEST_CASE("terrain goes only as far as it may, in fragments as large as they may
   SendQueue::Batch batch;
   CHECK_FALSE(queue.take(batch, 0));
   CHECK(queue.push(message(FrameClass::edits, 10)));
-  REQUIRE(queue.take(batch, 0));  // edits never wait for it
+  REQUIRE(queue.take(batch, 0));  // edits do not wait for it
   CHECK(batch.chunk_bytes == 0);
   REQUIRE(queue.take(batch, 2'000));
   CHECK(batch.chunk_bytes == 2'000 + kFrameHeaderBytes);
   CHECK(batch.bytes == batch.chunk_bytes);
 }
 
-TEST_CASE("terrain and control are not starved by edits without end", "[net]") {
+TEST_CASE("terrain and control are not starved by endless edits", "[net]") {
   SendLimits wide;
   SendQueue queue(wide);
   const auto place = queue.reserve_chunk();
@@ -147,11 +147,10 @@ TEST_CASE("terrain and control are not starved by edits without end", "[net]") {
   }
   CHECK(chunks >= all / 8);
   CHECK(control >= all / 12);
-  CHECK(chunks + control <= all / 2);  // and edits still come first
+  CHECK(chunks + control <= all / 2);  // edits still get the larger part
 }
 
-TEST_CASE("snapshots outside of the view are not sent any more, but for one that has begun",
-          "[net]") {
+TEST_CASE("snapshots outside of the view are dropped, except one that has begun", "[net]") {
   SendQueue queue(limits());
   const auto key = [](std::int32_t x) { return ChunkKey{0, {x, 0, 0}}; };
   const auto begun = queue.reserve_chunk(key(50));
@@ -167,7 +166,7 @@ TEST_CASE("snapshots outside of the view are not sent any more, but for one that
   queue.forget_outside({{0, 0, 0}, 2, 0});
   queue.fill(*inside, message(FrameClass::chunks, 10, 2));
   queue.fill(*unfilled, message(FrameClass::chunks, 10, 9));
-  CHECK(queue.push(message(FrameClass::chunks, 10, 3)));  // no snapshot: it stays
+  CHECK(queue.push(message(FrameClass::chunks, 10, 3)));  // it is no snapshot, so it stays
   queue.forget_outside({{0, 0, 0}, 2, 0});
   CHECK(queue.queued_bytes(FrameClass::chunks) == 40 + 10 + 10);
   wire.take_all(queue);
@@ -178,7 +177,7 @@ TEST_CASE("snapshots outside of the view are not sent any more, but for one that
   CHECK(got[2].second[0] == 3);
 }
 
-TEST_CASE("on a slow link fewer bytes of chunks wait", "[net]") {
+TEST_CASE("a smaller backlog lets fewer bytes of chunks wait", "[net]") {
   SendQueue queue(limits());
   queue.set_chunk_backlog(5'000);
   const auto first = queue.reserve_chunk();
@@ -208,7 +207,7 @@ TEST_CASE("chunks keep the order of their places, however late they are filled",
   CHECK(got[1].second[0] == 2);
 }
 
-TEST_CASE("after a refusal the queue says once that there is room again", "[net]") {
+TEST_CASE("after a refused message the queue reports once that it has room again", "[net]") {
   SendQueue queue(limits());
   SendQueue::Batch batch;
   CHECK_FALSE(queue.take_drained());
@@ -220,7 +219,7 @@ TEST_CASE("after a refusal the queue says once that there is room again", "[net]
   CHECK_FALSE(queue.take_drained());
 }
 
-TEST_CASE("dropped chunks are gone, and filling their places does nothing", "[net]") {
+TEST_CASE("dropped chunks are not sent, and filling their places does nothing", "[net]") {
   SendQueue queue(limits());
   const auto sent_in_part = queue.reserve_chunk();
   queue.fill(*sent_in_part, message(FrameClass::chunks, 2 * kFragmentBytesMax));
@@ -234,7 +233,7 @@ TEST_CASE("dropped chunks are gone, and filling their places does nothing", "[ne
   CHECK(queue.queued_bytes(FrameClass::chunks) == 0);
 }
 
-TEST_CASE("whatever is queued in whatever order arrives whole and in order within its class",
+TEST_CASE("messages of any mix arrive complete and in order within their class",
           "[net][property]") {
   SplitMix64 rng(Catch::rngSeed());
   SendLimits wide;

@@ -21,14 +21,14 @@ struct Connection {
     server.non_blocking(true);
     client.non_blocking(true);
   }
-  /// Until the kernel takes no more.
+  /// Writes until the kernel accepts no more.
   void fill() {
     const std::vector<std::uint8_t> bytes(1 << 16);
     asio::error_code error;
     while (!error) server.write_some(asio::buffer(bytes), error);
     REQUIRE(error == asio::error::would_block);
   }
-  /// All that is on its way to the client, in both kernels' buffers.
+  /// Reads everything that was sent, from the buffers of both ends.
   void drain() {
     std::vector<std::uint8_t> bytes(1 << 16);
     asio::error_code error;
@@ -44,8 +44,7 @@ struct Connection {
 
 }  // namespace
 
-TEST_CASE("there is room in a connection's first window, and none when more waits than fits",
-          "[net]") {
+TEST_CASE("a connection's first window has room, and none when more bytes wait than fit", "[net]") {
   Connection connection;
   const int socket = connection.server.native_handle();
   const std::size_t first = tcp_room(socket).bytes;
@@ -58,6 +57,6 @@ TEST_CASE("there is room in a connection's first window, and none when more wait
   CHECK(tcp_room(socket).round_trip_us > 0);
 }
 
-TEST_CASE("what is no TCP socket has room for everything", "[net]") {
+TEST_CASE("a socket that is not TCP has unlimited room", "[net]") {
   CHECK(tcp_room(-1).bytes == SIZE_MAX);
 }

@@ -51,7 +51,7 @@ struct JobBench {
     job.computed({planned(kHere, edits), planned(kThere, edits)});
   }
   void write_log() {
-    bench.ports.log_written = bench.ports.records.size();
+    bench.environment.log_written = bench.environment.records.size();
     if (bench.server.head() > 0) bench.server.durable(bench.server.head(), bench.now());
   }
   void step() {
@@ -70,16 +70,16 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   const auto room = static_cast<std::size_t>(GENERATE(1, 2, 3, 5, 9));
   CAPTURE(room);
   JobBench b;
-  b.bench.ports.log_records_max = room;
+  b.bench.environment.log_records_max = room;
   b.plan_all(5);
   int steps = 0;
   while (b.job.state() == RestoreJob::State::applying) {
     REQUIRE(++steps <= 10);
-    const std::size_t before = b.bench.ports.records.size();
+    const std::size_t before = b.bench.environment.records.size();
     b.step();
-    CHECK(b.bench.ports.records.size() == std::min<std::size_t>(before + room, 10));
+    CHECK(b.bench.environment.records.size() == std::min<std::size_t>(before + room, 10));
     b.step();  // full: nothing more goes in
-    CHECK(b.bench.ports.records.size() == std::min<std::size_t>(before + room, 10));
+    CHECK(b.bench.environment.records.size() == std::min<std::size_t>(before + room, 10));
     if (b.job.state() == RestoreJob::State::applying)
       CHECK(b.job.progress().waits_for == "the log is full (log_queue_records)");
     b.write_log();
@@ -95,14 +95,14 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   CHECK(p.first == 1);
   CHECK(p.last == 10);
   for (std::size_t i = 0; i < 10; ++i) {
-    CHECK(b.bench.ports.records[i].op == OperationId{0, kInstance, i + 1});
+    CHECK(b.bench.environment.records[i].op == OperationId{0, kInstance, i + 1});
   }
 }
 
 TEST_CASE("the rest of a chunk is planned again if somebody built there between two parts",
           "[rollback]") {
   JobBench b;
-  b.bench.ports.log_records_max = 2;
+  b.bench.environment.log_records_max = 2;
   b.plan_all(3);
   b.step();
   CHECK(b.job.progress().edits == 2);
@@ -139,8 +139,8 @@ TEST_CASE("a job that somebody pays for writes what their rate gives back", "[ro
   CHECK(b.job.progress().edits == 4);
   CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
   b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket is one
-  REQUIRE(b.bench.ports.messages<Reject>(kBuilder, kEdge).size() == 1);
-  CHECK(b.bench.ports.messages<Reject>(kBuilder, kEdge)[0].reason == RejectReason::rate_limited);
+  REQUIRE(b.bench.environment.messages<Reject>(kBuilder, kEdge).size() == 1);
+  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason == RejectReason::rate_limited);
   SECTION("time gives it back") {
     b.bench.tick(200'000);
     b.job.step(b.bench.server, b.bench.now());
@@ -177,7 +177,7 @@ TEST_CASE("an edit dearer than the bucket is paid with a full one", "[rollback]"
 TEST_CASE("a client that takes a job's client sequences ends the job, not the server",
           "[rollback]") {
   JobBench b(1);
-  b.bench.ports.log_records_max = 2;
+  b.bench.environment.log_records_max = 2;
   b.plan_all(2);
   b.step();
   REQUIRE(b.job.progress().edits == 2);

@@ -50,13 +50,13 @@ class DeskBench : public RollbackService::Workers {
   /// What was ordered goes to disk.
   void write_log() {
     bench.server.commit(bench.now());
-    auto& records = bench.ports.records;
+    auto& records = bench.environment.records;
     if (written < records.size()) {
       const std::span<const EditRecord> fresh(records.data() + written, records.size() - written);
-      const auto done = store->append(std::exchange(bench.ports.players, {}), fresh);
+      const auto done = store->append(std::exchange(bench.environment.players, {}), fresh);
       INFO((done ? "" : done.error().message()));
       REQUIRE(done.has_value());
-      written = bench.ports.log_written = records.size();
+      written = bench.environment.log_written = records.size();
       bench.server.durable(records.back().version.seq, bench.now());
     }
   }
@@ -70,7 +70,7 @@ class DeskBench : public RollbackService::Workers {
       write_log();
       tick();
       while (work()) desk.tick(bench.now());
-      if (works.empty() && desk.running() == 0 && written == bench.ports.records.size() && i > 2)
+      if (works.empty() && desk.running() == 0 && written == bench.environment.records.size() && i > 2)
         return;
     }
     FAIL("the desk does not come to rest");

@@ -51,19 +51,19 @@ TEST_CASE("a rollback gives the world back as it was, and its undo takes that ba
   night.settle();
   CHECK(night.answer().is_ok);
   CHECK(night.digests() == night.before);
-  const EditRecord first = night.bench.ports.records[2];
+  const EditRecord first = night.bench.environment.records[2];
   CHECK(first.cause == Cause::rollback);
   CHECK(first.op.author == 0);
   CHECK(first.op.seq == 1);
   CHECK(first.subject == 2);
-  CHECK(night.bench.ports.records.back().op.instance == first.op.instance);
+  CHECK(night.bench.environment.records.back().op.instance == first.op.instance);
 
   SECTION("by the sequence of its first edit") {
     night.desk.undo_rollback("3", 0, night.bench.now(), night.reply());
     night.settle();
     CHECK(night.answer().is_ok);
     CHECK(night.digests() == griefed);
-    CHECK(night.bench.ports.records.back().cause == Cause::undo);
+    CHECK(night.bench.environment.records.back().cause == Cause::undo);
     night.desk.list(night.reply());
     night.settle();
     CHECK(night.answer().text.find("rollback 3 ") == 0);
@@ -166,7 +166,7 @@ TEST_CASE("a chunk that somebody changes before every slice is restored by maske
   CHECK(night.at({-3, 2, 5}) == kEmpty);
   CHECK(night.at({-20, 0, -20}) >= 3);
   bool is_masked = false;
-  for (const EditRecord& record : night.bench.ports.records) {
+  for (const EditRecord& record : night.bench.environment.records) {
     is_masked |=
         record.cause == Cause::rollback && record.edit.mask == Mask{MaskKind::only_material, 1};
   }
@@ -177,18 +177,18 @@ TEST_CASE("a rollback waits while the log is full, and says when it cannot be wr
           "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
-  const std::size_t ordered = night.bench.ports.records.size();
-  night.bench.ports.log_room = false;
+  const std::size_t ordered = night.bench.environment.records.size();
+  night.bench.environment.log_room = false;
   night.desk.apply(id, 0, night.reply());
   for (int i = 0; i < 20; ++i) {
     night.tick();
     while (night.work()) {
     }
   }
-  CHECK(night.bench.ports.records.size() == ordered);
+  CHECK(night.bench.environment.records.size() == ordered);
   CHECK(night.desk.running() == 1);
   SECTION("room again") {
-    night.bench.ports.log_room = true;
+    night.bench.environment.log_room = true;
     night.settle();
     CHECK(night.answer().is_ok);
     CHECK(night.digests() == night.before);
@@ -279,8 +279,8 @@ TEST_CASE("players undo and redo their own edits, and nobody else's", "[rollback
   CHECK(bench.at({3, 1, 1}) == 1);
   CHECK(bench.at({4, 1, 1}) == kEmpty);
   CHECK(bench.at({5, 0, 0}) == 3);
-  CHECK(bench.bench.ports.records.back().op.author == ana);
-  CHECK(bench.bench.ports.records.back().subject == 2);
+  CHECK(bench.bench.environment.records.back().op.author == ana);
+  CHECK(bench.bench.environment.records.back().subject == 2);
   CHECK(undo(ana));
   CHECK(bench.at({0, 0, 0}) == kEmpty);
   CHECK(bench.at({5, 0, 0}) == 3);
@@ -337,7 +337,7 @@ TEST_CASE("one undo of a player at a time; it waits until the edit is on disk",
 TEST_CASE("a rollback goes on where the log holds fewer edits than a slice has", "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
-  night.bench.ports.log_records_max = 3;
+  night.bench.environment.log_records_max = 3;
   night.desk.apply(id, 0, night.reply());
   night.settle();
   CHECK(night.answer().is_ok);
@@ -359,17 +359,17 @@ TEST_CASE("undo and redo cost of the player's edits a second, and say when they 
   bench.tick();
   while (bench.work()) bench.tick();
   while (bench.work()) bench.tick();
-  const std::size_t written = bench.bench.ports.records.size();
+  const std::size_t written = bench.bench.environment.records.size();
   CHECK(written > 1);
   CHECK(written < 17);
   CHECK(bench.answers.back().text ==
         "undo waits: the author's edits per second are used up (edits_per_second)");
   CHECK_FALSE(bench.answers.back().is_done);
   bench.set(kBuilder, {0, 9, 0}, 1);
-  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).back().reason ==
+  CHECK(bench.bench.environment.messages<Reject>(kBuilder, kEdge).back().reason ==
         RejectReason::rate_limited);
   bench.set(kGriefer, {0, 9, 0}, 1);
-  CHECK(bench.bench.ports.messages<Reject>(kGriefer, kEdge).empty());
+  CHECK(bench.bench.environment.messages<Reject>(kGriefer, kEdge).empty());
   bench.desk.undo(ana, bench.bench.now(), bench.reply());
   CHECK(bench.answers.back().text.find(
             "one of yours is still under way, and waits: the author's edits") != std::string::npos);
@@ -402,7 +402,7 @@ TEST_CASE("a rollback costs nobody's edits a second", "[rollback]") {
   CHECK(bench.answer().is_ok);
   CHECK(bench.bench.time_us - began < 1'000'000);
   bench.set(kBuilder, {0, 9, 0}, 1);
-  CHECK(bench.bench.ports.messages<Reject>(kBuilder, kEdge).empty());
+  CHECK(bench.bench.environment.messages<Reject>(kBuilder, kEdge).empty());
 }
 
 TEST_CASE("the undos of one run are one client instance of each author, and no rollbacks",
@@ -412,7 +412,7 @@ TEST_CASE("the undos of one run are one client instance of each author, and no r
   const AuthorId ben = bench.join(kGriefer);
   for (int i = 0; i < 3; ++i) bench.set(kBuilder, {i, 0, 0}, 1);
   bench.set(kGriefer, {0, 5, 0}, 1);
-  const auto last = [&] { return bench.bench.ports.records.back(); };
+  const auto last = [&] { return bench.bench.environment.records.back(); };
   bench.desk.undo(ana, bench.bench.now(), bench.reply());
   bench.settle();
   const EditRecord first = last();

@@ -22,7 +22,8 @@ ChunkPtr some_chunk(SplitMix64& rng) {
 
 }  // namespace
 
-TEST_CASE("a chunk is encoded once in each encoding, and all get the same bytes", "[server]") {
+TEST_CASE("a chunk is encoded once in each encoding, and every call returns the same bytes",
+          "[server]") {
   SplitMix64 rng{1};
   EncodedChunks chunks;
   const ChunkPtr chunk = some_chunk(rng);
@@ -38,11 +39,11 @@ TEST_CASE("a chunk is encoded once in each encoding, and all get the same bytes"
   CHECK(chunks.bytes() > packed.bytes->size() + raw.bytes->size());
 }
 
-TEST_CASE("a chunk that is gone answers for no other one", "[server]") {
+TEST_CASE("a released chunk is not mistaken for another one at its address", "[server]") {
   SplitMix64 rng{2};
   EncodedChunks chunks;
   for (int i = 0; i < 200; ++i) {
-    // Not make_shared: a weak pointer would keep the address from being used again.
+    // This is not make_shared, because then a weak pointer would keep the address in use.
     const ChunkPtr chunk(new Chunk(*some_chunk(rng)));
     CHECK(*chunks.snapshot(kKey, chunk, ChunkEncoding::packed).bytes ==
           *encode_snapshot(kKey, *chunk, ChunkEncoding::packed).bytes);
@@ -50,7 +51,7 @@ TEST_CASE("a chunk that is gone answers for no other one", "[server]") {
   CHECK(chunks.encoded() == 200);
 }
 
-TEST_CASE("those used last are kept, within the bound", "[server]") {
+TEST_CASE("the most recently used messages are kept, within the bound", "[server]") {
   SplitMix64 rng{3};
   std::vector<ChunkPtr> some;
   for (int i = 0; i < 50; ++i) some.push_back(some_chunk(rng));
@@ -67,10 +68,11 @@ TEST_CASE("those used last are kept, within the bound", "[server]") {
   }
   CHECK(chunks.encoded() == 50);
   for (const ChunkPtr& chunk : some) chunks.snapshot(kKey, chunk, ChunkEncoding::raw);
-  CHECK(chunks.encoded() > 90);  // most were gone
+  CHECK(chunks.encoded() > 90);  // most were evicted
 }
 
-TEST_CASE("threads that want a chunk at once wait for the one that encodes it", "[server]") {
+TEST_CASE("threads that request a chunk at the same time wait for the one that encodes it",
+          "[server]") {
   SplitMix64 rng{4};
   std::vector<ChunkPtr> some;
   for (int i = 0; i < 100; ++i) some.push_back(some_chunk(rng));

@@ -42,7 +42,7 @@ constexpr ChunkKey kOrigin{0, {0, 0, 0}};
 constexpr ChunkKey kEast{0, {1, 0, 0}};
 constexpr Clocks kNow{1000, 5000};
 
-TEST_CASE("queued edits get consecutive sequences and each touched chunk's previous one",
+TEST_CASE("queued edits get consecutive sequences, and the previous sequence of each touched chunk",
           "[world]") {
   Authority authority(limits(), {3, 40, 0});
   load(authority, kOrigin, base_chunk());
@@ -71,11 +71,11 @@ TEST_CASE("queued edits get consecutive sequences and each touched chunk's previ
   CHECK(authority.chunks().version(kEast) == Version{3, 43});
 }
 
-TEST_CASE("records carry version, operation and a time that never goes back", "[world]") {
+TEST_CASE("records have version, operation and a time that never decreases", "[world]") {
   Authority authority(limits(), {2, 0, 9000});
   (void)authority.submit(offer(1, SetVoxel{{1, 1, 1}}, 1), true);
   const auto first = authority.commit({0, 5000});
-  CHECK(first->records[0].time_us == 9000);  // the wall clock stood behind the log
+  CHECK(first->records[0].time_us == 9000);  // the wall clock was behind the log
   CHECK(first->records[0].version == Version{2, 1});
   CHECK(first->records[0].op == OperationId{1, 77, 1});
   (void)authority.submit(offer(2, SetVoxel{{1, 1, 1}}, 2), true);
@@ -91,10 +91,10 @@ TEST_CASE("an edit that changes no voxel still moves the version", "[world]") {
   const ChunkPtr after = authority.chunks().find(kOrigin);
   CHECK(after->voxels == before->voxels);
   CHECK(after->version == Version{1, 1});
-  CHECK(before->version == Version{});  // what was published stays as it was
+  CHECK(before->version == Version{});  // the chunk that was published before is unchanged
 }
 
-TEST_CASE("a client sequence is decided once, by applying or by a final refusal", "[world]") {
+TEST_CASE("an operation is resolved once, by a commit or by a final rejection", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   authority.resolved().raise({1, 77, 10});  // from the store
   CHECK(authority.submit(offer(10, box(0, 1), 1), true) == RejectReason::already_resolved);
@@ -105,8 +105,8 @@ TEST_CASE("a client sequence is decided once, by applying or by a final refusal"
   CHECK(authority.submit(offer(15, box(0, 1), 1), true) == RejectReason::already_resolved);
   CHECK(authority.submit(offer(21, box(0, 1), 99), true) == RejectReason::unknown_material);
   CHECK(authority.submit(offer(21, box(0, 1), 1), true) ==
-        RejectReason::unknown_material);  // as it was told
-  // Another instance of the same author, and another author, count for themselves.
+        RejectReason::unknown_material);  // the same reason as before
+  // Another instance of the same author, and another author, have their own watermarks.
   EditOffer other = offer(1, box(0, 1), 1);
   other.op.instance = 78;
   CHECK_FALSE(authority.submit(other, true).has_value());
@@ -114,7 +114,8 @@ TEST_CASE("a client sequence is decided once, by applying or by a final refusal"
   CHECK(authority.commit(kNow)->records.size() == 3);
 }
 
-TEST_CASE("every refusal is final, busy too, and is told again to whoever asks again", "[world]") {
+TEST_CASE("every rejection is final, also busy, and is repeated when the edit is offered again",
+          "[world]") {
   Authority authority(limits(), {1, 0, 0});
   CHECK(authority.submit(offer(1, box(0, 1), 1), false) == RejectReason::busy);
   CHECK(authority.resolved().of(1, 77) == 1);
@@ -122,22 +123,22 @@ TEST_CASE("every refusal is final, busy too, and is told again to whoever asks a
   CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
   CHECK_FALSE(authority.submit(offer(2, box(0, 1), 1), true).has_value());
   CHECK(authority.submit(offer(1, box(0, 1), 1), true) == RejectReason::busy);
-  // What is decided or wrong is told even while the log is full.
+  // Resolved operations and invalid edits are answered even while the log is full.
   CHECK(authority.submit(offer(2, box(0, 1), 1), false) == RejectReason::already_resolved);
   CHECK(authority.submit(offer(3, box(0, 1), 99), false) == RejectReason::unknown_material);
 }
 
-TEST_CASE("an instance's oldest refusals are forgotten beyond the bound", "[world]") {
+TEST_CASE("the oldest rejections of an instance are dropped beyond the bound", "[world]") {
   OperationWatermarks marks;
-  for (ClientSequence seq = 1; seq <= OperationWatermarks::kRefusalsMax + 1; ++seq) {
-    marks.refuse({1, 7, seq}, RejectReason::busy);
+  for (ClientSequence seq = 1; seq <= OperationWatermarks::kRejectionsMax + 1; ++seq) {
+    marks.reject({1, 7, seq}, RejectReason::busy);
   }
   CHECK(marks.answer_to({1, 7, 1}) == RejectReason::already_resolved);
   CHECK(marks.answer_to({1, 7, 2}) == RejectReason::busy);
   CHECK(marks.answer_to({1, 8, 2}) == RejectReason::already_resolved);
 }
 
-TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
+TEST_CASE("edits beyond the limits are rejected with their reason", "[world]") {
   const auto reason = [](const EditDescriptor& edit) { return check_edit(edit, limits()); };
   CHECK_FALSE(reason({FillSphere{{0, 0, 0}, 20}, {}, 1}).has_value());
   CHECK(reason({FillSphere{{0, 0, 0}, 30}, {}, 1}) == RejectReason::too_large);  // volume
@@ -160,8 +161,9 @@ TEST_CASE("edits beyond the limits are refused with their reason", "[world]") {
   CHECK_FALSE(reason({SetVoxel{{0, 0, 0}}, {MaskKind::only_material, 7}, 1}).has_value());
 }
 
-TEST_CASE("the server's own edits may be larger and higher than players', but not without end",
-          "[world]") {
+TEST_CASE(
+    "edits of the server may be larger and higher than those of players, within the commit's limit",
+    "[world]") {
   EditLimits narrow = limits();
   narrow.heights = {0, 8};
   Authority authority(narrow, {1, 0, 0});
@@ -178,7 +180,7 @@ TEST_CASE("the server's own edits may be larger and higher than players', but no
   CHECK(authority.submit(unknown, true) == RejectReason::unknown_material);
 }
 
-TEST_CASE("a paste is checked by its touched cells and each of its materials", "[world]") {
+TEST_CASE("a paste is checked by its touched chunks and each of its materials", "[world]") {
   EditLimits l = limits();
   l.heights = {0, 8};
   const auto paste = [](VoxelPos at, Material high, std::uint32_t touched) {
@@ -208,7 +210,8 @@ TEST_CASE("a paste is checked by its touched cells and each of its materials", "
   CHECK(edit_tokens({FillBox{{{0, 0, 0}, {4096, 4096, 4096}}}, {}, 1}, 16) == kTouchedChunksMax);
 }
 
-TEST_CASE("a commit ends before its message is too long, whatever the edits weigh", "[world]") {
+TEST_CASE("a commit ends before its message is too long, whatever the size of the edits",
+          "[world]") {
   EditLimits l = limits();
   l.chunk_edge = 128;
   l.volume_max = 100'000;
@@ -233,16 +236,16 @@ TEST_CASE("a commit ends before its message is too long, whatever the edits weig
     ++commits;
   }
   CHECK(edits == 40);
-  CHECK(commits == 4);  // eleven go over half a MiB
+  CHECK(commits == 4);  // eleven exceed half a MiB
 
-  // Small edits fill a commit by their number, not by what the largest could weigh.
+  // Small edits fill a commit up to the maximal number of edits.
   for (ClientSequence seq = 41; seq <= 40 + 3000; ++seq) {
     CHECK_FALSE(authority.submit(offer(seq, SetVoxel{{1, 1, 1}}, 1), true).has_value());
   }
   CHECK(authority.commit(kNow)->records.size() == 3000);
 }
 
-TEST_CASE("an edit that reaches above or below the world is refused whole", "[world]") {
+TEST_CASE("an edit that reaches above or below the world is rejected as a whole", "[world]") {
   EditLimits l = limits();
   l.heights = {-8, 8};
   const auto reason = [&](const EditShape& shape) { return check_edit({shape, {}, 1}, l); };
@@ -258,7 +261,7 @@ TEST_CASE("an edit that reaches above or below the world is refused whole", "[wo
   CHECK(reason(FillSphere{{0, 3, 0}, 5}) == RejectReason::outside_world);
 }
 
-TEST_CASE("what an edit answers goes into its commit and its record", "[world]") {
+TEST_CASE("the subject of an edit is in its commit and its record", "[world]") {
   Authority authority(limits(), {2, 30, 0});
   EditOffer undo = offer(1, SetVoxel{{1, 1, 1}}, 1);
   undo.cause = Cause::undo;
@@ -298,7 +301,8 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
       (void)resident.commit(kNow);
     }
     if (seq == 30)
-      REQUIRE(authority.chunks().begin_load(kOrigin));  // edits go on while it is being loaded
+      REQUIRE(
+          authority.chunks().begin_load(kOrigin));  // edits are ordered while the chunk is loading
   }
   (void)authority.commit(kNow);
   (void)resident.commit(kNow);
@@ -312,7 +316,7 @@ TEST_CASE("a chunk that is not in memory keeps its stack and applies it when loa
   CHECK(test::DenseChunk::of(late->voxels) == test::DenseChunk::of(early->voxels));
 }
 
-TEST_CASE("recovery puts records back on the stacks and skips what a snapshot contains",
+TEST_CASE("recovery puts records back on the stacks and skips those that a snapshot contains",
           "[world]") {
   // First run: five edits; the snapshot was taken after the second.
   Authority first(limits(), {1, 0, 0});
@@ -326,7 +330,8 @@ TEST_CASE("recovery puts records back on the stacks and skips what a snapshot co
     log.insert(log.end(), batch->records.begin(), batch->records.end());
     if (seq == 2) snapshot = first.chunks().find(kOrigin);
   }
-  // Second run: the checkpoint lags behind the snapshot, as after a crash between two of a round's slices.
+  // Second run: the checkpoint lags behind the snapshot, as after a crash between two of a round's
+  // slices.
   Authority second(limits(), {2, 5, kNow.utc_us});
   second.chunks().set_saved(kOrigin, snapshot->version);
   for (const EditRecord& record : log) second.replay_onto_stack(record);
@@ -378,7 +383,7 @@ TEST_CASE(
   CHECK(authority.chunks().dirty().empty());
 }
 
-TEST_CASE("one commit never exceeds its limits, the rest follows in the next", "[world]") {
+TEST_CASE("a commit never exceeds its limits; the rest is in the next one", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   for (ClientSequence seq = 1; seq <= kCommitEditsMax + 5; ++seq) {
     REQUIRE_FALSE(authority.submit(offer(seq, SetVoxel{{0, 0, 0}}, 1), true).has_value());
@@ -395,7 +400,7 @@ TEST_CASE("one commit never exceeds its limits, the rest follows in the next", "
   CHECK(commits >= 2);
 }
 
-TEST_CASE("only clean chunks that nobody uses are evicted, longest unused first", "[world]") {
+TEST_CASE("only clean chunks without users are evicted, longest unused first", "[world]") {
   Authority authority(limits(), {1, 0, 0});
   WorldChunks& chunks = authority.chunks();
   for (std::int32_t x = 0; x < 4; ++x) load(authority, {0, {x, 0, 0}}, base_chunk());
@@ -405,7 +410,7 @@ TEST_CASE("only clean chunks that nobody uses are evicted, longest unused first"
   for (std::int32_t x = 0; x < 4; ++x) chunks.released({0, {x, 0, 0}});
   chunks.evict(0, 100, is_used);
   CHECK(chunks.residency({0, {0, 0, 0}}) == Residency::absent);
-  CHECK(chunks.residency(kEast) == Residency::resident);           // not in a snapshot yet
+  CHECK(chunks.residency(kEast) == Residency::resident);           // it is not in a snapshot yet
   CHECK(chunks.residency({0, {2, 0, 0}}) == Residency::resident);  // used
   CHECK(chunks.residency({0, {3, 0, 0}}) == Residency::absent);
   CHECK(chunks.resident_count() == 2);

@@ -11,7 +11,8 @@ std::uint64_t digest_at(const WorldBench& bench, const ChunkKey& key) {
   return claim_digest(bench.server.find_chunk(key)->digest);
 }
 
-/// A world with an edited chunk at the origin, version (epoch 1, seq 1), in memory; session 1 has seen it.
+/// A world with an edited chunk at the origin, version (epoch 1, seq 1), in memory. Session 1 is
+/// subscribed to it.
 struct Fixture : WorldBench {
   Fixture() {
     join(1, 1);
@@ -19,14 +20,14 @@ struct Fixture : WorldBench {
     edit(1, 1, kAtOrigin);
     server.commit(now());
     server.durable(1, now());
-    ports.snapshots.clear();
+    environment.snapshots.clear();
   }
   void claim(SessionId session, const ChunkKey& key, Version version, std::uint64_t digest) {
     server.received(session, CachedChunks{{{key, version, digest}}}, now());
   }
   std::vector<ChunkKey> snapshots_to(SessionId session) const {
     std::vector<ChunkKey> keys;
-    for (const auto& sent : ports.snapshots) {
+    for (const auto& sent : environment.snapshots) {
       if (sent.session == session) keys.push_back(sent.key);
     }
     return keys;
@@ -35,34 +36,36 @@ struct Fixture : WorldBench {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture,
-                 "a chunk held at its version with its digest is called the same, and subscribed",
-                 "[world]") {
+TEST_CASE_METHOD(
+    Fixture,
+    "a copy with the chunk's version and digest is answered by not modified and subscribed",
+    "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
   view(2, kSmall);
-  const auto same = ports.messages<ChunksNotModified>(2, kEdge);
+  const auto same = environment.messages<ChunksNotModified>(2, kEdge);
   REQUIRE(same.size() == 1);
   CHECK(same[0] == ChunksNotModified{{{kHere, 1}}});
   CHECK(snapshots_to(2).size() == 4);
-  CHECK(server.counters().same_sent == 1);
+  CHECK(server.counters().not_modified_sent == 1);
   edit(1, 2, kAtOrigin, 2);
   server.commit(now());
   CHECK(commits(2).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "another digest at the same version is sent anew, and counted",
+TEST_CASE_METHOD(Fixture,
+                 "a copy with another digest at the same version gets a snapshot, and is counted",
                  "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere) ^ 1);
   view(2, kSmall);
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).empty());
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).empty());
   CHECK(snapshots_to(2).size() == 5);
   CHECK(server.counters().claims_drifted == 1);
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "an earlier version may be brought up to date, once the edits between are on disk",
+                 "a copy at an earlier version gets an update when the edits between are on disk",
                  "[world]") {
   const std::uint64_t digest = digest_at(*this, kHere);
   edit(1, 2, kAtOrigin, 2);
@@ -70,22 +73,22 @@ TEST_CASE_METHOD(Fixture,
   join(2, 2);
   claim(2, kHere, {1, 1}, digest);
   view(2, kSmall);
-  CHECK(ports.updates.empty());  // sequence 2 is not durable: nobody could read it
+  CHECK(environment.updates.empty());  // sequence 2 is not durable, so no reader has it
   CHECK(snapshots_to(2).size() == 5);
   server.durable(2, now());
   join(3, 3);
   claim(3, kHere, {1, 1}, digest);
   view(3, kSmall);
-  REQUIRE(ports.updates.size() == 1);
-  CHECK(ports.updates[0] == std::pair(kHere, Version{1, 1}));
+  REQUIRE(environment.updates.size() == 1);
+  CHECK(environment.updates[0] == std::pair(kHere, Version{1, 1}));
   CHECK(server.chunk_version(kHere) == Version{1, 2});
   CHECK(server.counters().updates_sent == 1);
-  edit(1, 3, kAtOrigin, 3);  // subscribed in the same step
+  edit(1, 3, kAtOrigin, 3);  // the session is subscribed since the update
   server.commit(now());
   CHECK(commits(3).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a version that this server never gave is answered by a snapshot",
+TEST_CASE_METHOD(Fixture, "a copy at a version that this server never had gets a snapshot",
                  "[world]") {
   SessionId session = 2;
   for (const Version version : {Version{1, 2}, Version{7, 900}, Version{7, 0}}) {
@@ -95,49 +98,50 @@ TEST_CASE_METHOD(Fixture, "a version that this server never gave is answered by 
     CHECK(snapshots_to(session).size() == 5);
     ++session;
   }
-  CHECK(ports.updates.empty());
+  CHECK(environment.updates.empty());
   CHECK(server.counters().claims_drifted == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "claims count for the newest view alone, and not for what was asked for",
+TEST_CASE_METHOD(Fixture,
+                 "only claims inside of the newest view count, and none for requested chunks",
                  "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
   view(2, {{10, 0, 0}, 1, 0});
   time_us += 1'000'000;
   view(2, kSmall);
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).empty());
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).empty());
   CHECK(snapshots_to(2).size() == 10);
-  claim(2, kHere, {1, 1}, digest_at(*this, kHere));  // answered already: ignored
+  claim(2, kHere, {1, 1}, digest_at(*this, kHere));  // ignored, because the chunk was sent already
   server.received(2, ChunkRequest{{kHere}}, now());
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).empty());
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).empty());
   CHECK(snapshots_to(2).size() == 11);
   CHECK(server.counters().chunks_requested == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "what does not fit the queue is said later", "[world]") {
+TEST_CASE_METHOD(Fixture, "answers that do not fit the queue are sent later", "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
-  ports.full.insert(2);
+  environment.full.insert(2);
   view(2, kSmall);
   tick();
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).empty());
-  ports.full.clear();
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).empty());
+  environment.full.clear();
   server.drained(2, now());
   tick();
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).size() == 1);
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).size() == 1);
   CHECK(snapshots_to(2).size() == 4);
 }
 
-TEST_CASE_METHOD(Fixture, "the same is said before a session turns to the past", "[world]") {
+TEST_CASE_METHOD(Fixture, "" not modified " is sent before a session goes to the past", "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
-  server.received(2, View{{0, 0, 0}, 2, 0}, now());  // others have to be loaded: it waits for them
-  CHECK(ports.messages<ChunksNotModified>(2, kEdge).empty());
+  server.received(2, View{{0, 0, 0}, 2, 0}, now());  // the answer waits for other chunks that load
+  CHECK(environment.messages<ChunksNotModified>(2, kEdge).empty());
   server.received(2, HistoryRequest{1, HistoryTarget::sequence, 0, 0}, now());
-  server.moment_opened(2, 1, OpenedMoment{0, 0}, now());
+  server.history_opened(2, 1, OpenedHistory{0, 0}, now());
   std::vector<std::string> order;
-  for (const auto& sent : ports.sent) {
+  for (const auto& sent : environment.sent) {
     if (sent.session != 2) continue;
     const auto message =
         decode_message(Sender::server, sent.message.frame_class, *sent.message.bytes, kEdge);

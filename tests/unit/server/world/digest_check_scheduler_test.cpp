@@ -6,7 +6,7 @@
 
 namespace runstone::test {
 
-TEST_CASE("the audits of many sessions are spread over the ticks, one a second for each",
+TEST_CASE("the digest checks of many sessions are spread over the ticks, one a second for each",
           "[world]") {
   WorldBench bench;
   constexpr std::uint8_t kPlayers = 40;
@@ -14,8 +14,8 @@ TEST_CASE("the audits of many sessions are spread over the ticks, one a second f
     bench.join(id, static_cast<std::uint8_t>(id));
     bench.view(id, {{0, 0, 0}, 0, 0});
   }
-  bench.tick();  // what has fallen due before they came
-  const auto sent = [&] { return bench.server.counters().audits_sent; };
+  bench.tick();  // sends the checks that were due before the sessions joined
+  const auto sent = [&] { return bench.server.counters().digest_checks_sent; };
   std::uint64_t before = sent();
   for (int second = 0; second < 3; ++second) {
     const std::uint64_t began = before;
@@ -26,7 +26,7 @@ TEST_CASE("the audits of many sessions are spread over the ticks, one a second f
     }
     CHECK(sent() - began == kPlayers);
     for (SessionId id = 1; id <= kPlayers; ++id) {
-      CHECK(bench.ports.messages<DigestCheck>(id, kEdge).size() ==
+      CHECK(bench.environment.messages<DigestCheck>(id, kEdge).size() ==
             static_cast<std::size_t>(second) + 2);
     }
   }

@@ -1,5 +1,5 @@
-// FakeEnvironment: the outside of a world strand as plain lists, for tests: what was sent, loaded, logged and
-// saved. Nothing answers by itself; the test answers.
+// FakeEnvironment: a WorldEnvironment of plain lists for tests: messages sent, loads, log records
+// and snapshots. The test gives all answers.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -35,30 +35,30 @@ class FakeEnvironment : public WorldEnvironment {
   };
 
   std::vector<Sent> sent;
-  std::vector<SentSnapshot> snapshots;                // updates among them
-  std::vector<std::pair<ChunkKey, Version>> updates;  // and what the session held
+  std::vector<SentSnapshot> snapshots;                // updates included
+  std::vector<std::pair<ChunkKey, Version>> updates;  // and the version that the session has
   std::vector<Closed> closed;
   std::vector<PlayerRow> players;
   std::vector<EditRecord> records;
   std::deque<ChunkKey> loads;
-  struct PastLoad {
+  struct HistoryLoad {
     SessionId session = 0;
     std::uint32_t request = 0;
     Sequence at = 0;
     ChunkKey key;
   };
   std::vector<Save> saves;
-  std::deque<std::pair<SessionId, HistoryRequest>> moments;
-  std::deque<PastLoad> past_loads;
+  std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
+  std::deque<HistoryLoad> history_loads;
   std::vector<std::string> lines;
   std::map<SessionId, ChunkEncoding> encodings;
-  std::set<SessionId> full;                        // every send to them is refused
-  std::set<SessionId> refuse_edits;                // sends of the edits class are
-  std::map<SessionId, std::size_t> snapshot_room;  // snapshots left; absent: no bound
+  std::set<SessionId> full;          // sessions whose queue is full
+  std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full
+  std::map<SessionId, std::size_t> snapshot_room;  // snapshots that still fit; absent: no bound
   bool log_room = true;
   std::size_t log_records_max =
-      std::numeric_limits<std::size_t>::max();  // that are not written yet
-  std::size_t log_written = 0;                  // of `records`
+      std::numeric_limits<std::size_t>::max();  // records that are not written yet
+  std::size_t log_written = 0;                  // written records
 
   bool send(SessionId session, const EncodedMessage& message) override {
     if (full.contains(session)) return false;
@@ -98,12 +98,12 @@ class FakeEnvironment : public WorldEnvironment {
     records.insert(records.end(), new_records.begin(), new_records.end());
   }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
-  void open_moment(SessionId session, const HistoryRequest& travel) override {
-    moments.emplace_back(session, travel);
+  void open_history(SessionId session, const HistoryRequest& request) override {
+    history_requests.emplace_back(session, request);
   }
-  void load_past_chunk(SessionId session, std::uint32_t request, Sequence at,
-                       const ChunkKey& key) override {
-    past_loads.push_back({session, request, at, key});
+  void load_history_chunk(SessionId session, std::uint32_t request, Sequence at,
+                          const ChunkKey& key) override {
+    history_loads.push_back({session, request, at, key});
   }
   void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
                       Sequence checkpoint) override {
@@ -111,7 +111,7 @@ class FakeEnvironment : public WorldEnvironment {
   }
   void log(WorldLogLevel /*level*/, const std::string& line) override { lines.push_back(line); }
 
-  /// Messages of one kind sent to a session, oldest first.
+  /// Returns the messages of one kind sent to a session, oldest first.
   template <class Kind>
   std::vector<Kind> messages(SessionId session, std::uint16_t chunk_edge) const {
     std::vector<Kind> found;
@@ -126,7 +126,7 @@ class FakeEnvironment : public WorldEnvironment {
   }
 };
 
-/// Base chunk of a world of this edge that is not of one material: a voxel in its last corner.
+/// Returns a base chunk that is not uniform: it has a voxel in its last corner.
 inline Chunk dotted_chunk(unsigned edge) {
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);
@@ -135,7 +135,7 @@ inline Chunk dotted_chunk(unsigned edge) {
   return chunk;
 }
 
-/// Empty base chunk of a world of this edge.
+/// Returns an empty base chunk.
 inline Chunk empty_chunk(unsigned edge) {
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(edge), kEmpty);

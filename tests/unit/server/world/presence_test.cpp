@@ -9,29 +9,29 @@ namespace runstone::test {
 
 using Bench = WorldBench;
 
-TEST_CASE("poses go to everyone when they changed, ten times a second at most", "[world]") {
+TEST_CASE("changed poses are sent to every session, at most ten times a second", "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.join(2, 2);
   bench.tick(100'000);
-  const std::size_t before = bench.ports.messages<PlayerPoses>(1, kEdge).size();
+  const std::size_t before = bench.environment.messages<PlayerPoses>(1, kEdge).size();
   bench.tick(100'000);
-  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
+  CHECK(bench.environment.messages<PlayerPoses>(1, kEdge).size() == before);
   Pose pose;
   pose.at = {1, 2, 3};
   bench.server.received(2, Move{pose}, bench.now());
   bench.server.received(2, Move{pose}, bench.now());
   bench.tick(50'000);
-  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == before);
+  CHECK(bench.environment.messages<PlayerPoses>(1, kEdge).size() == before);
   bench.tick(50'000);
-  const auto poses = bench.ports.messages<PlayerPoses>(1, kEdge);
+  const auto poses = bench.environment.messages<PlayerPoses>(1, kEdge);
   REQUIRE(poses.size() == before + 1);
   REQUIRE(poses.back().players.size() == 1);
   CHECK(poses.back().players[0].author == 2);
   CHECK(poses.back().players[0].pose == pose);
 }
 
-TEST_CASE("in a crowd poses go out less often and some at a time, and everybody has a turn",
+TEST_CASE("with many players poses are sent less often, some at a time, and every player's in turn",
           "[world]") {
   WorldConfig c = config();
   c.pose_interval_us = 10'000;
@@ -43,15 +43,15 @@ TEST_CASE("in a crowd poses go out less often and some at a time, and everybody 
     for (SessionId id = 1; id <= kPlayers; ++id) bench.server.received(id, Move{pose}, bench.now());
   };
   for (SessionId id = 1; id <= kPlayers; ++id) bench.join(id, static_cast<std::uint8_t>(id));
-  bench.ports.sent.clear();
+  bench.environment.sent.clear();
   move_all(1);
   for (int i = 0; i < 3; ++i) bench.tick(30'000);
-  CHECK(bench.ports.messages<PlayerPoses>(1, kEdge).size() == 1);
+  CHECK(bench.environment.messages<PlayerPoses>(1, kEdge).size() == 1);
   for (int i = 0; i < 2; ++i) {
-    move_all(2 + i);  // they never stand still
+    move_all(2 + i);  // every player moves all the time
     bench.tick(kPoseIntervalUsPerSession * kPlayers);
   }
-  const auto poses = bench.ports.messages<PlayerPoses>(1, kEdge);
+  const auto poses = bench.environment.messages<PlayerPoses>(1, kEdge);
   REQUIRE(poses.size() == 3);
   std::set<AuthorId> seen;
   for (const PlayerPoses& some : poses) {
@@ -61,42 +61,41 @@ TEST_CASE("in a crowd poses go out less often and some at a time, and everybody 
   CHECK(seen.size() == kPlayers);
 }
 
-TEST_CASE(
-    "the roster is told whole once, then as changes, and whole again after one that did not fit",
-    "[world]") {
+TEST_CASE("the player list is sent in full once, then as changes, and in full after a full queue",
+          "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.tick();
   bench.join(2, 2);
   bench.join(3, 3);
   bench.tick();
-  auto told = bench.ports.messages<PlayerList>(1, kEdge);
-  REQUIRE(told.size() == 2);
-  CHECK_FALSE(told[0].is_change);
-  CHECK(told[1].is_change);
-  CHECK(told[1].players == std::vector<PlayerName>{{2, "player2"}, {3, "player3"}});
-  told = bench.ports.messages<PlayerList>(3, kEdge);
-  REQUIRE(told.size() == 1);
-  CHECK_FALSE(told[0].is_change);
-  CHECK(told[0].players.size() == 3);
-  bench.ports.full.insert(1);
+  auto lists = bench.environment.messages<PlayerList>(1, kEdge);
+  REQUIRE(lists.size() == 2);
+  CHECK_FALSE(lists[0].is_change);
+  CHECK(lists[1].is_change);
+  CHECK(lists[1].players == std::vector<PlayerName>{{2, "player2"}, {3, "player3"}});
+  lists = bench.environment.messages<PlayerList>(3, kEdge);
+  REQUIRE(lists.size() == 1);
+  CHECK_FALSE(lists[0].is_change);
+  CHECK(lists[0].players.size() == 3);
+  bench.environment.full.insert(1);
   bench.server.disconnected(2);
   bench.tick();
-  bench.ports.full.clear();
+  bench.environment.full.clear();
   bench.tick();
-  told = bench.ports.messages<PlayerList>(1, kEdge);
-  REQUIRE(told.size() == 3);
-  CHECK_FALSE(told[2].is_change);
-  CHECK(told[2].players.size() == 2);
-  told = bench.ports.messages<PlayerList>(3, kEdge);
-  REQUIRE(told.size() == 2);
-  CHECK(told[1].is_change);
-  CHECK(told[1].left == std::vector<AuthorId>{2});
+  lists = bench.environment.messages<PlayerList>(1, kEdge);
+  REQUIRE(lists.size() == 3);
+  CHECK_FALSE(lists[2].is_change);
+  CHECK(lists[2].players.size() == 2);
+  lists = bench.environment.messages<PlayerList>(3, kEdge);
+  REQUIRE(lists.size() == 2);
+  CHECK(lists[1].is_change);
+  CHECK(lists[1].left == std::vector<AuthorId>{2});
   bench.tick();
-  CHECK(bench.ports.messages<PlayerList>(3, kEdge).size() == 2);  // no news
+  CHECK(bench.environment.messages<PlayerList>(3, kEdge).size() == 2);  // nothing changed
 }
 
-TEST_CASE("a second client of a player neither comes nor goes", "[world]") {
+TEST_CASE("a second client of a player changes nothing in the player list", "[world]") {
   Bench bench;
   bench.join(1, 1);
   bench.tick();
@@ -104,7 +103,7 @@ TEST_CASE("a second client of a player neither comes nor goes", "[world]") {
   bench.tick();
   bench.server.disconnected(2);
   bench.tick();
-  CHECK(bench.ports.messages<PlayerList>(1, kEdge).size() == 1);
+  CHECK(bench.environment.messages<PlayerList>(1, kEdge).size() == 1);
 }
 
 }  // namespace runstone::test

@@ -1,4 +1,4 @@
-// Chunks of one material: many go in one message, and all else is as with any snapshot.
+// Uniform chunks: many are sent in one message. Everything else is as for any snapshot.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -11,32 +11,32 @@ using namespace test;
 
 constexpr View kView{{0, 0, 0}, 4, 3};  // 343 chunks
 
-/// All loads are answered with air, but for the chunks at height 0.
+/// Answers all loads with air, except those of chunks at height 0.
 void answer(WorldBench& bench) {
-  while (!bench.ports.loads.empty()) {
-    const ChunkKey key = bench.ports.loads.front();
-    bench.ports.loads.pop_front();
+  while (!bench.environment.loads.empty()) {
+    const ChunkKey key = bench.environment.loads.front();
+    bench.environment.loads.pop_front();
     bench.server.chunk_loaded(key, key.at.y == 0 ? dotted_chunk(kEdge) : empty_chunk(kEdge),
                               bench.now());
   }
 }
 
-/// Session 1 comes and asks to see three chunks of air.
+/// Session 1 joins with a view of three chunks of air.
 void join_above(WorldBench& bench) {
   bench.join(1, 1);
   bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
 }
 
-/// The oldest load is answered with air.
+/// Answers the oldest load with air.
 ChunkKey load_air(WorldBench& bench) {
-  const ChunkKey key = bench.ports.loads.front();
-  bench.ports.loads.pop_front();
+  const ChunkKey key = bench.environment.loads.front();
+  bench.environment.loads.pop_front();
   bench.server.chunk_loaded(key, empty_chunk(kEdge), bench.now());
   return key;
 }
 
 std::vector<UniformChunks> uniform(const WorldBench& bench, SessionId session) {
-  return bench.ports.messages<UniformChunks>(session, kEdge);
+  return bench.environment.messages<UniformChunks>(session, kEdge);
 }
 std::set<ChunkKey> keys_of(const std::vector<UniformChunks>& messages) {
   std::set<ChunkKey> keys;
@@ -46,50 +46,50 @@ std::set<ChunkKey> keys_of(const std::vector<UniformChunks>& messages) {
   return keys;
 }
 
-TEST_CASE("chunks of one material go many to a message, at a few bytes each", "[world]") {
+TEST_CASE("one message has many uniform chunks, at a few bytes each", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
   bench.server.received(1, kView, bench.now());
   answer(bench);
   const std::size_t mixed = 49;
-  CHECK(bench.ports.snapshots.size() == mixed);
+  CHECK(bench.environment.snapshots.size() == mixed);
   CHECK(keys_of(uniform(bench, 1)).size() == 343 - mixed);
 
-  // Somebody who comes when all is in memory gets them at once.
+  // A session that joins when all chunks are in memory gets them at once.
   bench.join(2, 2);
-  const std::size_t before = bench.ports.sent.size();
+  const std::size_t before = bench.environment.sent.size();
   bench.server.received(2, kView, bench.now());
   const auto messages = uniform(bench, 2);
   CHECK(keys_of(messages).size() == 343 - mixed);
   CHECK(messages.size() <= 2);
   std::size_t bytes = 0;
-  for (std::size_t i = before; i < bench.ports.sent.size(); ++i)
-    bytes += bench.ports.sent[i].message.bytes->size();
+  for (std::size_t i = before; i < bench.environment.sent.size(); ++i)
+    bytes += bench.environment.sent[i].message.bytes->size();
   CHECK(bytes < 4 * (343 - mixed));
 }
 
-TEST_CASE("subscribing to a uniform chunk and taking its version are one step", "[world]") {
+TEST_CASE("subscribing to a uniform chunk and taking its version are one call", "[world]") {
   WorldBench bench;
   join_above(bench);
-  REQUIRE(bench.ports.loads.size() == 3);
+  REQUIRE(bench.environment.loads.size() == 3);
   const ChunkKey first = load_air(bench);
-  CHECK(uniform(bench, 1).empty());  // gathered: more are on their way
+  CHECK(uniform(bench, 1).empty());  // they wait, because more chunks load
   const VoxelPos inside{1, first.at.y * kEdge + 1, 1};
   bench.edit(1, 1, SetVoxel{inside}, 2);
   bench.server.commit(bench.now());
-  CHECK(bench.commits(1).size() == 1);  // subscribed since it was gathered
+  CHECK(bench.commits(1).size() == 1);  // the session is subscribed since the chunk is due
   load_air(bench);
   load_air(bench);
   const auto messages = uniform(bench, 1);
   REQUIRE(messages.size() == 1);
   REQUIRE(messages[0].chunks.size() == 3);
   for (const UniformChunk& chunk : messages[0].chunks) {
-    CHECK(chunk.version == Version{});  // as it was when it was gathered: the commit follows
+    CHECK(chunk.version == Version{});  // the version when it became due; the commit follows
     CHECK(chunk.material == kEmpty);
   }
 }
 
-TEST_CASE("gathered chunks wait for a tick at most", "[world]") {
+TEST_CASE("uniform chunks that are due wait for one tick at most", "[world]") {
   WorldBench bench;
   join_above(bench);
   load_air(bench);
@@ -99,19 +99,19 @@ TEST_CASE("gathered chunks wait for a tick at most", "[world]") {
 }
 
 TEST_CASE(
-    "gathered chunks go when a full queue has room, at their newest version, and none is lost",
+    "uniform chunks that are due are sent when a full queue has room, at their newest version",
     "[world]") {
   WorldBench bench;
   bench.join(1, 1);
-  bench.ports.full.insert(1);
+  bench.environment.full.insert(1);
   bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
   answer(bench);
   CHECK(uniform(bench, 1).empty());
   CHECK(bench.server.counters().queue_full > 0);
-  // A commit that does not fit makes its chunk stale: it is gathered again.
+  // A commit that does not fit makes its chunk stale, so it is due again.
   bench.edit(1, 1, FillBox{{{0, 48, 0}, {16, 64, 16}}}, 2);
   bench.server.commit(bench.now());
-  bench.ports.full.clear();
+  bench.environment.full.clear();
   bench.server.drained(1, bench.now());
   bench.tick();
   const auto messages = uniform(bench, 1);
@@ -125,7 +125,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what left the view while it was gathered is not sent", "[world]") {
+TEST_CASE("a uniform chunk that left the view before it was sent is not sent", "[world]") {
   WorldBench bench;
   join_above(bench);
   load_air(bench);

@@ -12,8 +12,9 @@ using namespace test;
 
 std::set<ChunkKey> sent_to(const WorldBench& bench, SessionId session, std::size_t first = 0) {
   std::set<ChunkKey> keys;
-  for (std::size_t i = first; i < bench.ports.snapshots.size(); ++i) {
-    if (bench.ports.snapshots[i].session == session) keys.insert(bench.ports.snapshots[i].key);
+  for (std::size_t i = first; i < bench.environment.snapshots.size(); ++i) {
+    if (bench.environment.snapshots[i].session == session)
+      keys.insert(bench.environment.snapshots[i].key);
   }
   return keys;
 }
@@ -24,7 +25,7 @@ std::size_t cells_of(const View& view) {
   return cells.size();
 }
 
-TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor an editor's turn",
+TEST_CASE("a client that moves its view each millisecond costs no loads and does not delay edits",
           "[world]") {
   WorldConfig c = config();
   c.loads_in_flight_max = 4;
@@ -32,7 +33,7 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
   bench.join(1, 1);
   bench.join(2, 2);
   bench.view(1, kSmall);
-  bench.ports.loads.clear();
+  bench.environment.loads.clear();
   const View last{{9'000, 0, 0}, 4, 4};
   std::size_t loads_answered = 0;
   std::optional<std::size_t> moved_at, arrived_at;
@@ -40,7 +41,7 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
   for (int ms = 0; ms < 1'000; ++ms) {
     bench.time_us += 1'000;
     bench.server.received(2, ms == 999 ? last : View{{100 + 20 * ms, 0, 0}, 4, 4}, bench.now());
-    if (ms == 500) {  // the editor walks on: five chunks that nobody has loaded
+    if (ms == 500) {  // the editor moves to five chunks that are not loaded
       bench.server.received(1, View{{-50, 0, 0}, 1, 0}, bench.now());
       moved_at = loads_answered;
     }
@@ -51,10 +52,10 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
       bench.server.commit(bench.now());
       REQUIRE(bench.commits(1).size() == before + 1);
     }
-    REQUIRE(bench.ports.loads.size() <= 4);
-    if (!bench.ports.loads.empty()) {  // a worker needs a millisecond for each chunk
-      const ChunkKey key = bench.ports.loads.front();
-      bench.ports.loads.pop_front();
+    REQUIRE(bench.environment.loads.size() <= 4);
+    if (!bench.environment.loads.empty()) {  // a worker needs a millisecond for each chunk
+      const ChunkKey key = bench.environment.loads.front();
+      bench.environment.loads.pop_front();
       bench.server.chunk_loaded(key, dotted_chunk(kEdge), bench.now());
       ++loads_answered;
     }
@@ -62,10 +63,10 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
     if (ms % 50 == 49) bench.server.tick(bench.now());
   }
   REQUIRE(arrived_at.has_value());
-  CHECK(*arrived_at - *moved_at <= 4 + 2 * 5);  // those under way, then every other turn
+  CHECK(*arrived_at - *moved_at <= 4 + 2 * 5);  // the loads under way, then every other load
   CHECK(loads_answered <= 1'000);
 
-  const std::size_t first = bench.ports.snapshots.size();
+  const std::size_t first = bench.environment.snapshots.size();
   bench.tick();
   bench.answer_loads();
   std::set<ChunkKey> seen = sent_to(bench, 2, first);
@@ -74,15 +75,15 @@ TEST_CASE("a peer that looks elsewhere each millisecond costs neither loads nor 
   CHECK(bench.server.resident_chunks() <= 10 + 1'000 + cells_of(last));
 }
 
-TEST_CASE("of the views that come within an interval the newest takes effect, at the next tick",
+TEST_CASE("of several views within an interval the newest takes effect on the next tick",
           "[world]") {
   WorldBench bench;
   bench.join(1, 1);
   bench.view(1, {{0, 0, 0}, 0, 0});
-  REQUIRE(bench.ports.snapshots.size() == 1);  // the first one at once
+  REQUIRE(bench.environment.snapshots.size() == 1);  // the first view takes effect at once
   bench.view(1, {{10, 0, 0}, 1, 0});
   bench.view(1, {{20, 0, 0}, 1, 0});
-  CHECK(bench.ports.snapshots.size() == 1);
+  CHECK(bench.environment.snapshots.size() == 1);
   bench.tick();
   bench.answer_loads();
   const std::set<ChunkKey> sent = sent_to(bench, 1, 1);
@@ -90,14 +91,13 @@ TEST_CASE("of the views that come within an interval the newest takes effect, at
   for (const ChunkKey& key : sent) CHECK(View{{20, 0, 0}, 1, 0}.contains(key.at));
 }
 
-TEST_CASE("what a client may have forgotten on the way to a view is sent again, the rest is not",
-          "[world]") {
+TEST_CASE("chunks outside of a skipped view are sent again, other chunks are not", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
   const View home{{0, 0, 0}, 2, 0};
   const View aside{{3, 0, 0}, 2, 0};
   bench.view(1, home);
-  const std::size_t first = bench.ports.snapshots.size();
+  const std::size_t first = bench.environment.snapshots.size();
   REQUIRE(first == cells_of(home));
   bench.view(1, aside);
   bench.view(1, home);
@@ -105,23 +105,24 @@ TEST_CASE("what a client may have forgotten on the way to a view is sent again, 
   std::set<ChunkKey> expected = sent_to(bench, 1);
   std::erase_if(expected, [&](const ChunkKey& key) { return aside.contains(key.at); });
   CHECK(sent_to(bench, 1, first) == expected);
-  CHECK(bench.ports.snapshots.size() == first + expected.size());
+  CHECK(bench.environment.snapshots.size() == first + expected.size());
 }
 
-TEST_CASE("after more views on the way than are remembered everything is sent again", "[world]") {
+TEST_CASE("after too many skipped views every chunk is sent again", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
   const View home{{0, 0, 0}, 1, 0};
   bench.view(1, home);
-  for (std::uint8_t radius = 2; radius < 4; ++radius) {  // each holds all of home
+  for (std::uint8_t radius = 2; radius < 4; ++radius) {  // each contains all of home
     for (std::uint8_t height = 0; height < 6; ++height) bench.view(1, {{0, 0, 0}, radius, height});
   }
   bench.view(1, home);
   bench.tick();
-  CHECK(bench.ports.snapshots.size() == 2 * cells_of(home));
+  CHECK(bench.environment.snapshots.size() == 2 * cells_of(home));
 }
 
-TEST_CASE("a tick brings in so many chunks, and every session has its turn", "[world]") {
+TEST_CASE("views add a limited number of chunks on each tick, and every session is served",
+          "[world]") {
   WorldConfig c = config();
   c.view_chunks_per_tick = 1;  // one view a tick
   WorldBench bench(c);
@@ -132,39 +133,39 @@ TEST_CASE("a tick brings in so many chunks, and every session has its turn", "[w
       bench.server.received(s, View{{static_cast<std::int32_t>(1000 * s) + round, 0, 0}, 0, 0},
                             bench.now());
     }
-    const std::size_t before = bench.ports.snapshots.size();
+    const std::size_t before = bench.environment.snapshots.size();
     bench.tick();
     bench.answer_loads();
-    CHECK(bench.ports.snapshots.size() - before <= 2);  // the first of all came at once
-    for (std::size_t i = before; i < bench.ports.snapshots.size(); ++i) {
-      served.insert(bench.ports.snapshots[i].session);
+    CHECK(bench.environment.snapshots.size() - before <= 2);  // the first view took effect at once
+    for (std::size_t i = before; i < bench.environment.snapshots.size(); ++i) {
+      served.insert(bench.environment.snapshots[i].session);
     }
   }
   CHECK(served == std::set<SessionId>{1, 2, 3, 4});
 }
 
-TEST_CASE("at a stop nothing is loaded any more but what snapshots need", "[world]") {
+TEST_CASE("a stop cancels all loads except those that snapshots need", "[world]") {
   WorldConfig c = config();
   c.loads_in_flight_max = 2;
   WorldBench bench(c);
   bench.join(1, 1);
   bench.server.received(1, View{{0, 0, 0}, 4, 4}, bench.now());
-  REQUIRE(bench.ports.loads.size() == 2);
+  REQUIRE(bench.environment.loads.size() == 2);
   const EditShape far = SetVoxel{{50 * kEdge, 0, 0}};
   bench.edit(1, 1, far);
   bench.server.begin_stop(bench.now());
   std::set<ChunkKey> loaded;
-  while (!bench.ports.loads.empty()) {
-    loaded.insert(bench.ports.loads.front());
-    bench.server.chunk_loaded(bench.ports.loads.front(), dotted_chunk(kEdge), bench.now());
-    bench.ports.loads.pop_front();
+  while (!bench.environment.loads.empty()) {
+    loaded.insert(bench.environment.loads.front());
+    bench.server.chunk_loaded(bench.environment.loads.front(), dotted_chunk(kEdge), bench.now());
+    bench.environment.loads.pop_front();
   }
   CHECK(loaded.size() == 3);
   CHECK(loaded.contains({0, {50, 0, 0}}));
   bench.server.durable(1, bench.now());
-  REQUIRE(bench.ports.saves.size() == 1);
+  REQUIRE(bench.environment.saves.size() == 1);
   bench.server.snapshots_saved(bench.now());
-  CHECK(bench.server.is_settled());
+  CHECK(bench.server.is_flushed());
 }
 
 }  // namespace

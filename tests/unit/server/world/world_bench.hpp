@@ -1,5 +1,5 @@
-// WorldBench: a world strand with fake ports and a clock that the test moves, and clients that know the
-// handshake.
+// WorldBench: a world strand with a fake environment, a clock that the test moves, and clients that
+// do the handshake.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -37,7 +37,7 @@ inline WorldConfig config() {
 
 struct WorldBench {
   explicit WorldBench(WorldConfig c = config(), WorldStart start = {})
-      : server(std::move(c), start, ports,
+      : server(std::move(c), start, environment,
                [](std::span<std::uint8_t> out) { std::fill(out.begin(), out.end(), 9); }) {}
 
   Clocks now() const { return {time_us, time_us + 1'000'000'000}; }
@@ -49,28 +49,28 @@ struct WorldBench {
     h.name = "player" + std::to_string(who);
     return h;
   }
-  ClientAuth proof(std::uint8_t who, const Hello& h, const Welcome& w) const {
+  ClientAuth client_auth(std::uint8_t who, const Hello& h, const Welcome& w) const {
     return {sign(key_pair_of(seed_of(who)), client_transcript(h, w))};
   }
   SessionAccepted join(SessionId session, std::uint8_t who, ClientInstance instance = 1) {
     server.connected(session, now());
     const Hello h = hello(who, instance);
     server.received(session, h, now());
-    const auto welcome = ports.messages<Welcome>(session, 0);
+    const auto welcome = environment.messages<Welcome>(session, 0);
     REQUIRE(welcome.size() == 1);
-    server.received(session, proof(who, h, welcome[0]), now());
-    const auto ready = ports.messages<SessionAccepted>(session, kEdge);
-    REQUIRE(ready.size() == 1);
-    return ready[0];
+    server.received(session, client_auth(who, h, welcome[0]), now());
+    const auto accepted = environment.messages<SessionAccepted>(session, kEdge);
+    REQUIRE(accepted.size() == 1);
+    return accepted[0];
   }
   void view(SessionId session, View v) {
     server.received(session, v, now());
     answer_loads();
   }
   void answer_loads() {
-    while (!ports.loads.empty()) {
-      const ChunkKey key = ports.loads.front();
-      ports.loads.pop_front();
+    while (!environment.loads.empty()) {
+      const ChunkKey key = environment.loads.front();
+      environment.loads.pop_front();
       server.chunk_loaded(key, has_empty_base ? empty_chunk(kEdge) : dotted_chunk(kEdge), now());
     }
   }
@@ -82,12 +82,12 @@ struct WorldBench {
     server.tick(now());
   }
   std::vector<Commit> commits(SessionId session) const {
-    return ports.messages<Commit>(session, kEdge);
+    return environment.messages<Commit>(session, kEdge);
   }
 
-  FakeEnvironment ports;
+  FakeEnvironment environment;
   TimeUs time_us = 1'000'000;
-  bool has_empty_base = false;  // of chunks of one material; else a snapshot is sent of each
+  bool has_empty_base = false;  // loaded chunks are uniform; otherwise each is sent as a snapshot
   WorldServer server;
 };
 

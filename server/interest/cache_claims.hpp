@@ -1,5 +1,5 @@
-// HeldClaims: what a session said it holds, until the chunk's turn comes and it is answered. Bounded by kHeldClaimsMax.
-// One thread.
+// CacheClaims: the copies of chunks that a client claims to have, until the server answers the
+// claim. Bound: kHeldClaimsMax. One thread.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -10,14 +10,16 @@
 
 namespace runstone {
 
-class HeldClaims {
+class CacheClaims {
  public:
-  /// A later claim of a chunk replaces an earlier one. False: there is no room, and nothing was taken.
+  /// Adds a claim, or replaces the claim of the same chunk. Returns false if there is no room for a
+  /// new one.
   [[nodiscard]] bool add(const HeldChunk& chunk);
-  /// Null if nothing is claimed of it. Lives until the next change.
+  /// Returns the claim of this chunk, or null if there is none. The pointer is valid until the next
+  /// change.
   const HeldChunk* find(const ChunkKey& key) const;
   void drop(const ChunkKey& key) { claims_.erase(key); }
-  /// Forgets what lies outside of the view. O(claims).
+  /// Removes claims outside of the view. Cost: O(claims).
   void keep(const View& view);
   void clear() { claims_.clear(); }
   std::size_t count() const { return claims_.size(); }

@@ -1,8 +1,8 @@
-#include "server/interest/held_claims.hpp"
+#include "server/interest/cache_claims.hpp"
 
 namespace runstone {
 
-bool HeldClaims::add(const HeldChunk& chunk) {
+bool CacheClaims::add(const HeldChunk& chunk) {
   const auto found = claims_.find(chunk.key);
   if (found != claims_.end()) {
     found->second = chunk;
@@ -13,12 +13,12 @@ bool HeldClaims::add(const HeldChunk& chunk) {
   return true;
 }
 
-const HeldChunk* HeldClaims::find(const ChunkKey& key) const {
+const HeldChunk* CacheClaims::find(const ChunkKey& key) const {
   const auto found = claims_.find(key);
   return found == claims_.end() ? nullptr : &found->second;
 }
 
-void HeldClaims::keep(const View& view) {
+void CacheClaims::keep(const View& view) {
   std::erase_if(claims_, [&view](const auto& claim) { return !view.contains(claim.first.at); });
 }
 

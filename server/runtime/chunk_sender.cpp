@@ -1,0 +1,48 @@
+#include "server/runtime/chunk_sender.hpp"
+
+#include <asio/post.hpp>
+#include <optional>
+#include <utility>
+
+#include "server/history/missing_edits.hpp"
+#include "server/runtime/logging.hpp"
+
+namespace runstone {
+
+bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
+                                const ChunkPtr& chunk) {
+  const auto place = session->reserve_chunk(key);
+  if (!place) return false;
+  asio::post(workers_, [this, session, key, chunk, place = *place] {
+    session->fill_chunk(place, encoded_.snapshot(key, chunk, session->encoding()));
+  });
+  return true;
+}
+
+bool ChunkSender::send_update(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
+                              const ChunkPtr& chunk, Version held) {
+  const auto place = session->reserve_chunk(key);
+  if (!place) return false;
+  asio::post(workers_, [this, session, key, chunk, held, place = *place] {
+    session->fill_chunk(place, encode_update(key, chunk, held, session->encoding()));
+  });
+  return true;
+}
+
+EncodedMessage ChunkSender::encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
+                                          ChunkEncoding encoding) {
+  std::optional<ChunkEdits> edits;
+  const auto read = chunks_.with_reader([&](WorldReader& reader) {
+    auto missing =
+        missing_edits(reader, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding));
+    if (missing) {
+      edits = *std::move(missing);
+    } else {
+      logger("store").error("{}", missing.error().message());
+    }
+  });
+  if (!read) logger("store").error("{}", read.error().message());
+  return edits ? encode_message(*edits) : encoded_.snapshot(key, chunk, encoding);
+}
+
+}  // namespace runstone

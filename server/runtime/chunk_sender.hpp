@@ -1,0 +1,45 @@
+// ChunkSender: encodes chunks on the workers and queues them on a session's connection. A chunk
+// gets its place in the session's queue before it is encoded, so chunks leave in the order of the
+// calls.
+// Threads: the world strand calls it; workers encode.
+#pragma once
+#include <asio/thread_pool.hpp>
+#include <cstdint>
+#include <memory>
+
+#include "common/runs/chunk.hpp"
+#include "server/net/net_session.hpp"
+#include "server/runtime/chunk_source.hpp"
+#include "server/runtime/encoded_chunks.hpp"
+
+namespace runstone {
+
+class ChunkSender {
+ public:
+  /// `workers` and `chunks` must outlive the object; the workers must have ended when it is
+  /// destroyed.
+  ChunkSender(asio::thread_pool& workers, ChunkSource& chunks)
+      : workers_(workers), chunks_(chunks) {}
+
+  /// Queues the chunk's snapshot. Returns false if the session's queue is full.
+  bool send_snapshot(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
+                     const ChunkPtr& chunk);
+  /// Queues the edits that lead from version `held` to the chunk, or its snapshot if that is
+  /// shorter or if the log cannot be read. Requires that these edits are durable. Returns false if
+  /// the session's queue is full.
+  bool send_update(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
+                   const ChunkPtr& chunk, Version held);
+
+  /// Returns how many snapshots were encoded. Thread: any.
+  std::uint64_t encoded_count() const { return encoded_.encoded(); }
+
+ private:
+  EncodedMessage encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
+                               ChunkEncoding encoding);
+
+  asio::thread_pool& workers_;
+  ChunkSource& chunks_;
+  EncodedChunks encoded_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,67 @@
+#include "server/runtime/command_runner.hpp"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "server/runtime/logging.hpp"
+#include "server/runtime/read_clocks.hpp"
+
+namespace runstone {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+CommandRunner::CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
+                             std::set<PublicKey> operators, MaterialTable materials,
+                             const std::string& world_folder, std::function<void()> on_stop)
+    : strand_(strand),
+      world_(world),
+      readers_(readers),
+      operators_(std::move(operators)),
+      rollback_(world, *this,
+                [](std::span<std::uint8_t> out) { randombytes_buf(out.data(), out.size()); }),
+      handler_(world, rollback_, *this, std::move(materials), world_folder, std::move(on_stop)) {}
+
+void CommandRunner::run(const std::string& line, CommandReply reply) {
+  strand_.post([this, line, reply = std::move(reply)] {
+    handler_.run({0, true}, line, read_clocks(), reply);
+    rollback_.tick(read_clocks());
+  });
+}
+
+void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key,
+                        const std::string& text) {
+  const CommandCaller caller{author, operators_.contains(key)};
+  if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
+  // The handler may answer at once, and WorldServer must not be called from within its own call.
+  strand_.post([this, session, caller, text] {
+    const auto reply = [this, session](const DeskAnswer& answer) {
+      world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
+    };
+    handler_.run(caller, text, read_clocks(), reply);
+    rollback_.tick(read_clocks());
+  });
+}
+
+void CommandRunner::run(Work work, std::function<void(std::string)> then) {
+  readers_.read_log(std::move(work), [this, then = std::move(then)](std::string error) {
+    then(std::move(error));
+    rollback_.tick(read_clocks());
+  });
+}
+
+}  // namespace runstone

@@ -1,0 +1,49 @@
+// CommandRunner: carries out the commands of the console, the control socket and clients, and owns
+// the services behind them: rollback, undo and redo.
+// Threads: run(line, reply) may be called from any thread, everything else from the world strand.
+#pragma once
+#include <functional>
+#include <set>
+#include <string>
+
+#include "server/admin/command_handler.hpp"
+#include "server/rollback/rollback_service.hpp"
+#include "server/runtime/world_readers.hpp"
+#include "server/runtime/world_strand.hpp"
+#include "server/world/world_server.hpp"
+
+namespace runstone {
+
+class CommandRunner final : private RollbackService::Workers {
+ public:
+  /// `strand`, `world` and `readers` must outlive the object. `operators`: the keys of the players
+  /// who may give every command. `on_stop` is called on the world strand when an operator stops the
+  /// server.
+  CommandRunner(WorldStrand& strand, WorldServer& world, WorldReaders& readers,
+                std::set<PublicKey> operators, MaterialTable materials,
+                const std::string& world_folder, std::function<void()> on_stop);
+
+  /// Carries out a command of the console or the control socket. The replies come on the world
+  /// strand.
+  void run(const std::string& line, CommandReply reply);
+  /// Carries out a client's command. WorldServer::answer_command() gets the replies, in a later
+  /// task.
+  void run(SessionId session, AuthorId author, const PublicKey& key, const std::string& text);
+
+  /// Lets rollback jobs go on. Call it on every tick, and when the log became durable or failed.
+  void tick(const Clocks& now) { rollback_.tick(now); }
+  /// The server stops: jobs and workers end soon.
+  void stop() { rollback_.stop(); }
+
+ private:
+  void run(Work work, std::function<void(std::string)> then) override;
+
+  WorldStrand& strand_;
+  WorldServer& world_;
+  WorldReaders& readers_;
+  const std::set<PublicKey> operators_;
+  RollbackService rollback_;
+  CommandHandler handler_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,57 @@
+#include "server/runtime/counters_line.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "common/runs/dense.hpp"
+
+namespace runstone {
+namespace {
+
+std::string sessions_part(const WorldServer& world, const NetCounters& net) {
+  const WorldCounters& w = world.counters();
+  return fmt::format("sessions={} opened={} closed={} malformed={}", world.session_count(),
+                     w.sessions_opened, w.sessions_closed, net.malformed.load());
+}
+
+std::string log_part(const WorldServer& world, const LogWriter::Counters& log) {
+  const WorldCounters& w = world.counters();
+  return fmt::format(
+      "edits_ordered={} edits_rejected={} commits={} seq={} durable={} checkpoint={} log_queue={} "
+      "group_commits={} snapshots_written={} keyframes={}",
+      w.edits_ordered, w.edits_rejected, w.commits, world.head(), world.durable(),
+      world.checkpoint(), log.queued_records, log.commits, log.snapshots, log.keyframes);
+}
+
+std::string chunks_part(const WorldServer& world, const RuntimeCounters& runtime) {
+  const WorldCounters& w = world.counters();
+  return fmt::format(
+      "chunks_resident={} resident_bytes={} chunks_failed={} snapshots_sent={} "
+      "snapshots_encoded={} same_sent={} updates_sent={} claims_drifted={} chunks_requested={} "
+      "unavailable_sent={} chunks_stale={}",
+      world.resident_chunks(), world.resident_bytes(), w.chunks_failed, w.snapshots_sent,
+      runtime.snapshots_encoded, w.not_modified_sent, w.updates_sent, w.claims_drifted,
+      w.chunks_requested, w.unavailable_sent, w.chunks_stale);
+}
+
+std::string sending_part(const WorldServer& world, const NetCounters& net,
+                         const RuntimeCounters& runtime) {
+  const WorldCounters& w = world.counters();
+  return fmt::format(
+      "queue_full={} audits_sent={} audit_mismatches={} commits_sent={} commit_enqueue_us={} "
+      "commit_sends={} commit_send_ms={} bytes_in={} bytes_out={}",
+      w.queue_full, w.digest_checks_sent, w.digest_mismatches, w.commits_sent,
+      runtime.commit_enqueue_us, net.commit_sends.load(), net.commit_send_ns.load() / 1'000'000,
+      net.bytes_in.load(), net.bytes_out.load());
+}
+
+}  // namespace
+
+std::string counters_line(const WorldServer& world, const NetCounters& net,
+                          const LogWriter::Counters& log, const RuntimeCounters& runtime) {
+  return fmt::format("counters {} {} {} {} stack_depths=\"{}\" dense_expansions={}",
+                     sessions_part(world, net), log_part(world, log), chunks_part(world, runtime),
+                     sending_part(world, net, runtime), world.stack_depths().text(),
+                     dense_expansions());
+}
+
+}  // namespace runstone

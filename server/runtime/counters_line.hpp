@@ -1,0 +1,22 @@
+// The log line that shows the load of a server: "counters sessions=3 opened=7 …".
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "server/net/net_session.hpp"
+#include "server/store/log_writer.hpp"
+#include "server/world/world_server.hpp"
+
+namespace runstone {
+
+/// The counters that no part below has.
+struct RuntimeCounters {
+  std::uint64_t snapshots_encoded = 0;
+  std::int64_t commit_enqueue_us = 0;  // processor time that queueing commits took
+};
+
+/// Returns one line of fields. Thread: the world strand.
+std::string counters_line(const WorldServer& world, const NetCounters& net,
+                          const LogWriter::Counters& log, const RuntimeCounters& runtime);
+
+}  // namespace runstone

@@ -1,0 +1,58 @@
+#include "server/runtime/derived_config.hpp"
+
+namespace runstone {
+namespace {
+
+// Enough that no worker waits for the world strand. Few enough that chunks to be encoded do not
+// wait for loads.
+constexpr std::size_t kLoadsPerWorker = 4;
+// Connections beyond sessions_max that may be in the handshake.
+constexpr std::size_t kHandshakesMax = 64;
+constexpr std::size_t kKib = 1024;
+constexpr TimeUs kUsPerMs = 1'000, kUsPerSecond = 1'000'000;
+
+}  // namespace
+
+WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta) {
+  WorldConfig world;
+  world.world_id = meta.world_id;
+  world.chunk_edge = meta.chunk_edge;
+  world.heights = {-static_cast<std::int32_t>(config.depth_max),
+                   static_cast<std::int32_t>(config.height_max)};
+  world.spawn = meta.spawn;
+  world.materials = meta.materials;
+  world.server_keys = key_pair_of(meta.server_key_seed);
+  world.sessions_max = config.sessions_max;
+  world.view_radius_max = static_cast<std::uint8_t>(config.view_radius_max);
+  world.view_interval_us = static_cast<TimeUs>(config.view_interval_ms) * kUsPerMs;
+  world.loads_in_flight_max = kLoadsPerWorker * config.worker_threads;
+  world.edit_volume_max = config.edit_volume_max;
+  world.reach_max = static_cast<double>(config.reach_max);
+  world.edits_per_second = config.edits_per_second;
+  world.edit_burst = config.edit_burst;
+  world.idle_us_max = static_cast<TimeUs>(config.idle_s) * kUsPerSecond;
+  world.preferred_encoding = config.encoding;
+  world.digest_check_interval_us = static_cast<TimeUs>(config.audit_ms) * kUsPerMs;
+  world.digest_check_chunks = config.audit_chunks;
+  world.resident_bytes_max = config.memory_mib << 20;
+  world.snapshots.edits_max = config.snapshot_edits;
+  world.snapshots.interval_us = static_cast<TimeUs>(config.snapshot_s) * kUsPerSecond;
+  return world;
+}
+
+NetLimits net_limits_of(const ServerConfig& config) {
+  NetLimits limits;
+  limits.send.control_bytes = config.control_queue_kib * kKib;
+  limits.send.edit_bytes = config.edit_queue_kib * kKib;
+  limits.send.chunk_bytes = config.chunk_queue_kib * kKib;
+  limits.bytes_per_second = config.session_kib_per_second * kKib;
+  limits.server_bytes_per_second = config.server_kib_per_second * kKib;
+  limits.read_bytes_per_second = config.read_kib_per_second * kKib;
+  limits.connections_max = config.sessions_max + kHandshakesMax;
+  limits.handshakes_per_address = config.handshakes_per_address;
+  limits.messages_per_second = config.messages_per_second;
+  limits.message_burst = 2 * config.messages_per_second;
+  return limits;
+}
+
+}  // namespace runstone

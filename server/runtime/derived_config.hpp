@@ -1,0 +1,14 @@
+// The settings of the world strand and of the network, derived from the configuration and from the
+// world's meta.
+#pragma once
+#include "server/admin/server_config.hpp"
+#include "server/net/net_session.hpp"
+#include "server/store/store.hpp"
+#include "server/world/world_config.hpp"
+
+namespace runstone {
+
+WorldConfig world_config_of(const ServerConfig& config, const WorldMeta& meta);
+NetLimits net_limits_of(const ServerConfig& config);
+
+}  // namespace runstone

@@ -1,0 +1,51 @@
+#include "server/runtime/durable_log.hpp"
+
+#include <utility>
+
+#include "server/runtime/logging.hpp"
+
+namespace runstone {
+
+DurableLog::DurableLog(WorldStrand& strand, Store& store, const std::string& folder,
+                       const Generator& generator, const Options& options, Events events)
+    : strand_(strand), events_(std::move(events)), durable_(options.durable) {
+  LogWriter::Callbacks callbacks;
+  callbacks.on_durable = [this](Sequence seq) { on_durable(seq); };
+  callbacks.on_snapshots_saved = [this](const LogWriter::SnapshotChunks& /*chunks*/,
+                                        std::optional<Sequence> /*seq*/) {
+    strand_.post([this] { events_.on_snapshots_saved(); });
+  };
+  callbacks.on_failed = [this](const StoreError& error) { on_failed(error); };
+  LogWriter::Limits limits;
+  limits.queued_records_max = options.queued_records_max;
+  writer_ = std::make_unique<LogWriter>(store, std::move(callbacks), limits);
+  // The writer's callbacks read keyframes_. Nobody can append before this constructor returns, so
+  // none comes before.
+  if (options.keyframes) {
+    keyframes_ = std::make_unique<KeyframeThread>(folder, generator, *options.keyframes, *writer_);
+  }
+}
+
+void DurableLog::on_durable(Sequence seq) {
+  durable_.store(seq);
+  if (keyframes_) keyframes_->durable(seq);
+  if (is_report_posted_.exchange(true)) return;
+  strand_.post([this] {
+    is_report_posted_.store(false);
+    events_.on_durable(durable_.load());
+  });
+}
+
+void DurableLog::on_failed(const StoreError& error) {
+  logger("store").error("{}", error.message());
+  has_failed_.store(true);
+  strand_.post([this] { events_.on_failed(); });
+  events_.on_failed_in_writer();
+}
+
+void DurableLog::stop() {
+  if (keyframes_) keyframes_->stop();
+  writer_->stop();
+}
+
+}  // namespace runstone

@@ -1,0 +1,63 @@
+// DurableLog: the log writer and the keyframe thread of a running world. It reports their progress
+// on the world strand. Several group commits become one report if the strand has not run in
+// between.
+// Threads: writer() as LogWriter says; the events run on the world strand.
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/generate/generator.hpp"
+#include "server/runtime/keyframe_thread.hpp"
+#include "server/runtime/world_strand.hpp"
+#include "server/store/log_writer.hpp"
+
+namespace runstone {
+
+class DurableLog {
+ public:
+  struct Options {
+    std::size_t queued_records_max = 65'536;
+    Sequence durable = 0;                     // what the log holds already
+    std::optional<KeyframePolicy> keyframes;  // nullopt: no keyframes are made
+  };
+  struct Events {
+    /// Every edit up to the sequence is on disk.
+    std::function<void(Sequence)> on_durable;
+    /// The oldest save_snapshots() that was not reported yet is on disk.
+    std::function<void()> on_snapshots_saved;
+    /// The log cannot be written any more. Called at most once.
+    std::function<void()> on_failed;
+    /// As on_failed, but called at once from the writer's thread.
+    std::function<void()> on_failed_in_writer;
+  };
+
+  /// Starts the threads. `strand`, `store` and `generator` must outlive the object. Only the writer
+  /// uses `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
+  /// own reader there.
+  DurableLog(WorldStrand& strand, Store& store, const std::string& folder,
+             const Generator& generator, const Options& options, Events events);
+
+  LogWriter& writer() { return *writer_; }
+  /// Thread: any.
+  bool has_failed() const { return has_failed_.load(); }
+  /// Stops making keyframes, writes what is queued, and ends both threads. It may be called again.
+  void stop();
+
+ private:
+  void on_durable(Sequence seq);
+  void on_failed(const StoreError& error);
+
+  WorldStrand& strand_;
+  const Events events_;
+  std::atomic<Sequence> durable_;
+  std::atomic<bool> is_report_posted_{false};
+  std::atomic<bool> has_failed_{false};
+  std::unique_ptr<LogWriter> writer_;
+  std::unique_ptr<KeyframeThread> keyframes_;  // null without a policy; uses writer_
+};
+
+}  // namespace runstone

@@ -1,0 +1,48 @@
+// PeriodicTask: runs a function on the world strand again and again. The interval counts from the
+// end of one run to the start of the next one.
+// Threads: start() may be called from any thread, stop() from the world strand.
+#pragma once
+#include <chrono>
+#include <functional>
+#include <utility>
+
+#include "server/runtime/world_strand.hpp"
+
+namespace runstone {
+
+class PeriodicTask {
+ public:
+  /// `strand` must outlive the object.
+  PeriodicTask(WorldStrand& strand, std::chrono::milliseconds interval, std::function<void()> task)
+      : strand_(strand), interval_(interval), task_(std::move(task)), timer_(strand.make_timer()) {}
+
+  /// The first run comes one interval later. Call it once.
+  void start() {
+    strand_.post([this] { schedule(); });
+  }
+  /// No run starts after this call.
+  void stop() {
+    is_stopped_ = true;
+    timer_.cancel();
+  }
+
+ private:
+  void schedule() {
+    if (is_stopped_) return;
+    timer_.expires_after(interval_);
+    strand_.wait(timer_, [this](const asio::error_code& error) {
+      // The timer may have expired just before stop() cancelled it.
+      if (error || is_stopped_) return;
+      task_();
+      schedule();
+    });
+  }
+
+  WorldStrand& strand_;
+  const std::chrono::milliseconds interval_;
+  const std::function<void()> task_;
+  asio::steady_timer timer_;
+  bool is_stopped_ = false;
+};
+
+}  // namespace runstone

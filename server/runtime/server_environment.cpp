@@ -1,0 +1,104 @@
+#include "server/runtime/server_environment.hpp"
+
+#include "common/core/assert.hpp"
+#include "common/os/thread_cpu_ns.hpp"
+#include "server/runtime/read_clocks.hpp"
+
+namespace runstone {
+
+bool ServerEnvironment::send(SessionId session, const EncodedMessage& message) {
+  const auto& net = sessions_.find(session);
+  // A closed session accepts everything: its messages are dropped.
+  return net == nullptr || net->send(message);
+}
+
+std::vector<SessionId> ServerEnvironment::send_to_all(std::span<const SessionId> sessions,
+                                                      const EncodedMessage& message) {
+  const std::int64_t began_ns = thread_cpu_ns();
+  std::vector<SessionId> full = WorldEnvironment::send_to_all(sessions, message);
+  enqueue_ns_ += thread_cpu_ns() - began_ns;
+  return full;
+}
+
+void ServerEnvironment::set_encoding(SessionId session, ChunkEncoding encoding) {
+  if (const auto& net = sessions_.find(session)) net->set_encoding(encoding);
+}
+
+void ServerEnvironment::set_features(SessionId session, std::uint64_t features) {
+  if (const auto& net = sessions_.find(session)) net->set_features(features);
+}
+
+void ServerEnvironment::opened(SessionId session) { listener_.opened(session); }
+
+bool ServerEnvironment::send_snapshot(SessionId session, const ChunkKey& key,
+                                      const ChunkPtr& chunk) {
+  const auto& net = sessions_.find(session);
+  return net == nullptr || sender_.send_snapshot(net, key, chunk);
+}
+
+bool ServerEnvironment::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                                    Version held) {
+  const auto& net = sessions_.find(session);
+  return net == nullptr || sender_.send_update(net, key, chunk, held);
+}
+
+void ServerEnvironment::forget_outside(SessionId session, const View& view) {
+  if (const auto& net = sessions_.find(session)) net->forget_outside(view);
+}
+
+void ServerEnvironment::close(SessionId session, GoodbyeReason reason, const std::string& text) {
+  if (const auto& net = sessions_.find(session)) net->close(reason, text);
+}
+
+bool ServerEnvironment::log_has_room(std::size_t records) const {
+  return log_->writer().has_room(records);
+}
+
+void ServerEnvironment::log_append(std::vector<PlayerRow> players,
+                                   std::vector<EditRecord> records) {
+  log_->writer().append(std::move(players), std::move(records));
+}
+
+void ServerEnvironment::load_chunk(const ChunkKey& key) {
+  readers_.load_chunk(key, [this, key](StoreResult<Chunk> loaded) {
+    if (loaded) {
+      world_->chunk_loaded(key, *std::move(loaded), read_clocks());
+    } else {
+      world_->chunk_failed(key, loaded.error().message(), read_clocks());
+    }
+  });
+}
+
+void ServerEnvironment::open_history(SessionId session, const HistoryRequest& request) {
+  readers_.open_history(request, [this, session, request = request.request](
+                                     const WorldReaders::OpenedHistoryResult& opened) {
+    world_->history_opened(session, request, opened, read_clocks());
+  });
+}
+
+void ServerEnvironment::load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+                                           const ChunkKey& key) {
+  readers_.load_history_chunk(
+      at, key, [this, session, view, key](const Result<ChunkPtr, std::string>& chunk) {
+        world_->history_chunk_loaded(session, view, key, chunk, read_clocks());
+      });
+}
+
+void ServerEnvironment::save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
+                                       Sequence checkpoint) {
+  // The checkpointer has one job under way at a time, so the queue of jobs has room unless the
+  // writer has failed.
+  const bool is_taken = log_->writer().save_snapshots(std::move(chunks), checkpoint);
+  RUNSTONE_ASSERT(is_taken || log_->has_failed());
+}
+
+void ServerEnvironment::command(SessionId session, AuthorId author, const PublicKey& key,
+                                const std::string& text) {
+  commands_->run(session, author, key, text);
+}
+
+void ServerEnvironment::log(WorldLogLevel level, const std::string& line) {
+  lines_.write(level, line, read_clocks().steady_us);
+}
+
+}  // namespace runstone

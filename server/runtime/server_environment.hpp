@@ -1,0 +1,77 @@
+// ServerEnvironment: the WorldEnvironment of the server program. It carries out what the world
+// strand asks for with connections, readers and the log writer, and brings the answers to
+// WorldServer as tasks of the world strand.
+// Threads: the world strand.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/net/listener.hpp"
+#include "server/runtime/chunk_sender.hpp"
+#include "server/runtime/command_runner.hpp"
+#include "server/runtime/connected_sessions.hpp"
+#include "server/runtime/durable_log.hpp"
+#include "server/runtime/world_log.hpp"
+#include "server/runtime/world_readers.hpp"
+#include "server/world/world_environment.hpp"
+
+namespace runstone {
+
+class ServerEnvironment final : public WorldEnvironment {
+ public:
+  /// All must outlive the object.
+  ServerEnvironment(ConnectedSessions& sessions, Listener& listener, ChunkSender& sender,
+                    WorldReaders& readers)
+      : sessions_(sessions), listener_(listener), sender_(sender), readers_(readers) {}
+
+  /// Connects the parts that are made after recovery, because they need the world. Call it once,
+  /// before the first session connects. All must outlive the object.
+  void attach(WorldServer& world, DurableLog& log, CommandRunner& commands) {
+    world_ = &world;
+    log_ = &log;
+    commands_ = &commands;
+  }
+
+  /// Returns the processor time that send_to_all() took since the start. Sending itself is not in
+  /// it.
+  std::int64_t enqueue_ns() const { return enqueue_ns_; }
+
+  bool send(SessionId session, const EncodedMessage& message) override;
+  std::vector<SessionId> send_to_all(std::span<const SessionId> sessions,
+                                     const EncodedMessage& message) override;
+  void set_encoding(SessionId session, ChunkEncoding encoding) override;
+  void set_features(SessionId session, std::uint64_t features) override;
+  void opened(SessionId session) override;
+  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
+  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
+                   Version held) override;
+  void forget_outside(SessionId session, const View& view) override;
+  void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
+  bool log_has_room(std::size_t records) const override;
+  void log_append(std::vector<PlayerRow> players, std::vector<EditRecord> records) override;
+  void load_chunk(const ChunkKey& key) override;
+  void open_history(SessionId session, const HistoryRequest& request) override;
+  void load_history_chunk(SessionId session, std::uint32_t view, Sequence at,
+                          const ChunkKey& key) override;
+  void save_snapshots(std::vector<std::pair<ChunkKey, ChunkPtr>> chunks,
+                      Sequence checkpoint) override;
+  void command(SessionId session, AuthorId author, const PublicKey& key,
+               const std::string& text) override;
+  void log(WorldLogLevel level, const std::string& line) override;
+
+ private:
+  ConnectedSessions& sessions_;
+  Listener& listener_;
+  ChunkSender& sender_;
+  WorldReaders& readers_;
+  WorldLog lines_;
+  WorldServer* world_ = nullptr;
+  DurableLog* log_ = nullptr;
+  CommandRunner* commands_ = nullptr;
+  std::int64_t enqueue_ns_ = 0;
+};
+
+}  // namespace runstone

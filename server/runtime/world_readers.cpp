@@ -1,0 +1,71 @@
+#include "server/runtime/world_readers.hpp"
+
+#include <asio/post.hpp>
+#include <memory>
+#include <utility>
+
+#include "server/runtime/logging.hpp"
+
+namespace runstone {
+namespace {
+
+WorldReaders::OpenedHistoryResult open(Moments& moments, const HistoryRequest& request) {
+  const auto end = request.to == HistoryTarget::time ? moments.open_at_time(request.utc_us)
+                                                     : moments.open(request.seq);
+  if (end) return OpenedHistory{end->version.seq, end->time_us};
+  if (end.error().kind != StoreError::Kind::bad_request)
+    logger("store").error("{}", end.error().message());
+  return Unexpected<std::string>{end.error().what};
+}
+
+}  // namespace
+
+WorldReaders::WorldReaders(WorldStrand& strand, asio::thread_pool& workers, ChunkSource& chunks,
+                           const std::string& folder, const Generator& generator)
+    : strand_(strand),
+      workers_(workers),
+      chunks_(chunks),
+      generator_(generator),
+      moments_(folder, generator) {}
+
+void WorldReaders::load_chunk(const ChunkKey& key, std::function<void(StoreResult<Chunk>)> then) {
+  asio::post(workers_, [this, key, then = std::move(then)] {
+    strand_.post([then, loaded = chunks_.load(key)]() mutable { then(std::move(loaded)); });
+  });
+}
+
+void WorldReaders::open_history(const HistoryRequest& request,
+                                std::function<void(OpenedHistoryResult)> then) {
+  asio::post(history_readers_, [this, request, then = std::move(then)] {
+    strand_.post([then, opened = open(moments_, request)]() mutable { then(std::move(opened)); });
+  });
+}
+
+void WorldReaders::load_history_chunk(Sequence at, const ChunkKey& key,
+                                      std::function<void(Result<ChunkPtr, std::string>)> then) {
+  asio::post(history_readers_, [this, at, key, then = std::move(then)] {
+    auto loaded = moments_.chunk(at, key);
+    Result<ChunkPtr, std::string> chunk = ChunkPtr();
+    if (loaded) {
+      chunk = std::make_shared<const Chunk>(*std::move(loaded));
+    } else {
+      chunk = Unexpected<std::string>{loaded.error().message()};
+    }
+    strand_.post([then, chunk = std::move(chunk)]() mutable { then(std::move(chunk)); });
+  });
+}
+
+void WorldReaders::read_log(RollbackService::Workers::Work work,
+                            std::function<void(std::string)> then) {
+  asio::post(log_readers_, [this, work = std::move(work), then = std::move(then)] {
+    const auto read = chunks_.with_reader([&](WorldReader& reader) { work(reader, generator_); });
+    strand_.post([then, error = read ? std::string() : read.error().message()] { then(error); });
+  });
+}
+
+void WorldReaders::stop() {
+  log_readers_.join();
+  history_readers_.join();
+}
+
+}  // namespace runstone

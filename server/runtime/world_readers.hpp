@@ -1,0 +1,59 @@
+// WorldReaders: reads the world folder for the world strand: chunks, chunks of the past, and the
+// log. Each call returns at once; `then` runs later on the world strand. There are three groups of
+// threads, so that one kind of read does not wait for another:
+//   - the workers, shared with encoding, load chunks;
+//   - the history readers open moments of the past and make their chunks;
+//   - the log readers run the queries of commands and rollbacks.
+// Threads: any, until stop().
+#pragma once
+#include <asio/thread_pool.hpp>
+#include <functional>
+#include <string>
+
+#include "common/runs/chunk.hpp"
+#include "server/history/moments.hpp"
+#include "server/rollback/rollback_service.hpp"
+#include "server/runtime/chunk_source.hpp"
+#include "server/runtime/world_strand.hpp"
+#include "server/world/world_environment.hpp"
+
+namespace runstone {
+
+class WorldReaders {
+ public:
+  /// All must outlive the object. The workers must have ended when it is destroyed.
+  WorldReaders(WorldStrand& strand, asio::thread_pool& workers, ChunkSource& chunks,
+               const std::string& folder, const Generator& generator);
+
+  void load_chunk(const ChunkKey& key, std::function<void(StoreResult<Chunk>)> then);
+
+  using OpenedHistoryResult = Result<OpenedHistory, std::string>;
+  /// Opens the moment that the request names. The error is for the client, so it names no file of
+  /// this machine.
+  void open_history(const HistoryRequest& request, std::function<void(OpenedHistoryResult)> then);
+  /// Makes a chunk as it was after edit `at`. The error names file, table and row.
+  void load_history_chunk(Sequence at, const ChunkKey& key,
+                          std::function<void(Result<ChunkPtr, std::string>)> then);
+
+  /// Runs `work` with a reader of its own. The text is empty, or says why there was no reader and
+  /// `work` did not run.
+  void read_log(RollbackService::Workers::Work work, std::function<void(std::string)> then);
+
+  /// Waits until the history readers and the log readers have finished what was queued, and ends
+  /// their threads.
+  void stop();
+
+ private:
+  static constexpr std::size_t kLogReaders = 2;
+  static constexpr std::size_t kHistoryReaders = 2;
+
+  WorldStrand& strand_;
+  asio::thread_pool& workers_;
+  ChunkSource& chunks_;
+  const Generator& generator_;
+  Moments moments_;
+  asio::thread_pool log_readers_{kLogReaders};
+  asio::thread_pool history_readers_{kHistoryReaders};
+};
+
+}  // namespace runstone

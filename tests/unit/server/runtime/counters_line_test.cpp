@@ -1,0 +1,38 @@
+#include "server/runtime/counters_line.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <span>
+
+#include "tests/unit/server/world/fake_environment.hpp"
+
+namespace runstone::test {
+namespace {
+
+TEST_CASE("the line of counters shows each part of the server", "[server]") {
+  FakeEnvironment environment;
+  WorldStart start;
+  start.log.last = 7;
+  start.checkpoint = 5;
+  WorldServer world(WorldConfig{}, start, environment,
+                    [](std::span<std::uint8_t> out) { std::ranges::fill(out, 9); });
+  world.connected(1, {});
+  NetCounters net;
+  net.bytes_out = 1'234;
+  net.commit_send_ns = 9'000'000;
+  LogWriter::Counters log;
+  log.keyframes = 3;
+  const std::string line = counters_line(world, net, log, {11, 12});
+  INFO(line);
+  CHECK(line.rfind("counters sessions=1 ", 0) == 0);
+  for (const char* field : {" seq=7 ", " durable=7 ", " checkpoint=5 ", " keyframes=3 ",
+                            " snapshots_encoded=11 ", " commit_enqueue_us=12 ",
+                            " commit_send_ms=9 ", " bytes_out=1234 ", " dense_expansions=0"}) {
+    CAPTURE(field);
+    CHECK(line.find(field) != std::string::npos);
+  }
+  CHECK(line.find('\n') == std::string::npos);
+}
+
+}  // namespace
+}  // namespace runstone::test

@@ -1,0 +1,68 @@
+#include "server/runtime/derived_config.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/sample_world.hpp"
+
+namespace runstone::test {
+namespace {
+
+TEST_CASE("settings reach the world strand in its units", "[server]") {
+  ServerConfig config;
+  config.depth_max = 5;
+  config.height_max = 70;
+  config.view_interval_ms = 20;
+  config.worker_threads = 3;
+  config.idle_s = 7;
+  config.audit_ms = 250;
+  config.memory_mib = 16;
+  config.snapshot_s = 9;
+  const WorldConfig world = world_config_of(config, sample_meta());
+  CHECK(world.world_id == sample_meta().world_id);
+  CHECK(world.chunk_edge == kSampleEdge);
+  CHECK(world.server_keys.public_key == key_pair_of(sample_meta().server_key_seed).public_key);
+  CHECK(world.heights.y_min == -5);
+  CHECK(world.heights.y_max == 70);
+  CHECK(world.view_interval_us == 20'000);
+  CHECK(world.loads_in_flight_max == 12);
+  CHECK(world.idle_us_max == 7'000'000);
+  CHECK(world.digest_check_interval_us == 250'000);
+  CHECK(world.resident_bytes_max == 16U * 1024 * 1024);
+  CHECK(world.snapshots.interval_us == 9'000'000);
+}
+
+TEST_CASE("the configured encoding is the preferred one", "[server]") {
+  ServerConfig config;
+  const auto encoding = [&](const char* name) {
+    config.encoding = name;
+    return world_config_of(config, sample_meta()).preferred_encoding;
+  };
+  CHECK(encoding("raw") == ChunkEncoding::raw);
+  CHECK(encoding("packed") == ChunkEncoding::packed);
+  CHECK(encoding("coded") == ChunkEncoding::coded);
+}
+
+TEST_CASE("settings reach the network in bytes, with room for handshakes", "[server]") {
+  ServerConfig config;
+  config.sessions_max = 10;
+  config.control_queue_kib = 64;
+  config.edit_queue_kib = 65;
+  config.chunk_queue_kib = 66;
+  config.session_kib_per_second = 2;
+  config.server_kib_per_second = 3;
+  config.read_kib_per_second = 4;
+  config.messages_per_second = 50;
+  const NetLimits limits = net_limits_of(config);
+  CHECK(limits.connections_max > config.sessions_max);
+  CHECK(limits.send.control_bytes == 64U * 1024);
+  CHECK(limits.send.edit_bytes == 65U * 1024);
+  CHECK(limits.send.chunk_bytes == 66U * 1024);
+  CHECK(limits.bytes_per_second == 2U * 1024);
+  CHECK(limits.server_bytes_per_second == 3U * 1024);
+  CHECK(limits.read_bytes_per_second == 4U * 1024);
+  CHECK(limits.messages_per_second == 50);
+  CHECK(limits.message_burst == 100);
+}
+
+}  // namespace
+}  // namespace runstone::test
