@@ -230,7 +230,7 @@ void Replica::vouched_for(const ChunkKey& key, TrackedChunk& chunk, TimeUs now_u
 
 void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   if (!opening_ || past_) return;
-  for (const SameChunk& said : same.chunks) {
+  for (const UnmodifiedChunk& said : same.chunks) {
     if (!view_ || !view_->contains(said.key.at)) continue;
     TrackedChunk& chunk = track(said.key);
     set_current(chunk);
@@ -493,8 +493,8 @@ void Replica::adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us) {
   settle(key, mine, false, now_us);
 }
 
-std::vector<HeldChunk> Replica::take_claims() {
-  std::vector<HeldChunk> claims;
+std::vector<CachedChunk> Replica::take_claims() {
+  std::vector<CachedChunk> claims;
   if (!opening_ || past_) return claims;
   std::size_t waiting = 0;
   for (const auto& [key, chunk] : chunks_) waiting += chunk.claimed && !chunk.current ? 1 : 0;

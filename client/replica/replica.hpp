@@ -43,7 +43,7 @@ inline constexpr TimeUs kRequestAgainUs =
     2'000'000;  // a chunk asked for is asked for again after this
 
 /// Claims that wait for an answer: half of what a server takes, so that those for the next view fit beside them.
-inline constexpr std::size_t kClaimsMax = kHeldClaimsMax / 2;
+inline constexpr std::size_t kClaimsMax = kClaimsPerSessionMax / 2;
 inline constexpr std::size_t kLeftMax =
     32'768;  // chunks that left the view and wait to be kept; others are forgotten
 
@@ -112,7 +112,7 @@ class Replica {
   /// What is held without the server knowing it, ascending: to be claimed before the next view. No chunk twice on a
   /// connection, and no more than kClaimsMax that wait for an answer. The digests are those of the runs, recomputed:
   /// so a copy that has drifted is found out. O(runs).
-  std::vector<HeldChunk> take_claims();
+  std::vector<CachedChunk> take_claims();
   /// Chunks of the view that are neither held nor answered, ascending: a cache may have them.
   std::vector<ChunkKey> missing() const;
   /// From now on chunks that leave the view wait for take_unkept().

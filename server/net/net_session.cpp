@@ -107,7 +107,7 @@ void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
 }
 
 void NetSession::set_features(std::uint64_t features) {
-  if ((features & kFeatureReceived) == 0) return;
+  if ((features & kFeatureReceiveAck) == 0) return;
   const std::lock_guard lock(mutex_);
   gate_.pace();
 }
@@ -208,7 +208,7 @@ Result<void> NetSession::on_received(const ReceiveAck& received) {
     const std::lock_guard lock(mutex_);
     if (!gate_.is_paced()) {
       broken_rule_ = GoodbyeReason::unexpected_message;
-      return fail(ErrorCode::bad_value, "received, but its feature is not in force");
+      return fail(ErrorCode::bad_value, "the feature of the message is not in force");
     }
     const auto acked = gate_.acked(received.chunk_bytes, steady_now_us());
     if (!acked) {

@@ -8,7 +8,7 @@ namespace runstone {
 namespace {
 
 /// Whether the edits behind a claim can be read: they are on disk, and it names a place that this log may have.
-bool may_lack_edits(const WorldState& world, const HeldChunk& claim, const Version& version) {
+bool may_lack_edits(const WorldState& world, const CachedChunk& claim, const Version& version) {
   return claim.version.seq < version.seq && claim.version.epoch <= version.epoch &&
          version.seq <= world.durable;
 }
@@ -19,21 +19,22 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   WorldSession& mine = *world.find(session);
   if (mine.visit) return;  // it looks at the past: nothing of the live world is due
   const SessionInterest& interest = *world.interest.find(session);
-  for (const HeldChunk& chunk : held.chunks) {
+  for (const CachedChunk& chunk : held.chunks) {
     const auto state = interest.state(chunk.key);
     const bool is_answered =
         state && *state != ChunkInterest::wanted && *state != ChunkInterest::waiting;
     if (is_answered) continue;
     if (mine.claims.add(chunk)) continue;
-    return close_session(world, session, GoodbyeReason::flooding,
-                         "claims to hold more than " + std::to_string(kHeldClaimsMax) + " chunks");
+    return close_session(
+        world, session, GoodbyeReason::flooding,
+        "claims to hold more than " + std::to_string(kClaimsPerSessionMax) + " chunks");
   }
 }
 
 HeldAnswer answer_held(WorldState& world, SessionId session, const ChunkKey& key,
                        const ChunkPtr& chunk) {
   WorldSession& mine = *world.find(session);
-  const HeldChunk* claim = mine.claims.find(key);
+  const CachedChunk* claim = mine.claims.find(key);
   if (claim == nullptr) return HeldAnswer::none;
   if (claim->version == chunk->version) {
     const bool is_same = claim->digest == claim_digest(chunk->digest);
@@ -62,17 +63,19 @@ HeldAnswer answer_held(WorldState& world, SessionId session, const ChunkKey& key
 bool send_same(WorldState& world, SessionId session, bool is_more) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return true;
-  std::vector<SameChunk>& due = mine->same_due;
-  while (due.size() >= (is_more ? kSameChunksMax : 1)) {
-    const std::size_t count = std::min(due.size(), kSameChunksMax);
+  std::vector<UnmodifiedChunk>& due = mine->same_due;
+  while (due.size() >= (is_more ? kChunksNotModifiedMax : 1)) {
+    const std::size_t count = std::min(due.size(), kChunksNotModifiedMax);
     const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
     ChunksNotModified same{{due.begin(), end}};
     // A chunk that left the view and came back may be due twice: the newer version counts.
-    const auto newest_first = [](const SameChunk& a, const SameChunk& b) {
+    const auto newest_first = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
       return a.key != b.key ? a.key < b.key : a.seq > b.seq;
     };
     std::sort(same.chunks.begin(), same.chunks.end(), newest_first);
-    const auto one_key = [](const SameChunk& a, const SameChunk& b) { return a.key == b.key; };
+    const auto one_key = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
+      return a.key == b.key;
+    };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key),
                       same.chunks.end());
     if (!world.ports.send(session, encode_message(same))) {

@@ -8,7 +8,7 @@
 
 namespace runstone {
 
-/// Takes the claims of chunks that have not been answered; a session with more than kHeldClaimsMax of them is closed
+/// Takes the claims of chunks that have not been answered; a session with more than kClaimsPerSessionMax of them is closed
 /// (flooding).
 void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& held);
 /// The answer to a claim of this chunk, if there is one that serves. Requires a chunk.

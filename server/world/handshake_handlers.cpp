@@ -69,7 +69,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.name = hello.name;
   mine.proof_transcript = client_transcript(hello, welcome);
   mine.durable_told = welcome.durable;
-  mine.state = SessionStage::awaits_proof;
+  mine.state = SessionStage::authenticating;
+  mine.features = welcome.features;
   world.ports.set_encoding(session, welcome.encoding);
   world.ports.set_features(session, welcome.features);
   send_or_close(world, session, welcome);

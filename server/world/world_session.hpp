@@ -1,5 +1,5 @@
-// WorldSession: what the world strand knows of one connection, and the states it goes through:
-//   awaits_hello -> awaits_proof -> open. Closing forgets it at once.
+// WorldSession: what the world strand knows of one connection. Its stage goes from greeting over authenticating to
+// open. Closing forgets it at once.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
-#include "protocol/codec/messages.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "server/interest/held_claims.hpp"
 #include "server/limits/token_bucket.hpp"
 
 namespace runstone {
-
-enum class SessionStage { awaits_hello, awaits_proof, open };
 
 inline constexpr std::size_t kPassedViewsMax = 8;
 inline constexpr std::size_t kUniformGathered = 256;     // then they go
@@ -35,13 +33,14 @@ struct HistoryView {
 };
 
 struct WorldSession {
-  SessionStage state = SessionStage::awaits_hello;
-  TimeUs connected_us = 0;  // steady clock, as the others
-  TimeUs heard_us = 0;      // last message
+  SessionStage state = SessionStage::greeting;
+  std::uint64_t features = 0;  // in force, from Welcome on
+  TimeUs connected_us = 0;     // steady clock, as the others
+  TimeUs heard_us = 0;         // last message
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
-  Bytes proof_transcript;  // what the client has to sign; empty outside of awaits_proof
+  Bytes proof_transcript;  // what the client has to sign; empty outside of authenticating
   AuthorId author = 0;     // from open on
   Pose pose;
   bool pose_changed = false;  // since the last poses
@@ -61,7 +60,7 @@ struct WorldSession {
   bool has_passed_too_many = false;  // more of them count as having left everything
   // What it holds already (held_steps.hpp).
   HeldClaims claims;
-  std::vector<SameChunk> same_due;  // subscribed, but not told yet
+  std::vector<UnmodifiedChunk> same_due;  // subscribed, but not told yet
   // Chunks of one material that were counted as sent, at these versions, and go in one message soon: a few
   // wait for more while loads are under way.
   std::vector<UniformChunk> uniform;

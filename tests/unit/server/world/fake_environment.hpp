@@ -51,6 +51,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<std::pair<SessionId, HistoryRequest>> moments;
   std::deque<PastLoad> past_loads;
   std::vector<std::string> lines;
+  std::vector<std::string> commands;
   std::map<SessionId, ChunkEncoding> encodings;
   std::set<SessionId> full;                        // every send to them is refused
   std::set<SessionId> refuse_edits;                // sends of the edits class are
@@ -98,6 +99,10 @@ class FakeEnvironment : public WorldEnvironment {
     records.insert(records.end(), new_records.begin(), new_records.end());
   }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
+               const std::string& text) override {
+    commands.push_back(text);
+  }
   void open_moment(SessionId session, const HistoryRequest& travel) override {
     moments.emplace_back(session, travel);
   }
