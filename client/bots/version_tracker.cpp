@@ -64,7 +64,7 @@ void VersionTracker::forget(const Known& chunk) {
 }
 
 void VersionTracker::receive(const ChunkSnapshot& snapshot, TimeUs now_us) {
-  if (!digest_holds(snapshot)) {
+  if (!digest_matches(snapshot)) {
     violations_.add("snapshot digest", "chunk " + text_of(snapshot.key) + " at seq " +
                                            std::to_string(snapshot.chunk.version.seq));
   }

@@ -95,7 +95,7 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
 
 // Tells the server what was read, now or when it is due.
 void Link::State::tell_read() {
-  if (!up || (features & kFeatureReceived) == 0) return;
+  if (!up || (features & kFeatureReceiveAck) == 0) return;
   const TimeUs now_us = steady_now_us();
   if (report.is_due(chunk_bytes, now_us)) {
     report.told(chunk_bytes, now_us);

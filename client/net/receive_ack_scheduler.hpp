@@ -1,6 +1,6 @@
 // ReceiveAckScheduler: when a client tells the server how much terrain it has read, so that the server can tell how fast the link
-// is and how long its round trip. At most every kReceivedEveryUs, or each kReceivedEveryBytes where that comes first, but
-// never more often than every kReceivedUsMin; the last bytes are told too. Pure: times are arguments. One thread.
+// is and how long its round trip. At most every kReceiveAckEveryUs, or each kReceiveAckEveryBytes where that comes first, but
+// never more often than every kReceiveAckUsMin; the last bytes are told too. Pure: times are arguments. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,8 @@ class ReceiveAckScheduler {
   std::optional<TimeUs> due(std::uint64_t total) const {
     if (total == told_) return std::nullopt;
     if (!told_us_) return 0;
-    return *told_us_ + (total - told_ >= kReceivedEveryBytes ? kReceivedUsMin : kReceivedEveryUs);
+    return *told_us_ +
+           (total - told_ >= kReceiveAckEveryBytes ? kReceiveAckUsMin : kReceiveAckEveryUs);
   }
   void told(std::uint64_t total, TimeUs now_us) {
     told_ = total;

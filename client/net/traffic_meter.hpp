@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "protocol/codec/message_kind.hpp"
+#include "protocol/codec/message_traffic.hpp"
 
 namespace runstone {
 

@@ -2,8 +2,8 @@
 
 namespace runstone {
 
-std::vector<HeldChunk> Claims::take(const ChunkTable& chunks) {
-  std::vector<HeldChunk> claims;
+std::vector<CachedChunk> Claims::take(const ChunkTable& chunks) {
+  std::vector<CachedChunk> claims;
   for (const auto& [key, chunk] : chunks) {
     if (waiting_.size() >= kClaimsMax) break;
     if (!chunk.confirmed() || chunk.state() != ChunkState::expected) continue;

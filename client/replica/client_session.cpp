@@ -233,7 +233,7 @@ std::optional<CachedWorld> ClientSession::cached_world() const {
 
 void ClientSession::send_view() {
   view_waiting_since_us_.reset();
-  for (Message& held : held_messages(replica_->take_claims())) connection_.send(std::move(held));
+  for (Message& held : cached_chunks_messages(replica_->take_claims())) connection_.send(std::move(held));
   connection_.send_view();
 }
 

@@ -207,7 +207,7 @@ void Replica::receive(ChunkSnapshot snapshot, const Arrival& arrival) {
 
 void Replica::receive(const ChunksNotModified& same, TimeUs now_us) {
   if (!parameters_ || past_.is_past()) return;
-  for (const SameChunk& entry : same.chunks) {
+  for (const UnmodifiedChunk& entry : same.chunks) {
     if (!is_in_view(entry.key)) continue;
     claims_.answer(entry.key);
     updater_.take_not_modified(track(entry.key), entry.seq, now_us);
@@ -313,7 +313,7 @@ void Replica::adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us) {
   if (!tracked.confirmed() && !is_answered) updater_.adopt(tracked, std::move(chunk), now_us);
 }
 
-std::vector<HeldChunk> Replica::take_claims() {
+std::vector<CachedChunk> Replica::take_claims() {
   if (!parameters_ || past_.is_past()) return {};
   auto claims = claims_.take(chunks_);
   counters_.claimed += claims.size();

@@ -107,7 +107,7 @@ class Replica {
   /// of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
   /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the past.
-  std::vector<HeldChunk> take_claims();
+  std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may have them.
   std::vector<ChunkKey> missing() const;
   /// From now on chunks that leave the view are collected for the cache.

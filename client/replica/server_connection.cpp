@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/core/assert.hpp"
+
 namespace runstone {
 namespace {
 
@@ -40,16 +42,13 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     wants_close_ = true;
     return Dispatch::handled;
   }
-  if (auto* welcome = std::get_if<Welcome>(&message)) {
-    if (state_ == SessionState::hello_sent) return on_welcome(std::move(*welcome));
-    fail_with(GoodbyeReason::unexpected_message, "welcome twice");
+  const std::uint64_t features = welcome_ ? welcome_->features : 0;
+  if (const auto refusal = refusal_of(info_of(message), Sender::server, stage(), features)) {
+    fail_with(refusal->reason, refusal->text);
     return Dispatch::handled;
   }
+  if (auto* welcome = std::get_if<Welcome>(&message)) return on_welcome(std::move(*welcome));
   if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
-    if (state_ != SessionState::authenticating) {
-      fail_with(GoodbyeReason::unexpected_message, "ready out of turn");
-      return Dispatch::handled;
-    }
     on_session_accepted(*ready, arrival.now_us);
     return Dispatch::ready;
   }
@@ -59,6 +58,12 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     return Dispatch::handled;
   }
   return Dispatch::for_session;
+}
+
+SessionStage ServerConnection::stage() const {
+  RUNSTONE_ASSERT(state_ != SessionState::offline);
+  if (state_ == SessionState::hello_sent) return SessionStage::greeting;
+  return state_ == SessionState::authenticating ? SessionStage::authenticating : SessionStage::open;
 }
 
 ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {

@@ -17,6 +17,7 @@
 #include "client/replica/local_edits.hpp"
 #include "client/replica/replica_changes.hpp"
 #include "protocol/codec/handshake.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -106,6 +107,8 @@ class ServerConnection {
   const SessionConfig& config() const { return config_; }
 
  private:
+  /// Returns the stage of the handshake. Requires a connection.
+  SessionStage stage() const;
   Dispatch on_welcome(Welcome welcome);
   void on_session_accepted(const SessionAccepted& ready, TimeUs now_us);
 

@@ -25,7 +25,7 @@ Json json_of(const KindTraffic& traffic) {
 Json json_of(const Traffic& traffic) {
   Json kinds = Json::object(), classes = Json::object();
   for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
-    if (traffic[kind].messages != 0) kinds[name_of_kind(kind)] = json_of(traffic[kind]);
+    if (traffic[kind].messages != 0) kinds[info_of(kind).name] = json_of(traffic[kind]);
   }
   for (const auto& [frame_class, name] : kClasses)
     classes[name] = json_of(of_class(traffic, frame_class));
@@ -48,7 +48,7 @@ void add_rows(const char* way, const Traffic& traffic, std::string& out) {
   std::sort(kinds.begin(), kinds.end(), [&](MessageKind a, MessageKind b) {
     return traffic[a].bytes != traffic[b].bytes ? traffic[a].bytes > traffic[b].bytes : a < b;
   });
-  for (const MessageKind kind : kinds) out += row(way, name_of_kind(kind), traffic[kind]);
+  for (const MessageKind kind : kinds) out += row(way, info_of(kind).name, traffic[kind]);
   for (const auto& [frame_class, name] : kClasses) {
     const KindTraffic sum = of_class(traffic, frame_class);
     if (sum.messages != 0) out += row(way, fmt::format("= class {}", name).c_str(), sum);

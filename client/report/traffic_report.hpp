@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "protocol/codec/message_kind.hpp"
+#include "protocol/codec/message_traffic.hpp"
 
 namespace runstone {
 

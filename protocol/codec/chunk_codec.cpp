@@ -13,14 +13,14 @@
 namespace runstone {
 namespace {
 
-// Raw runs are copied between memory and wire as they are.
+// Raw runs are copied between memory and wire without conversion.
 static_assert(std::endian::native == std::endian::little);
 static_assert(std::is_trivially_copyable_v<PackedRun> && offsetof(PackedRun, material) == 2);
 
 constexpr std::uint8_t version_of(ChunkEncoding encoding) {
   return encoding == ChunkEncoding::packed ? 2 : 1;
 }
-constexpr std::uint8_t kPackedV1 = 1;  // read only: old worlds hold it
+constexpr std::uint8_t kPackedV1 = 1;  // read only: old worlds contain it
 constexpr std::uint8_t kZstdFlag = 8;  // in the axis order byte of packed chunks
 
 void append_bytes(Bytes& out, const void* from, std::size_t count) {
@@ -80,7 +80,7 @@ void encode_coded(const RunChunk& chunk, Bytes& out) {
   w.bytes(coded.bytes);
 }
 
-// What all encodings say about a chunk before its runs.
+// The fields that all encodings have before the runs.
 struct Head {
   std::uint8_t version = 0;
   Extent extent;
@@ -138,7 +138,8 @@ Result<RunChunk> decode_raw(ByteReader& r, const Extent* expected) {
       {head.extent, head.order, RunList::of_wide(std::move(ends), std::move(materials))});
 }
 
-/// At most `colours_max` ids, all there before memory is taken for them. Look at r.ok() before use.
+/// Reads at most `colours_max` ids. Allocates only after it has checked that their bytes are present. The result is valid
+/// if r.ok().
 std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   const auto colours = r.varint_max(kMaterialCountMax, "palette exceeds 65536 materials");
   if (colours > colours_max) r.reject(ErrorCode::bad_value, "palette larger than the run count");
@@ -156,8 +157,8 @@ std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   return palette;
 }
 
-/// The rest of a packed chunk from `body_at` on, unpacked. Errors of runs name the run; those of the body as a whole,
-/// its first byte.
+/// Returns the validated chunk of unpacked runs. Errors of runs keep their run index; other offsets are moved by `body_at`,
+/// the offset of the body.
 Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_t body_at) {
   if (!runs) {
     const Error& e = runs.error();
@@ -184,7 +185,8 @@ Result<RunChunk> decode_packed_v1(ByteReader& r, const Head& head) {
 
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
-  if (!r.ok()) return Unexpected<Error>{r.error()};  // the axis order is looked up below
+  // Before the axis order is used.
+  if (!r.ok()) return Unexpected<Error>{r.error()};
   if (head.version == kPackedV1) return decode_packed_v1(r, head);
   PackedShape shape;
   shape.side = ordered(head.extent, head.order).f;

@@ -1,4 +1,4 @@
-// Scratch of the chunk codec: it lives per thread between chunks. Internal to the codec.
+// Scratch of the chunk codec, which lives per thread between chunks. Internal to the codec.
 #pragma once
 #include <cstddef>
 
@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-/// Gives up what one huge chunk made it grow to: that must not be held for ever.
+/// Frees the buffer if a huge chunk made it grow beyond 1 MiB.
 inline void keep_small(Bytes& bytes) {
   constexpr std::size_t kBytesKept = 1 << 20;
   if (bytes.capacity() > kBytesKept) Bytes().swap(bytes);

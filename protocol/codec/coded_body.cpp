@@ -14,7 +14,7 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kScratchRunsKept = 1 << 17;  // one huge chunk must not hold memory for ever
+constexpr std::size_t kScratchRunsKept = 1 << 17;  // more are freed after a huge chunk
 
 /// A run with its material as an index into the palette.
 struct IndexRun {
@@ -22,7 +22,8 @@ struct IndexRun {
   std::uint32_t index = 0;
 };
 
-/// A number below 2^21 in so many bits, high ones first. Numbers of few bits have a model for every prefix.
+/// Models of a number below 2^21, written in a given number of bits, high bits first. A number of few bits has a model for
+/// every prefix.
 struct NumberModel {
   static constexpr unsigned kTreeBitsMax = 5;
   std::array<AdaptiveBit, 2u << kTreeBitsMax> tree;
@@ -30,20 +31,21 @@ struct NumberModel {
 };
 
 struct Models {
-  std::array<AdaptiveBit, 256> start;      // by what meets where a stretch begins, and its length
-  std::array<AdaptiveBit, 64 * 6> inside;  // by what meets within, and how much is left
-  std::array<NumberModel, 4> distance;     // by whether the material goes on above and behind
-  std::array<AdaptiveBit, 3> above;        // a new material is the one above
-  AdaptiveBit behind, follower;            // it is the one behind; the one that followed last
-  std::array<AdaptiveBit, 256> material;   // the first eight bits of an index, by prefix
-  std::array<AdaptiveBit, 16> material_deep;  // the others, by place
+  // docs/protocol.md names the models S, N, T and U, G, H, K, I, J, in this order.
+  std::array<AdaptiveBit, 256> start;         // a change at the start of a stretch
+  std::array<AdaptiveBit, 64 * 6> inside;     // a change within a stretch
+  std::array<NumberModel, 4> distance;        // of a change within a stretch
+  std::array<AdaptiveBit, 3> above;           // the new material is the one above
+  AdaptiveBit behind, follower;               // it is the one behind; it is the follower
+  std::array<AdaptiveBit, 256> material;      // the first eight bits of a palette index, by prefix
+  std::array<AdaptiveBit, 16> material_deep;  // the further bits, by place
 };
 
 struct Scratch {
   Models models;
   std::vector<IndexRun> runs;
   std::vector<std::uint16_t> follower;  // by palette index
-  std::vector<std::uint8_t> used;       // likewise
+  std::vector<std::uint8_t> used;       // by palette index
   WirePalette palette;
   Bytes bytes;
 };
@@ -53,7 +55,7 @@ Scratch& scratch() {
   return mine;
 }
 
-/// The runs that an encoder has before it.
+/// The runs that an encoder reads.
 template <class Runs>
 class Known {
  public:
@@ -68,15 +70,15 @@ class Known {
   std::size_t at_ = 0;
 };
 
-/// What a decoder has in its place: its coder does not look at it.
+/// Takes the place of Known in a decoder, whose coder ignores it.
 struct Unknown {
   static std::uint32_t end() { return 0; }
   static std::uint32_t index() { return 0; }
   static void next() {}
 };
 
-/// Codes one chunk, in either direction: `Coder` takes each bit from `Truth` or from bytes. Both therefore keep
-/// the same models and the same list of runs.
+/// Encodes or decodes one chunk: `Coder` takes each bit from `Truth` or from bytes. So both directions have the same models
+/// and the same list of runs.
 template <class Coder, class Truth>
 class RunCoder {
  public:
@@ -98,7 +100,7 @@ class RunCoder {
 
   Result<void> run() {
     now_ = code_material();
-    if (now_ >= materials_) return broken("material index behind the palette");
+    if (now_ >= materials_) return broken("palette index behind the palette");
     runs_.push_back({volume_, now_});
     above_ = behind_ = first_ = now_;
     for (std::uint32_t at = 0; at < volume_;) {
@@ -142,7 +144,7 @@ class RunCoder {
 
  private:
   static std::uint32_t same(std::uint32_t a, std::uint32_t b) { return a == b ? 1 : 0; }
-  /// What was made up behind the end of the body says nothing about it.
+  /// Returns the error, or truncated if the coder read beyond the body: then the runs are arbitrary.
   Result<void> broken(const char* what) const {
     return coder_overrun() ? cut() : fail(ErrorCode::not_canonical, what);
   }
@@ -153,8 +155,8 @@ class RunCoder {
     return false;
   }
 
-  /// Finds what lies above and behind voxel `at`: one line and one layer before it. Before the first line it is
-  /// the first material, and before the first layer what lies above.
+  /// Finds the materials above and behind voxel `at`, one line and one layer before it. In the first line, the one above is
+  /// the first material. In the first layer, the one behind is the one above.
   void look(std::uint32_t at) {
     above_ = first_;
     if (at >= line_) {
@@ -169,17 +171,18 @@ class RunCoder {
     at_ = at;
   }
 
-  /// Where one of them ends. The open run counts as going on: while it does, so does what it is above of.
+  /// Returns the first position at which the material above or behind may change, or the volume. The open run has no end
+  /// yet and counts as endless.
   std::uint32_t stretch_end() {
     above_end_ = at_ < line_ ? line_ : runs_[above_run_].end + line_;
     behind_end_ = at_ < layer_ ? layer_ : runs_[behind_run_].end + layer_;
     return std::min({above_end_, behind_end_, volume_});
   }
 
-  /// The open run ends before `at`; what follows has another material.
+  /// Ends the open run before `at` and opens one of another material.
   Result<void> change(std::uint32_t at) {
     const std::uint32_t before = now_;
-    if (!code_change()) return broken("material is spelt a longer way than needed");
+    if (!code_change()) return broken("material is written in a longer way than needed");
     runs_.back().end = at;
     runs_.push_back({volume_, now_});
     RUNSTONE_DASSERT(now_ != before);
@@ -224,7 +227,7 @@ class RunCoder {
     return prefix - (1u << material_bits_);
   }
 
-  /// A number that may be 0 .. max, in as many bits as max has.
+  /// Codes a number of 0 .. max in as many bits as max has.
   std::uint32_t code_distance(std::uint32_t truth, std::uint32_t max) {
     const auto bits = static_cast<unsigned>(std::bit_width(max));
     NumberModel& model = m_.distance[same(now_, above_) | same(now_, behind_) << 1];
@@ -240,14 +243,14 @@ class RunCoder {
   Coder coder_;
   Truth truth_;
   Models& m_;
-  std::vector<IndexRun>& runs_;  // the last one is open: its end is the volume until it changes
+  std::vector<IndexRun>& runs_;  // the last one is open: its end is the volume until a change
   std::vector<std::uint16_t>& follower_;
   const std::uint32_t line_, layer_, volume_, materials_;
   const unsigned material_bits_;
-  std::uint32_t at_ = 0;               // where the stretch begins
-  std::uint32_t now_ = 0, first_ = 0;  // indices into the palette, as those below
-  std::uint32_t above_ = 0, behind_ = 0;
-  std::uint32_t above_end_ = 0, behind_end_ = 0;  // where they change, seen from here
+  std::uint32_t at_ = 0;                                        // start of the stretch
+  std::uint32_t now_ = 0, first_ = 0, above_ = 0, behind_ = 0;  // palette indices
+  std::uint32_t above_end_ = 0,
+                behind_end_ = 0;  // positions at which above_ and behind_ may change
   std::size_t above_run_ = 0, behind_run_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// CommitWalk: reads a commit edit by edit and keeps none of them, for a client that verifies every one of thousands and has no
-// voxels to apply them to. It checks what decode_message() checks, with the same code, but allocates nothing per edit.
+// CommitWalk: reads a commit edit by edit and keeps none of them. It serves clients without voxels, such as bots, that
+// verify thousands of edits. It makes the checks of decode_message() with the same code, but allocates nothing per edit.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,21 +13,21 @@
 
 namespace runstone {
 
-/// One edit of a commit. Lives until the function that gets it returns.
+/// One edit of a commit. It lives until the function that gets it returns.
 struct WalkedEdit {
   Version version;
   const OrderedEdit& ordered;
   std::span<const ChunkCoord> chunks;  // touched_chunks(); ordered.previous has one entry for each
 };
 
-/// Holds the room that edits are read into. One thread.
+/// Reuses the memory that edits are read into. Thread: one.
 class CommitWalk {
  public:
   using OnEdit = std::function<Result<void>(const WalkedEdit&)>;
 
-  /// A server's message of the class of edits, 8-aligned as FrameReader's are; `chunk_edge` is 16, 32, 64 or 128. Returns
-  /// false for anything but a commit, which is then for decode_message(). An error, also one of `on_edit`, ends the walk: the
-  /// edits before the bad one have been handed out by then.
+  /// Reads a server's message of the class edits, 8-aligned as FrameReader's are. Returns false if it is no commit; such
+  /// a message is for decode_message(). An error of the message or of `on_edit` ends the walk; the edits before the bad one
+  /// have been delivered by then. Requires a chunk_edge of 16, 32, 64 or 128.
   Result<bool> read(ByteView bytes, std::uint16_t chunk_edge, const OnEdit& on_edit);
 
  private:

@@ -10,7 +10,7 @@ namespace runstone {
 namespace {
 
 std::string as_line(std::string text) {
-  // A driver's message may have lines of its own, and be in any encoding.
+  // The message of a driver may have several lines and any encoding.
   if (!is_printable_utf8(text)) {
     for (char& c : text) {
       if (c < ' ' || c > '~') c = ' ';
@@ -25,7 +25,7 @@ bool take_word(std::string_view& line, std::string_view word) {
   return true;
 }
 
-/// A decimal number and the blank behind it.
+/// Reads a decimal number and the blank after it.
 template <class T>
 bool take_number(std::string_view& line, T& to) {
   const auto [end, wrong] = std::from_chars(line.data(), line.data() + line.size(), to);

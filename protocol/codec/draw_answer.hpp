@@ -1,9 +1,9 @@
-// Draw answers: what `runstone-client --draw` writes to its standard output, a line each, so that whoever
-// orders pictures (draw_order.hpp) can wait for them:
+// Draw answers: lines that `runstone-client --draw` writes to its standard output, so that the sender of draw orders
+// (draw_order.hpp) can wait for its pictures:
 //   ready VERSION RENDERER                     once, when there is OpenGL
-//   drawn quads=N chunks=N us=N FILE           a picture is on the disk
+//   drawn quads=N chunks=N us=N FILE           a picture is on disk
 //   unwritten FILE                             the picture could not be written; the next one may succeed
-//   error TEXT                                 no OpenGL (any more), or a wrong order: the program ends
+//   error TEXT                                 no OpenGL, or an invalid order: the program ends
 // Any other line is no answer.
 #pragma once
 #include <cstddef>
@@ -23,8 +23,8 @@ struct DrawReady {
   friend bool operator==(const DrawReady&, const DrawReady&) = default;
 };
 struct PictureDrawn {
-  std::uint64_t quads = 0;   // drawn
-  std::uint64_t chunks = 0;  // that had some in view
+  std::uint64_t quads = 0;   // that were drawn
+  std::uint64_t chunks = 0;  // that had quads in view
   std::uint64_t us = 0;      // from the order until the file was written
   std::string file;
   friend bool operator==(const PictureDrawn&, const PictureDrawn&) = default;
@@ -39,9 +39,9 @@ struct DrawFailed {
 };
 using DrawAnswer = std::variant<DrawReady, PictureDrawn, PictureUnwritten, DrawFailed>;
 
-/// The line with its line feed. What would break the line becomes blanks; what is too long is cut.
+/// Returns the line with its line feed. Bytes that are not printable become blanks; a line that is too long is cut.
 std::string to_line(const DrawAnswer& answer);
-/// `line` without its line feed. Nothing if it is no answer, or has control characters.
+/// Parses a line without its line feed. Returns nullopt if it is no answer or has control characters.
 std::optional<DrawAnswer> parse_draw_answer(std::string_view line);
 
 }  // namespace runstone

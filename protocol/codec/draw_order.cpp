@@ -20,7 +20,7 @@ template <class Write>
 void append_frame(Kind kind, Bytes& out, Write write) {
   const std::size_t at = out.size();
   ByteWriter w(out);
-  w.u32(0);  // the length, once it is known
+  w.u32(0);  // filled in below
   w.u8(static_cast<std::uint8_t>(kind));
   write(w);
   const std::size_t body = out.size() - at - kDrawHeaderBytes;
@@ -103,7 +103,7 @@ Result<DrawOrder> decode_picture(ByteReader& r) {
 
 Result<void> validate(const DrawPicture& picture) {
   const DrawCamera& c = picture.camera;
-  // So written, a NaN is outside.
+  // Written so that a NaN is outside.
   const auto inside = [](double v, double low, double high) { return v >= low && v <= high; };
   const auto bad = [](const char* what) { return fail(ErrorCode::bad_value, what); };
   constexpr double kReach = 2.0 * kWorldLimit;
@@ -133,7 +133,8 @@ Result<void> validate(const DrawPicture& picture) {
 
 void append_draw_world(std::int32_t edge, const MaterialTable& materials, Bytes& out) {
   RUNSTONE_ASSERT(is_edge(edge));
-  MaterialTable plain;  // rules of generation are long, and a full table of them would not fit
+  // A full table with its rules of generation would exceed the limit of a body.
+  MaterialTable plain;
   for (std::size_t id = 1; id < materials.size(); ++id) {
     MaterialInfo info = materials[static_cast<Material>(id)];
     info.generation.reset();
@@ -202,7 +203,7 @@ Result<void> DrawOrderReader::advance(ByteView bytes, const OnOrder& on_order) {
       if (header_have_ < kDrawHeaderBytes) return {};
       if (auto opened = open_frame(); !opened) return opened;
     }
-    // The announced length is not reserved: a peer has to send what it wants us to hold.
+    // The announced length is not reserved: memory grows only with the bytes that the peer sends.
     const std::size_t take = std::min(bytes.size(), body_bytes_ - body_.size());
     body_.insert(body_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(take));
     offset_ += take;

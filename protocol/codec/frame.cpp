@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint8_t kFlagMore = 1;
 constexpr std::size_t kMessageBytesKept = 4 * kFragmentBytesMax;
-// Bodies are read in place, and std::vector takes its storage from operator new.
+// Bodies are read in place and must be 16-aligned; std::vector takes its storage from operator new.
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16);
 
 }  // namespace
@@ -86,7 +86,7 @@ Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
     header_have_ = 0;
     if ((header_[5] & kFlagMore) != 0) continue;
     if (auto ok = on_message(static_cast<FrameClass>(header_[4]), partial); !ok) return ok;
-    // A large message must not pin its memory for the rest of the session.
+    // After a large message the reader gives its memory back.
     if (partial.capacity() > kMessageBytesKept) {
       Bytes().swap(partial);
     } else {

@@ -1,9 +1,9 @@
-// Frames: how messages become a byte stream and come back. One stream carries three classes whose fragments
-// may interleave, so that an edit overtakes terrain; within a class, messages keep their order. Header, 12
-// bytes, little-endian:
-//   u32 body bytes (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this message follow) | u16
-//   zero | u32 counter (frames sent in this direction before this one, modulo 2^32)
-// The counter detects a peer that loses, repeats or invents frames before its bytes reach the decoder.
+// Frames: they carry messages in a byte stream. One stream carries three classes. Fragments of different classes may
+// interleave, so that an edit overtakes terrain. Within a class, messages keep their order. A frame is a header of 12
+// bytes, little-endian, and a body:
+//   u32 bytes of the body (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this message follow) |
+//   u16 zero | u32 counter (frames sent in this direction before this one, modulo 2^32)
+// The counter detects lost, repeated and invented frames before their bytes reach the decoder.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,12 +22,12 @@ namespace runstone {
 enum class FrameClass : std::uint8_t { control = 0, edits = 1, chunks = 2 };
 inline constexpr int kFrameClassCount = 3;
 
-/// Whose bytes are read: decides which classes, sizes and messages are allowed.
+/// The side that sent the bytes. It decides which classes, sizes and messages are allowed.
 enum class Sender : std::uint8_t { client, server };
-std::size_t message_bytes_max(Sender sender,
-                              FrameClass frame_class);  // 0: this sender may not use the class
+/// Returns the limit of a whole message, or 0 if the sender may not use the class.
+std::size_t message_bytes_max(Sender sender, FrameClass frame_class);
 
-/// A serialised message: made once, shared by every session that sends it.
+/// A serialised message. It is made once and shared by all sessions that send it.
 struct EncodedMessage {
   FrameClass frame_class = FrameClass::control;
   std::shared_ptr<const Bytes> bytes;
@@ -35,34 +35,35 @@ struct EncodedMessage {
 
 using FrameHeader = std::array<std::uint8_t, kFrameHeaderBytes>;
 
-/// Cuts messages into frames of one direction and counts them. One per session and direction; one thread.
+/// Makes the frames of one direction of a session and counts them. Thread: one.
 class FrameWriter {
  public:
-  /// Header of the next fragment: `body_bytes` of 1 .. kFragmentBytesMax; `more` if the message goes on.
+  /// Returns the header of the next fragment. `more` says that the message continues in another fragment. Requires
+  /// body_bytes in 1 .. kFragmentBytesMax.
   FrameHeader next(FrameClass frame_class, std::size_t body_bytes, bool more);
-  /// Appends a whole message as consecutive frames; for tests and small peers. Real senders interleave.
+  /// Appends a whole message as consecutive frames, for senders that do not interleave classes.
   void append(const EncodedMessage& message, Bytes& out);
 
  private:
   std::uint32_t counter_ = 0;
 };
 
-/// Puts frames back together. Feed it the stream in pieces of any size; it hands out whole messages in order
-/// of completion. Holds at most one unfinished message per class, each below its limit. One thread. After an
-/// error, its own or one that on_message returned, every call returns that error. Offsets of its own errors
-/// count bytes since the stream began and name the frame's first byte.
+/// Reads frames and assembles messages. Accepts the stream in pieces of any size and delivers messages in the order in
+/// which they become complete. Holds at most one unfinished message per class, each below its limit. After an error of its
+/// own or of on_message, every call returns that error. Offsets of its own errors count bytes since the stream began and
+/// name the first byte of the frame. Thread: one.
 class FrameReader {
  public:
   explicit FrameReader(Sender sender) : sender_(sender) {}
-  /// Called with the class and the body; the body is 16-aligned and lives until the call returns. The handler
-  /// must not feed the same reader.
+  /// Gets the class and the bytes of a message. The bytes are 16-aligned and live until the call returns. It must not feed
+  /// the same reader.
   using OnMessage = std::function<Result<void>(FrameClass, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
-  /// Bytes of frames of this class read so far, headers included, whole frames or not.
+  /// Returns the bytes read of frames of this class, headers and unfinished frames included.
   std::uint64_t frame_bytes(FrameClass frame_class) const {
     return frame_bytes_[static_cast<std::size_t>(frame_class)];
   }
-  /// Frames of this class whose header was read.
+  /// Returns the number of frames of this class whose headers were read.
   std::uint64_t frames(FrameClass frame_class) const {
     return frames_[static_cast<std::size_t>(frame_class)];
   }

@@ -15,11 +15,11 @@ static_assert(crypto_sign_SEEDBYTES == std::tuple_size_v<KeySeed>);
 static_assert(crypto_sign_SECRETKEYBYTES == std::tuple_size_v<decltype(KeyPair::secret_key)>);
 
 void need_sodium() {
-  static const bool ready = sodium_init() >= 0;  // once; other threads wait for it
+  static const bool ready = sodium_init() >= 0;  // runs once; other threads wait
   RUNSTONE_ASSERT(ready);
 }
 
-// Every field goes in behind its length (u32), so that no two different handshakes spell the same bytes.
+// Each field follows its length (u32), so two different handshakes never have the same bytes.
 class Transcript {
  public:
   explicit Transcript(std::string_view label) : writer_(bytes_) { text(label); }
@@ -30,7 +30,7 @@ class Transcript {
   void text(std::string_view text) {
     field(ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
   }
-  /// `bytes` little-endian bytes of v.
+  /// Appends v as `bytes` bytes, little-endian.
   void number(std::uint64_t v, std::uint32_t bytes) {
     writer_.u32(bytes);
     for (std::uint32_t i = 0; i < bytes; ++i) writer_.u8(static_cast<std::uint8_t>(v >> (8 * i)));

@@ -1,9 +1,11 @@
-// Handshake: who is who. Ed25519 keys (libsodium) on both sides from the first version on; randomness comes
-// in as an argument, so that tests are repeatable.
-//   client -> hello(key, nonce)    server -> welcome(server key, challenge, signature over the server
-//   transcript) client -> proof(signature over the client transcript)    server -> ready(author)
-// Transcripts bind both keys, both random values, the world, epoch and protocol version, and name their role,
-// so that no signature can be replayed elsewhere or for the other side.
+// Handshake: each side proves that it has the secret key of its Ed25519 identity (libsodium). Randomness is an argument, so
+// that tests are repeatable.
+//   client -> Hello(key, nonce)
+//   server -> Welcome(server key, challenge, signature over the server transcript)
+//   client -> ClientAuth(signature over the client transcript)
+//   server -> SessionAccepted(author)
+// A transcript contains both keys, both random values, the world, the epoch, the protocol version and the role of its
+// signer. So a signature cannot be replayed in another session or serve as the other side's.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,15 +22,17 @@ struct KeyPair {
   std::array<std::uint8_t, 64> secret_key{};
 };
 
-/// Deterministic: the seed is the identity and must stay secret.
+/// Returns the key pair of a seed. It is deterministic: the seed is the identity and must stay secret.
 KeyPair key_pair_of(const KeySeed& seed);
 
-/// "runstone server v1" + every field both sides know after welcome except the signature.
+/// Returns "runstone server v1" and all fields that both sides know after Welcome, without the signature.
 Bytes server_transcript(const Hello& hello, const Welcome& welcome);
-/// "runstone client v1" + the same fields.
+/// Returns "runstone client v1" and the same fields.
 Bytes client_transcript(const Hello& hello, const Welcome& welcome);
 
+/// Returns the signature over a transcript.
 Signature sign(const KeyPair& keys, ByteView transcript);
+/// Returns true if the signature over the transcript was made with the secret key of `key`.
 bool verify(const PublicKey& key, ByteView transcript, const Signature& signature);
 
 }  // namespace runstone

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "common/core/text.hpp"
-#include "protocol/codec/held_lists.hpp"
+#include "protocol/codec/chunk_lists.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
@@ -30,7 +31,7 @@ wire::Digest digest_bytes(const Digest& d) { return {d.lane[0], d.lane[1]}; }
 wire::Position position_of(const WorldPos& p) { return {p.x, p.y, p.z}; }
 wire::Pose pose_of(const Pose& p) { return {position_of(p.at), p.yaw, p.pitch}; }
 
-/// Builds the body table of each message; the result's type names the union member.
+/// Builds the body table of each message. The type of the result names the member of the union.
 struct BodyBuilder {
   FlatBufferBuilder& b;
 
@@ -85,15 +86,15 @@ struct BodyBuilder {
     return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
   }
   Offset<wire::CachedChunks> operator()(const CachedChunks& m) {
-    return wire::CreateCachedChunks(b, bytes_of(b, encode_held(m.chunks)));
+    return wire::CreateCachedChunks(b, bytes_of(b, encode_cached_chunks(m.chunks)));
   }
   Offset<wire::ChunksNotModified> operator()(const ChunksNotModified& m) {
-    return wire::CreateChunksNotModified(b, bytes_of(b, encode_same(m.chunks)));
+    return wire::CreateChunksNotModified(b, bytes_of(b, encode_unmodified(m.chunks)));
   }
   Offset<wire::ChunkEdits> operator()(const ChunkEdits& m) {
     RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kChunkEditsMax);
     RUNSTONE_ASSERT(m.edits.back().seq == m.to.seq);
-    const auto edits = bytes_of(b, encode_missing(m.edits, m.from));
+    const auto edits = bytes_of(b, encode_missing_edits(m.edits, m.from));
     const wire::Key key = key_of(m.key);
     const wire::Version to = version_of(m.to);
     const wire::Digest digest = digest_bytes(m.digest);
@@ -108,7 +109,8 @@ struct BodyBuilder {
                                     m.utc_us, text(m.text));
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
-    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, encode(m.edit)));
+    const Bytes edit = m.fault ? Bytes{} : encode(m.edit);
+    return wire::CreateEditRequest(b, m.client_seq, m.submitted_us, bytes_of(b, edit));
   }
   Offset<wire::Commit> operator()(const Commit& m) {
     RUNSTONE_ASSERT(m.epoch != 0 && m.first != 0);
@@ -140,7 +142,7 @@ struct BodyBuilder {
     return wire::CreateDurable(b, m.epoch, m.seq);
   }
   Offset<wire::DigestCheck> operator()(const DigestCheck& m) {
-    RUNSTONE_ASSERT(m.entries.size() <= kAuditEntriesMax);
+    RUNSTONE_ASSERT(m.entries.size() <= kDigestCheckEntriesMax);
     std::vector<Offset<wire::DigestCheckEntry>> entries;
     entries.reserve(m.entries.size());
     for (const DigestCheckEntry& e : m.entries) {
@@ -200,7 +202,7 @@ struct BodyBuilder {
 
   Offset<wire::Chunk> snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
     const Bytes data = encode_chunk(chunk.voxels, encoding);
-    b.ForceVectorAlignment(data.size(), 1, 4);  // raw runs are read in place
+    b.ForceVectorAlignment(data.size(), 1, 4);  // so that a reader can use raw runs in place
     const auto bytes = bytes_of(b, data);
     const wire::Key k = key_of(key);
     const wire::Version v = version_of(chunk.version);
@@ -212,7 +214,7 @@ struct BodyBuilder {
     std::transform(list.begin(), list.end(), keys.begin(), key_of);
     return b.CreateVectorOfStructs(keys);
   }
-  /// Lines may name files, whose names hold anything.
+  /// Returns the line with "?" for each byte that is not printable: a line may name a file, and file names hold any bytes.
   static std::string shown_line(const std::string& line) {
     std::string shown = line;
     if (!is_printable_utf8(shown)) {
@@ -220,14 +222,14 @@ struct BodyBuilder {
     }
     return std::string(cut_utf8(shown, kCommandLineBytesMax));
   }
-  /// Texts are for people: a longer one is cut, never refused.
+  /// Texts are for people, so a text that is too long is cut.
   Offset<flatbuffers::String> text(const std::string& t) {
     const std::string_view cut = cut_utf8(t, kTextBytesMax);
     return b.CreateString(cut.data(), cut.size());
   }
 };
 
-/// One builder per thread: its buffer is reused from message to message.
+/// Returns the builder of this thread, empty. Its buffer is reused from message to message.
 FlatBufferBuilder& cleared_builder() {
   thread_local FlatBufferBuilder builder(kBuilderBytes);
   builder.Clear();
@@ -235,30 +237,29 @@ FlatBufferBuilder& cleared_builder() {
 }
 
 template <class Table>
-EncodedMessage finish(FlatBufferBuilder& b, FrameClass frame_class, Offset<Table> body) {
-  b.Finish(wire::CreateMessage(b, wire::BodyTraits<Table>::enum_value, body.Union()),
-           wire::MessageIdentifier());
-  RUNSTONE_ASSERT(b.GetSize() <=
-                  message_bytes_max(Sender::server, frame_class));  // the wider of both limits
+EncodedMessage finish(FlatBufferBuilder& b, Offset<Table> body) {
+  constexpr wire::Body kType = wire::BodyTraits<Table>::enum_value;
+  constexpr FrameClass kClass = info_of(static_cast<MessageKind>(kType) - 1).frame_class;
+  b.Finish(wire::CreateMessage(b, kType, body.Union()), wire::MessageIdentifier());
+  // In each class the server's limit is the larger one.
+  RUNSTONE_ASSERT(b.GetSize() <= message_bytes_max(Sender::server, kClass));
   const std::uint8_t* first = b.GetBufferPointer();
   auto bytes = std::make_shared<const Bytes>(first, first + b.GetSize());
-  if (bytes->size() > kBuilderBytesKept)
-    b.Reset();  // one huge message must not hold memory for ever
-  return {frame_class, std::move(bytes)};
+  // After a huge message the builder gives its memory back.
+  if (bytes->size() > kBuilderBytesKept) b.Reset();
+  return {kClass, std::move(bytes)};
 }
 
 }  // namespace
 
 EncodedMessage encode_message(const Message& message) {
   FlatBufferBuilder& b = cleared_builder();
-  const FrameClass frame_class = frame_class_of(message);
-  return std::visit([&](const auto& m) { return finish(b, frame_class, BodyBuilder{b}(m)); },
-                    message);
+  return std::visit([&](const auto& m) { return finish(b, BodyBuilder{b}(m)); }, message);
 }
 
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
   FlatBufferBuilder& b = cleared_builder();
-  return finish(b, FrameClass::chunks, BodyBuilder{b}.snapshot(key, chunk, encoding));
+  return finish(b, BodyBuilder{b}.snapshot(key, chunk, encoding));
 }
 
 }  // namespace runstone

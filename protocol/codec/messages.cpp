@@ -1,32 +1,13 @@
 #include "protocol/codec/messages.hpp"
 
-#include <type_traits>
-#include <variant>
-
-#include "protocol/codec/held_lists.hpp"
+#include "protocol/codec/chunk_lists.hpp"
 
 namespace runstone {
 
-FrameClass frame_class_of(const Message& message) {
-  return std::visit(
-      []<class T>(const T&) {
-        constexpr bool kOrder = std::is_same_v<T, EditRequest> || std::is_same_v<T, Commit> ||
-                                std::is_same_v<T, Reject> || std::is_same_v<T, Durable> ||
-                                std::is_same_v<T, SessionAccepted>;
-        if constexpr (kOrder) return FrameClass::edits;
-        constexpr bool kChunk =
-            std::is_same_v<T, ChunkSnapshot> || std::is_same_v<T, ChunkUnavailable> ||
-            std::is_same_v<T, UniformChunks> || std::is_same_v<T, HistoryState> ||
-            std::is_same_v<T, ChunksNotModified> || std::is_same_v<T, ChunkEdits>;
-        return kChunk ? FrameClass::chunks : FrameClass::control;
-      },
-      message);
-}
-
-std::vector<Message> held_messages(std::span<const HeldChunk> chunks) {
+std::vector<Message> cached_chunks_messages(std::span<const CachedChunk> chunks) {
   std::vector<Message> out;
   while (!chunks.empty()) {
-    const std::size_t count = held_that_fit(chunks);
+    const std::size_t count = cached_chunks_that_fit(chunks);
     out.push_back(
         CachedChunks{{chunks.begin(), chunks.begin() + static_cast<std::ptrdiff_t>(count)}});
     chunks = chunks.subspan(count);
@@ -39,7 +20,7 @@ const char* to_string(RejectReason reason) {
     case RejectReason::busy:
       return "busy";
     case RejectReason::already_resolved:
-      return "already_decided";
+      return "already_resolved";
     case RejectReason::unknown_material:
       return "unknown_material";
     case RejectReason::too_large:

@@ -1,9 +1,10 @@
-// Messages as plain structs, and the one way from bytes to them and back. A decode ends validated: sizes,
-// ranges, enum values, descriptor bytes and chunk runs are checked before anybody sees the struct.
+// Messages as plain structs, with the functions that encode and decode them. A decoded struct is valid: sizes, ranges,
+// enum values, descriptor bytes and chunk runs were checked. The one exception is EditRequest::fault.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -29,14 +30,15 @@ using Nonce = std::array<std::uint8_t, kNonceBytes>;
 using Signature = std::array<std::uint8_t, kSignatureBytes>;
 using WorldId = std::array<std::uint8_t, kWorldIdBytes>;
 
-struct WorldPos {  // voxels; a player's eye or feet, not a voxel
+/// A point in the world, in voxels, for example the eye of a player. VoxelPos names a whole voxel.
+struct WorldPos {
   double x = 0, y = 0, z = 0;
   friend bool operator==(const WorldPos&, const WorldPos&) = default;
 };
 struct Pose {
   WorldPos at;
-  std::uint16_t yaw = 0;   // 65536 a turn, 0 looks along +z, growing towards +x
-  std::int16_t pitch = 0;  // 32768 is 180 degrees, positive looks up
+  std::uint16_t yaw = 0;   // 65536 is a turn; 0 looks along +z; grows towards +x
+  std::int16_t pitch = 0;  // 32768 is 180 degrees; positive looks up
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
@@ -46,8 +48,8 @@ struct Hello {
   ClientInstance instance = 0;
   Nonce nonce{};
   std::string name;
-  std::uint8_t encodings = kEncodingsKnown;  // bit per ChunkEncoding: 1 << (encoding - 1)
-  std::uint64_t features = 0;                // as sent: may have bits that this build does not know
+  std::uint8_t encodings = kEncodingsKnown;  // a bit per ChunkEncoding: 1 << (encoding - 1)
+  std::uint64_t features = 0;                // as sent: unknown bits are possible
   friend bool operator==(const Hello&, const Hello&) = default;
 };
 struct Welcome {
@@ -56,7 +58,7 @@ struct Welcome {
   Epoch epoch = 0;
   Sequence durable = 0, head = 0;
   std::uint16_t chunk_edge = 32;
-  HeightLimits heights;  // of edits
+  HeightLimits heights;  // limits of edits
   WorldPos spawn;
   MaterialTable materials;
   PublicKey server_key{};
@@ -65,7 +67,7 @@ struct Welcome {
   ChunkEncoding encoding = ChunkEncoding::raw;
   std::uint64_t edit_volume_max = 0;
   std::uint8_t view_radius_max = 0;
-  std::uint64_t features = 0;  // of hello's, those in force
+  std::uint64_t features = 0;  // in force for this session; a subset of Hello's
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct ClientAuth {
@@ -78,15 +80,15 @@ struct SessionAccepted {
   friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
 
-/// What a client wants to see: chunks with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`; and where it
-/// looks, so that what lies there comes first.
+/// The chunks that a client wants: those with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`. The
+/// direction is a hint: the server sends what lies in the cone first.
 struct View {
   ChunkCoord centre;
   std::uint8_t radius_h = 0, radius_v = 0;
-  std::uint16_t yaw = 0;  // yaw and pitch as in Pose
-  std::int16_t pitch = 0;
-  std::uint16_t cone =
-      0;  // half the angle of what is seen, 65536 a turn, kViewConeMax at most; 0: all around
+  std::uint16_t yaw = 0;   // as in Pose
+  std::int16_t pitch = 0;  // as in Pose
+  /// Half the opening angle of the cone that the client sees; 65536 is a turn. 0 .. kViewConeMax; 0 means all around.
+  std::uint16_t cone = 0;
   friend bool operator==(const View&, const View&) = default;
   bool contains(ChunkCoord c) const {
     const std::int64_t dx = std::int64_t{c.x} - centre.x;
@@ -95,7 +97,7 @@ struct View {
     return dx * dx + dz * dz <= std::int64_t{radius_h} * radius_h && dy <= radius_v &&
            -dy <= radius_v;
   }
-  /// Whether the same chunks are in both, wherever they look.
+  /// Returns true if both views contain the same chunks. Directions are ignored.
   bool same_chunks(const View& other) const {
     return centre == other.centre && radius_h == other.radius_h && radius_v == other.radius_v;
   }
@@ -104,13 +106,13 @@ struct ChunkRequest {
   std::vector<ChunkKey> keys;
   friend bool operator==(const ChunkRequest&, const ChunkRequest&) = default;
 };
-/// Server side keeps data encoded (made once by a worker); client side gets the decoded chunk.
+/// The schema's table Chunk. Clients decode it to this struct. Servers use encode_snapshot() instead, once per chunk.
 struct ChunkSnapshot {
   ChunkKey key;
   Chunk chunk;
   friend bool operator==(const ChunkSnapshot&, const ChunkSnapshot&) = default;
 };
-/// Chunks of one material each, as snapshots: their digest follows from the material.
+/// The snapshot of a chunk of one material. Its digest follows from the material.
 struct UniformChunk {
   ChunkKey key;
   Material material = kEmpty;
@@ -118,54 +120,56 @@ struct UniformChunk {
   friend bool operator==(const UniformChunk&, const UniformChunk&) = default;
 };
 struct UniformChunks {
-  std::vector<UniformChunk>
-      chunks;  // 1 .. kUniformChunksMax of lod 0, ascending by is_before_in_list()
+  /// 1 .. kUniformChunksMax chunks of level of detail 0, ascending by is_before_in_list().
+  std::vector<UniformChunk> chunks;
   friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
 };
-/// Column by column: by x, then z, then y.
+/// Orders chunks by x, then z, then y, so that the chunks of a column follow each other.
 constexpr bool is_before_in_list(const ChunkCoord& a, const ChunkCoord& b) {
   return a.x != b.x ? a.x < b.x : a.z != b.z ? a.z < b.z : a.y < b.y;
 }
 
-/// Why a chunk cannot be had. Values are on the wire; readers take reasons they do not know.
+/// Why the server cannot send a chunk. Values are on the wire. Readers accept values that they do not know.
 enum class UnavailableReason : std::uint8_t {
-  damaged =
-      1,  // its row in the server's database is damaged: until that is repaired and the server restarts
+  /// The row of the chunk in the server's database is damaged. It stays so until the row is repaired and the server
+  /// restarts.
+  damaged = 1,
 };
+/// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(UnavailableReason reason);
 
-/// Chunks of the view that the server cannot send: answered by name, so that nobody waits for them.
+/// Names chunks of the view that the server cannot send, so that the client does not wait for them.
 struct ChunkUnavailable {
   std::vector<ChunkKey> keys;
   UnavailableReason reason = UnavailableReason::damaged;
   friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
 };
-/// A chunk that a client says it holds.
-struct HeldChunk {
+/// The claim of a client that it has a chunk at this version.
+struct CachedChunk {
   ChunkKey key;
   Version version;
-  std::uint64_t digest = 0;  // claim_digest() of its voxels
-  friend bool operator==(const HeldChunk&, const HeldChunk&) = default;
+  std::uint64_t digest = 0;  // claim_digest() of the voxels
+  friend bool operator==(const CachedChunk&, const CachedChunk&) = default;
 };
-/// Lane 0 of a digest: 61 bits are enough to find a copy that differs by accident (one in 2^61), and nobody gains by
-/// making one that differs on purpose: what a false claim spoils is the claimant's own picture, until the next audit.
+/// Returns lane 0 of a digest. Its 61 bits find a copy that differs by accident, but for one in 2^61. A copy that differs
+/// on purpose harms only the client that claims it, and only until the next DigestCheck.
 inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
 
-/// Chunks of the view that follows, and of those in force: the server need not send what is held. Strictly ascending by
-/// key, all of level 0.
+/// Claims for chunks of the view in force or of the next view, so that the server need not send them. Strictly ascending
+/// by key; level of detail 0.
 struct CachedChunks {
-  std::vector<HeldChunk> chunks;
+  std::vector<CachedChunk> chunks;
   friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
 };
-/// The client's copy at this sequence is the chunk as it stood when the session was subscribed.
-struct SameChunk {
+/// The client's copy at this sequence equals the chunk at the moment when the session was subscribed to it.
+struct UnmodifiedChunk {
   ChunkKey key;
   Sequence seq = 0;
-  friend bool operator==(const SameChunk&, const SameChunk&) = default;
+  friend bool operator==(const UnmodifiedChunk&, const UnmodifiedChunk&) = default;
 };
-/// Strictly ascending by key, all of level 0.
+/// Strictly ascending by key; level of detail 0.
 struct ChunksNotModified {
-  std::vector<SameChunk> chunks;
+  std::vector<UnmodifiedChunk> chunks;
   friend bool operator==(const ChunksNotModified&, const ChunksNotModified&) = default;
 };
 struct MissingEdit {
@@ -173,8 +177,8 @@ struct MissingEdit {
   EditDescriptor edit;
   friend bool operator==(const MissingEdit&, const MissingEdit&) = default;
 };
-/// In place of a snapshot at `to`: all edits that touch the chunk by geometry, from < seq <= to.seq, ascending; the last
-/// one is at to.seq.
+/// Replaces a snapshot at `to`: all edits with from < seq <= to.seq that touch the chunk by geometry, in ascending order.
+/// The last one is at to.seq.
 struct ChunkEdits {
   ChunkKey key;
   Sequence from = 0;
@@ -184,21 +188,23 @@ struct ChunkEdits {
   friend bool operator==(const ChunkEdits&, const ChunkEdits&) = default;
 };
 
-/// What a session looks at. Values are on the wire.
+/// Which state of the world a session asks for. Values are on the wire.
 enum class HistoryTarget : std::uint8_t { live = 0, sequence = 1, time = 2 };
 inline constexpr std::uint8_t kHistoryTargetMax = 2;
 
-/// A wish to see the view as it was. A later one replaces those before it.
+/// Asks for the view as it was. A later request replaces the earlier ones.
 struct HistoryRequest {
   std::uint32_t request = 1;  // from 1, ascending
   HistoryTarget to = HistoryTarget::live;
-  Sequence seq = 0;   // TravelTo::sequence: the last edit to be seen; 0: before the first one
-  TimeUs utc_us = 0;  // TravelTo::time: edits up to here are seen
+  Sequence seq = 0;   // for HistoryTarget::sequence: the last edit to show; 0: before the first one
+  TimeUs utc_us = 0;  // for HistoryTarget::time: edits up to this time are shown
   friend bool operator==(const HistoryRequest&, const HistoryRequest&) = default;
 };
 
-/// begins: the chunks that follow are of this moment. complete: all chunks of the view that differ from what the
-/// client holds were sent. refused: nothing changed, and `text` says why. Values are on the wire.
+/// Values are on the wire.
+///   - begins: the chunks that follow show this state of the world;
+///   - complete: all chunks of the view that differ from the client's were sent; of past states only;
+///   - refused: nothing changed, and `text` gives the reason.
 enum class HistoryPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
 inline constexpr std::uint8_t kHistoryPhaseMax = 3;
 
@@ -206,8 +212,8 @@ struct HistoryState {
   std::uint32_t request = 1;
   HistoryPhase phase = HistoryPhase::begins;
   bool past = false;  // false: the live world
-  Sequence seq = 0;   // of a past moment: its last edit; 0 before the first one
-  TimeUs utc_us = 0;  // when that was ordered
+  Sequence seq = 0;   // of a past state: its last edit; 0: before the first one
+  TimeUs utc_us = 0;  // when that edit was ordered; 0 if unknown
   std::string text;
   friend bool operator==(const HistoryState&, const HistoryState&) = default;
 };
@@ -215,16 +221,23 @@ struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
   EditDescriptor edit;
-  friend bool operator==(const EditRequest&, const EditRequest&) = default;
+  /// Why the descriptor's bytes are not a valid descriptor; `edit` then has no meaning. Such a request is answered with
+  /// Reject bad_edit. It does not end the session, or a client that offers its pending edits again would never get in.
+  std::optional<Error> fault = std::nullopt;
+  /// Two requests with faults are equal whatever the faults are: encode_message() does not keep the bytes.
+  friend bool operator==(const EditRequest& a, const EditRequest& b) {
+    return a.client_seq == b.client_seq && a.submitted_us == b.submitted_us && a.edit == b.edit &&
+           a.fault.has_value() == b.fault.has_value();
+  }
 };
 struct OrderedEdit {
   OperationId op;
   Cause cause = Cause::player;
-  TimeUs submitted_us = 0, ordered_us = 0;  // server steady clock
+  TimeUs submitted_us = 0, ordered_us = 0;  // on the server's steady clock
   EditDescriptor edit;
   std::vector<Sequence>
-      previous;          // sequence each touched chunk stood at before, in touched_chunks() order
-  Sequence subject = 0;  // as in EditRecord: the earlier edit this one answers; 0: none
+      previous;          // of each touched chunk before this edit, in touched_chunks() order
+  Sequence subject = 0;  // the earlier edit that this one undoes or redoes; 0: none
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 struct Commit {
@@ -234,21 +247,21 @@ struct Commit {
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 
-/// Values are on the wire. Every reason but already_resolved uses up the client sequence: another attempt
-/// takes a new one.
+/// Values are on the wire. Every reason but already_resolved uses up the client sequence: another attempt takes a new
+/// one.
 enum class RejectReason : std::uint8_t {
-  busy = 1,              // the log is full
-  already_resolved = 2,  // this client sequence was applied or rejected before: see the chunks
+  busy = 1,              // the log is full, or the server is stopping
+  already_resolved = 2,  // the client sequence was applied or rejected before
   unknown_material = 3,
-  too_large = 4,  // volume or touched chunks over the limit
+  too_large = 4,  // too many voxels or touched chunks
   out_of_reach = 5,
   not_permitted = 6,
   rate_limited = 7,
   bad_edit = 8,       // not a valid descriptor
-  outside_world = 9,  // a voxel of it lies above or below the world's heights
+  outside_world = 9,  // a voxel lies above or below the height limits
 };
 inline constexpr std::uint8_t kRejectReasonMax = 9;
-/// The name in docs/protocol.md.
+/// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(RejectReason reason);
 
 struct Reject {
@@ -256,7 +269,7 @@ struct Reject {
   RejectReason reason = RejectReason::busy;
   std::string detail;
   Sequence seq =
-      0;  // already_resolved: if the edit was applied, its sequence is at most this; else 0
+      0;  // for already_resolved: if the edit was applied, then at this sequence or before
   friend bool operator==(const Reject&, const Reject&) = default;
 };
 struct Durable {
@@ -292,11 +305,11 @@ struct PlayerName {
   std::string name;
   friend bool operator==(const PlayerName&, const PlayerName&) = default;
 };
-/// Who is here: everybody, or what changed since the last roster.
+/// The players in the world: all of them, or the changes since the last list.
 struct PlayerList {
-  std::vector<PlayerName> players;  // of a change: who came or has another name
+  std::vector<PlayerName> players;  // of a change: those who joined or changed their name
   bool is_change = false;
-  std::vector<AuthorId> left;  // of a change only
+  std::vector<AuthorId> left;  // of a change only: those who left
   friend bool operator==(const PlayerList&, const PlayerList&) = default;
 };
 struct Ping {
@@ -314,16 +327,16 @@ enum class GoodbyeReason : std::uint16_t {
   wrong_protocol = 2,  // text names both versions
   malformed_frame = 3,
   malformed_message = 4,
-  unexpected_message = 5,  // valid, but not now or not from this side
+  unexpected_message = 5,  // valid, but not in this stage or without its feature
   not_authenticated = 6,
-  already_connected = 7,  // the same key and instance is here
+  already_connected = 7,  // the same key and instance connected again
   server_full = 8,
   timed_out = 9,
-  flooding = 10,  // faster than the limits
+  flooding = 10,  // more messages or claims than the limits allow
   internal = 11,
 };
 inline constexpr std::uint16_t kGoodbyeReasonMax = 11;
-/// The name in docs/protocol.md.
+/// Returns the name in docs/protocol.md, or "unknown".
 const char* to_string(GoodbyeReason reason);
 
 struct Goodbye {
@@ -332,28 +345,29 @@ struct Goodbye {
   friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
-/// A line for the server to carry out. One at a time: the next one after the output that is done.
+/// One line for the server to execute. A session has one command at a time: the next request follows the last output.
 struct CommandRequest {
-  std::uint32_t id = 0;  // the client's choice; the outputs carry it
-  std::string text;      // 1 .. kCommandBytesMax
+  std::uint32_t id = 0;  // chosen by the client; the outputs carry it
+  std::string text;      // 1 .. kCommandBytesMax bytes
   friend bool operator==(const CommandRequest&, const CommandRequest&) = default;
 };
 struct CommandOutput {
   std::uint32_t id = 0;
-  std::vector<std::string> lines;  // kCommandLinesMax at most, each kCommandLineBytesMax
-  bool is_done = false;            // the last output of its request
-  bool is_ok = false;              // if done: it did what it was asked
+  std::vector<std::string>
+      lines;             // at most kCommandLinesMax, each at most kCommandLineBytesMax bytes
+  bool is_done = false;  // the last output of its request
+  bool is_ok = false;    // valid if is_done: the command succeeded
   friend bool operator==(const CommandOutput&, const CommandOutput&) = default;
 };
 
-/// How much terrain the client has read, so that the server can pace what follows.
+/// Acknowledges terrain, so that the server can pace what follows.
 struct ReceiveAck {
-  std::uint64_t chunk_bytes =
-      1;  // of frames of the class chunks, headers included, since the stream began
+  /// Bytes read of frames of the class chunks, headers included, since the stream began.
+  std::uint64_t chunk_bytes = 1;
   friend bool operator==(const ReceiveAck&, const ReceiveAck&) = default;
 };
 
-/// Order follows the union of the schema.
+/// The order is that of the union Body in the schema.
 using Message =
     std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, ChunkSnapshot,
                  EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
@@ -361,35 +375,32 @@ using Message =
                  CommandRequest, CommandOutput, ReceiveAck, UniformChunks, CachedChunks,
                  ChunksNotModified, ChunkEdits>;
 
-/// Whether the snapshot's digest is that of its voxels. O(runs).
-inline bool digest_holds(const ChunkSnapshot& snapshot) {
+/// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
+inline bool digest_matches(const ChunkSnapshot& snapshot) {
   return digest_of(snapshot.chunk.voxels) == snapshot.chunk.digest;
 }
 
-/// The class every message of this kind travels in: edit requests, commits, rejects, durable and ready in
-/// `edits`, snapshots and what stands in their place in `chunks`, the rest in `control`. So durable stays
-/// behind the commits it speaks of, neither can overtake the ready that opens their session, and the last
-/// word on a chunk comes last.
-FrameClass frame_class_of(const Message& message);
-
-/// Serialises a message: FlatBuffers of protocol/schema/runstone.fbs, chunk snapshots as `raw` (see
-/// encode_snapshot()). Requires what decode_message() demands, but for texts: reject details, goodbye
-/// texts and lines of command output that are too long are cut, and what is not printable in those lines
-/// becomes "?". Any thread.
+/// Serialises a message as a FlatBuffers buffer of protocol/schema/runstone.fbs. Chunk snapshots are `raw`; see
+/// encode_snapshot() for the other encodings. Requires what decode_message() demands, with these exceptions:
+///   - reject details, goodbye texts and lines of command output that are too long are cut;
+///   - in lines of command output, bytes that are not printable become "?";
+///   - a request with a fault gets empty descriptor bytes.
+/// Thread: any.
 EncodedMessage encode_message(const Message& message);
 
-/// A snapshot in the given encoding. Reads runs, makes no dense copy. O(runs).
+/// Serialises a snapshot in the given encoding. Reads runs and makes no dense copy. Cost: O(runs). Thread: any.
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
 
-/// Claims as messages, each within the limits of a client's control message. Requires chunks strictly ascending by key.
-std::vector<Message> held_messages(std::span<const HeldChunk> chunks);
+/// Returns the claims as messages, each within the limits of a client's control message. Requires chunks strictly
+/// ascending by key.
+std::vector<Message> cached_chunks_messages(std::span<const CachedChunk> chunks);
 
-/// One message of a class from a sender; `bytes` must be 8-aligned, as FrameReader's are. `chunk_edge` is the
-/// world's edge (0 before welcome): snapshots of another size and keys outside the world are refused, and
-/// `previous` lists must fit the edits' touched chunks. The digest of a snapshot is only checked for its
-/// range: see digest_holds(). A hello or welcome of another protocol version carries nothing but that
-/// version, since its other fields may mean something else. Memory is bounded by a small multiple of the
-/// bytes, but for chunks: see decode_chunk(). Any thread.
+/// Decodes one message of a class from a sender. `bytes` must be 8-aligned, as FrameReader's are. `chunk_edge` is the
+/// edge of the world's chunks, 0 before Welcome. With an edge, the function also rejects snapshots of another size, keys
+/// outside the world, and lists of `previous` that do not fit the chunks touched by their edits. Of a snapshot's digest
+/// it checks only the range; see digest_matches(). A Hello or Welcome of another protocol version yields only that
+/// version, because its other fields may have another meaning. Memory is bounded by a small multiple of the bytes; for
+/// chunks see decode_chunk(). Thread: any.
 Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
                                std::uint16_t chunk_edge);
 

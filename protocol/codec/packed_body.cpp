@@ -19,27 +19,27 @@
 namespace runstone {
 namespace {
 
-constexpr int kZstdLevel = 5;                  // docs/performance.md has what the others give
-constexpr std::size_t kZstdBodyBytesMin = 16;  // a zstd frame has 5 to 8 bytes of its own here
+constexpr int kZstdLevel = 5;                  // docs/performance.md compares the levels
+constexpr std::size_t kZstdBodyBytesMin = 16;  // a zstd frame adds 5 to 8 bytes here
 
-// Every zstd frame begins with it, so it is left out.
+// Every zstd frame begins with this number, so it is left out.
 constexpr std::array<std::uint8_t, 4> kZstdMagic = {0x28, 0xb5, 0x2f, 0xfd};
 static_assert(ZSTD_MAGICNUMBER == 0xfd2fb528);
 
 // Tokens of the plane of lengths.
-constexpr std::uint32_t kLongLength = 0;   // a varint of the last plane tells the length
+constexpr std::uint32_t kLongLength = 0;   // a varint of the last plane is the length
 constexpr std::uint32_t kLengthEnd = 192;  // a token below is the length itself
-constexpr std::uint32_t kToLineEnd =
-    255;  // to the end of the line it begins in; one less: of the line after
+// The run ends with the line in which it begins. A token one less ends with the next line, and so on.
+constexpr std::uint32_t kToLineEnd = 255;
 constexpr std::uint32_t kLineEndTokens = 64;
 static_assert(kLengthEnd + kLineEndTokens == kToLineEnd + 1);
 
-/// What tokens mean by a line: side voxels, or the largest power of two that divides the side, so that no position is
-/// ever divided.
+/// A line, as tokens count it, has 2^bits voxels: the largest power of two that divides the side. So positions need shifts
+/// only and no division.
 struct Line {
   explicit Line(std::uint32_t side)
       : bits(static_cast<unsigned>(std::countr_zero(side))), mask((1u << bits) - 1) {}
-  /// Lines that a run touches if it ends with one of them.
+  /// Returns the number of lines that a run touches. Requires that the run ends with a line.
   std::uint32_t count(std::uint32_t begin, std::uint32_t end) const {
     return (end - (begin & ~mask)) >> bits;
   }
@@ -65,13 +65,13 @@ Scratch& scratch() {
   return mine;
 }
 
-/// From the number of tokens of each material to the place of its first one.
+/// Replaces the number of tokens of each material by the place of its first token.
 void counts_to_places(std::vector<std::uint32_t>& next) {
   std::uint32_t place = 0;
   for (std::uint32_t& one : next) place += std::exchange(one, place);
 }
 
-/// The first plane; and the place of the first token of each material.
+/// Writes the first plane and computes the place of the first token of each material.
 template <class Index, class Runs>
 void write_indices(const Runs& runs, Scratch& s) {
   s.next.assign(s.palette.ids().size(), 0);
@@ -108,33 +108,34 @@ void write_planes(const Runs& runs, Line line, Scratch& s) {
   s.body.insert(s.body.end(), s.long_lengths.begin(), s.long_lengths.end());
 }
 
-/// The body as one zstd frame without its magic number, or nothing where that is no smaller.
+/// Returns the body as one zstd frame without its magic number, or an empty view if that is not smaller.
 ByteView compress(Scratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());
   RUNSTONE_ASSERT(s.compressor != nullptr);
-  s.frame.resize(kZstdMagic.size() + s.body.size() -
-                 1);  // zstd stops when it runs out of room: no gain
+  // zstd stops when it runs out of space: the frame would not be smaller.
+  s.frame.resize(kZstdMagic.size() + s.body.size() - 1);
   const std::size_t size = ZSTD_compressCCtx(s.compressor.get(), s.frame.data(), s.frame.size(),
                                              s.body.data(), s.body.size(), kZstdLevel);
   if (ZSTD_isError(size) != 0) return {};
   return ByteView(s.frame).first(size).subspan(kZstdMagic.size());
 }
 
-/// Exactly one frame that announces a plausible size and holds it.
+/// Unpacks exactly one frame. Fails if it does not announce a plausible size or has another one.
 Result<ByteView> decompress(ByteView in, const PackedShape& shape, Scratch& s) {
   keep_small(s.frame);
   s.frame.assign(kZstdMagic.begin(), kZstdMagic.end());
   s.frame.insert(s.frame.end(), in.begin(), in.end());
   const ByteView frame = s.frame;
   const std::uint64_t announced = ZSTD_getFrameContentSize(frame.data(), frame.size());
-  if (!shape.plausible(announced)) {  // as are the numbers that stand for an error and for no size
+  // The values that stand for an error and for an unknown size are not plausible either.
+  if (!shape.plausible(announced)) {
     return fail(ErrorCode::bad_value, "zstd frame of a size that does not fit the run count");
   }
   return unpack_zstd_frame(frame, static_cast<std::size_t>(announced));
 }
 
-/// Places of the tokens of each material. Every material has a run.
+/// Computes the place of the first token of each material. Fails if a material has no run.
 template <class Index>
 Result<void> read_indices(const std::uint8_t* indices, std::size_t count, std::size_t materials,
                           std::vector<std::uint32_t>& next) {
@@ -154,18 +155,18 @@ Result<void> read_indices(const std::uint8_t* indices, std::size_t count, std::s
   return {};
 }
 
-/// A length of the last plane; 0 where there is none, or no plain one.
+/// Returns the next length of the last plane, or 0 if there is none or its varint is not canonical.
 std::uint32_t read_long_length(const std::uint8_t*& at, const std::uint8_t* stop) {
   std::uint32_t length = 0;
   for (unsigned shift = 0; shift < 21 && at != stop; shift += 7) {
     const std::uint32_t byte = *at++;
     length |= (byte & 0x7f) << shift;
-    if (byte < 0x80) return byte == 0 ? 0 : length;  // a last byte of 0 says nothing
+    if (byte < 0x80) return byte == 0 ? 0 : length;  // a last byte of 0 is not canonical
   }
   return 0;
 }
 
-/// The one pass over runs: calls put(run, end, material) for each.
+/// Makes one pass over the runs and calls put(run, end, material) for each.
 template <class Index, class Put>
 Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<const Material> palette,
                          std::vector<std::uint32_t>& next_of, Put&& put) {
@@ -188,14 +189,15 @@ Result<void> read_planes(ByteView body, const PackedShape& shape, std::span<cons
       length = read_long_length(at, stop);
       if (length < kLengthEnd)
         return fail(ErrorCode::broken_invariant,
-                    "long run length is cut, longer than needed or short", i);
+                    "long run length is truncated, not canonical or below 192", i);
     }
-    // Which of the two it is cannot be foretold, so both are made.
+    // The branch is unpredictable, so both ends are computed.
     const std::uint32_t line_end = (begin & ~line.mask) + ((kToLineEnd + 1 - token) << line.bits);
     const bool to_line_end = token >= kLengthEnd;
     end = to_line_end ? line_end : begin + length;
     if ((line.ends_at(end) && line.count(begin, end) <= kLineEndTokens) != to_line_end)
-      return fail(ErrorCode::broken_invariant, "run to the end of a line is spelt as a length", i);
+      return fail(ErrorCode::broken_invariant, "run to the end of a line is written as a length",
+                  i);
     if (end >= shape.volume)
       return fail(ErrorCode::broken_invariant, "run ends behind the volume", i);
     put(i, end, palette[index]);

@@ -11,7 +11,7 @@
 namespace runstone {
 namespace {
 
-/// The one pass over runs: calls put(run, end, material) for each.
+/// Makes one pass over the runs and calls put(run, end, material) for each.
 template <class Index, class Put>
 Result<void> read_planes(ByteView body, std::size_t count, std::span<const Material> palette,
                          std::uint32_t volume, std::uint8_t* used, Put&& put) {
@@ -31,8 +31,8 @@ Result<void> read_planes(ByteView body, std::size_t count, std::span<const Mater
       if (at == stop)
         return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
       std::uint32_t length = *at++;
-      for (unsigned shift = 7; length >> shift != 0;
-           shift += 7) {  // the last byte read said "more"
+      // The loop goes on while the last byte has its high bit.
+      for (unsigned shift = 7; length >> shift != 0; shift += 7) {
         if (at == stop)
           return fail(ErrorCode::truncated, "body ends inside the run lengths", body.size());
         const std::uint32_t byte = *at++;

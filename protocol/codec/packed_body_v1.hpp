@@ -1,6 +1,6 @@
-// The body of packed chunks of version 1, which worlds of format 3 and before hold: a plane of palette indices, a plane
-// of lengths as varints, perhaps in a zstd frame. Nothing writes it any more. docs/edit-log.md has the bytes.
-// Internal to the chunk codec.
+// The body of packed chunks of version 1: a plane of palette indices and a plane of lengths as varints, plain or in a zstd
+// frame. Worlds of formats 1 to 3 contain it; nothing writes it. docs/edit-log.md specifies the bytes. Internal to the
+// chunk codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace runstone {
 
-/// What the head announces.
+/// The numbers in the head.
 struct PackedShapeV1 {
   std::size_t runs = 0;
-  std::size_t body_bytes = 0;  // without zstd
-  /// Whether so many runs can fill so many bytes: each has an index, and each but the last a length of one to
-  /// three bytes (lengths stay below 2^21).
+  std::size_t body_bytes = 0;  // before compression
+  /// Returns true if this number of runs can fill the body. Each run has an index, and each but the last a length of one to
+  /// three bytes, because lengths are below 2^21.
   bool plausible(std::size_t palette) const {
     const std::size_t indices = runs * (palette > 256 ? 2 : 1);
     return runs >= 1 && body_bytes >= indices + (runs - 1) &&
@@ -25,7 +25,7 @@ struct PackedShapeV1 {
   }
 };
 
-/// As unpack() of packed_body.hpp. Requires a plausible shape, too.
+/// Like unpack() in packed_body.hpp. Also requires a plausible shape.
 Result<RunList> unpack_v1(ByteView body, bool zstd, const PackedShapeV1& shape,
                           std::span<const Material> palette, std::uint32_t volume);
 

@@ -1,5 +1,5 @@
-// Adaptive binary range coder: bits with probabilities that follow what was coded. docs/protocol.md has the
-// arithmetic step by step. A sequence of bits has exactly one spelling; every other one is refused.
+// Adaptive binary range coder: it codes bits with probabilities that follow the bits before. docs/protocol.md has the
+// arithmetic step by step. A sequence of bits has exactly one spelling; the decoder rejects every other one.
 // Source: Martin 1979; the carry and the shifts as in LZMA (Pavlov).
 #pragma once
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace runstone {
 
-/// How likely a bit is 1, in 65536ths, and how fast that is learnt: the first bits teach most.
+/// The probability that a bit is 1, in 65536ths, and the shift of its updates. The first bits move it most.
 struct AdaptiveBit {
   std::uint16_t one = 1u << 15;
   std::uint16_t shift = 1;
@@ -24,7 +24,7 @@ struct AdaptiveBit {
 
 class RangeEncoder {
  public:
-  /// Appends to `out`; what is there already stays.
+  /// Appends to `out`.
   explicit RangeEncoder(Bytes& out) : out_(out) {}
 
   bool code(AdaptiveBit& model, bool bit) {
@@ -45,7 +45,7 @@ class RangeEncoder {
     return bit;
   }
 
-  /// Writes the last byte: of all numbers left, the lowest whose three further bytes are 0.
+  /// Writes the last byte: that of the lowest number in the range whose three further bytes are 0.
   void finish() {
     const std::uint32_t last = low_ + (kRangeMin - 1);
     if (last < low_) carry();
@@ -55,7 +55,7 @@ class RangeEncoder {
  private:
   static constexpr std::uint32_t kRangeMin = 1u << 24;
 
-  /// Adds one to what was written. The whole is a fraction below 1, so this stops at a byte of ours.
+  /// Adds one to the bytes written. They are a fraction below 1, so the carry stops at a byte of this encoder.
   void carry() {
     std::size_t at = out_.size();
     while (++out_[--at] == 0) {
@@ -86,22 +86,22 @@ class RangeDecoder {
     return bit;
   }
 
-  /// Whether more was read than there is: what was decoded since is made up.
+  /// Returns true if more bytes were read than there are. The bits decoded since then are arbitrary.
   bool overrun() const { return zeros_ > kZeros; }
 
-  /// Whether these are the bytes that an encoder of the same bits writes, and all of them.
+  /// Fails unless the input is exactly what an encoder writes for the decoded bits.
   Result<void> finish() const {
     if (overrun()) return fail(ErrorCode::truncated, "body ends inside its runs");
     if (at_ != end_ || zeros_ != kZeros)
       return fail(ErrorCode::trailing_bytes, "bytes follow the runs");
     if (above_ || code_ >= kRangeMin)
-      return fail(ErrorCode::not_canonical, "body is not what an encoder ends with");
+      return fail(ErrorCode::not_canonical, "body does not end as an encoder ends it");
     return {};
   }
 
  private:
   static constexpr std::uint32_t kRangeMin = 1u << 24;
-  static constexpr unsigned kZeros = 3;  // that the encoder leaves out
+  static constexpr unsigned kZeros = 3;  // bytes that the encoder leaves out
 
   void next_byte() {
     code_ <<= 8;
@@ -115,7 +115,7 @@ class RangeDecoder {
   const std::uint8_t *at_, *end_;
   std::uint32_t code_ = 0, range_ = 0xffffffff;
   unsigned zeros_ = 0;
-  bool above_ = false;  // began behind the range: such a code never comes into it
+  bool above_ = false;  // the first code was outside the range, and stays outside
 };
 
 }  // namespace runstone

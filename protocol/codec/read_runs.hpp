@@ -1,4 +1,4 @@
-// From decoded ends and materials to a RunList of the width that the volume asks for. Internal to the chunk codec.
+// Makes a RunList, narrow or wide by the volume, from decoded ends and materials. Internal to the chunk codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace runstone {
 
-/// `read(put)` calls put(i, end, material) for each i below `count`, or returns an error, which is passed on.
+/// Returns the runs that `read` delivers. `read(put)` calls put(i, end, material) for each i below `count`, or returns an
+/// error, which the function returns.
 template <class Read>
 Result<RunList> read_runs(std::uint32_t volume, std::size_t count, Read&& read) {
   if (volume <= kNarrowVolumeMax) {

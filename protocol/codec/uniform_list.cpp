@@ -2,9 +2,9 @@
 
 namespace runstone {
 
-// Per entry, after the entry before it (0, 0, 0 before the first one):
-//   zigzag varint x less x, z less z, y less y of the lowest chunk | varint chunks less one | varint material |
-//   varint epoch | varint seq, if the epoch is not 0
+// An entry:
+//   svarint x, z, y of the lowest chunk, each minus that of the entry before, of the first entry minus 0 |
+//   varint chunks - 1 | varint material | varint epoch | varint seq, if the epoch is not 0
 Bytes encode_uniform(const std::vector<UniformChunk>& chunks) {
   RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kUniformChunksMax);
   Bytes out;
@@ -57,7 +57,7 @@ Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::int32_t ed
     if (chunk.version.epoch != 0) {
       chunk.version.seq = in.varint_max(kSequenceMax, "sequence exceeds 63 bits");
       if (chunk.version.seq == 0)
-        in.reject(ErrorCode::bad_value, "uniform chunk's version is half zero");
+        in.reject(ErrorCode::bad_value, "version of a uniform chunk is half zero");
     }
     if (!in.ok()) break;
     at = {x, y, z};
@@ -76,7 +76,7 @@ Result<std::vector<UniformChunk>> decode_uniform(ByteView bytes, std::int32_t ed
     }
   }
   if (!in.ok()) return Unexpected<Error>{in.error()};
-  if (chunks.empty()) return fail(ErrorCode::bad_value, "uniform chunks are none");
+  if (chunks.empty()) return fail(ErrorCode::bad_value, "list of uniform chunks is empty");
   return chunks;
 }
 

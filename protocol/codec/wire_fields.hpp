@@ -1,6 +1,5 @@
-// Fields of the wire schema and what they may hold: the checks that messages share. Internal to the message
-// decoder. Each take_() copies a field that the FlatBuffers verifier found inside the buffer, and says
-// whether its value may be.
+// Fields of the wire schema and the checks that messages share. Internal to the message decoder. The FlatBuffers verifier has
+// found each field inside the buffer. Each take_ function copies one and returns true if its value is valid.
 #pragma once
 #include <flatbuffers/flatbuffers.h>
 
@@ -24,7 +23,7 @@ inline ByteView view_of(const ByteField* from) {
   return from == nullptr ? ByteView{} : ByteView(from->data(), from->size());
 }
 
-/// Exactly N bytes.
+/// Requires exactly N bytes.
 template <std::size_t N>
 bool take_exact(const ByteField* from, std::array<std::uint8_t, N>& to) {
   if (from == nullptr || from->size() != N) return false;
@@ -32,7 +31,7 @@ bool take_exact(const ByteField* from, std::array<std::uint8_t, N>& to) {
   return true;
 }
 
-/// Printable UTF-8 of bytes_min .. bytes_max; absent counts as empty.
+/// Requires printable UTF-8 of bytes_min .. bytes_max bytes. An absent text counts as empty.
 inline bool take_text(const flatbuffers::String* from, std::size_t bytes_min, std::size_t bytes_max,
                       std::string& to) {
   if (from == nullptr) return bytes_min == 0;
@@ -41,7 +40,7 @@ inline bool take_text(const flatbuffers::String* from, std::size_t bytes_min, st
   return is_printable_utf8(to);
 }
 
-/// Whether a chunk of this coordinate has a voxel inside the world, so that its voxels' positions fit i32.
+/// Requires a chunk with a voxel inside the world, so that the positions of its voxels fit i32.
 inline bool take_coord(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t edge,
                        ChunkCoord& to) {
   to = {x, y, z};
@@ -56,7 +55,7 @@ inline bool take_key(const wire::Key* from, std::int32_t edge, ChunkKey& to) {
   return take_coord(from->x(), from->y(), from->z(), edge, to.at);
 }
 
-/// (0, 0) is the base; every other version has an epoch and a sequence.
+/// Requires (0, 0), which is the base, or an epoch and a sequence of at least 1.
 inline bool take_version(const wire::Version* from, Version& to) {
   if (from == nullptr) return false;
   to = {from->epoch(), from->seq()};
@@ -72,9 +71,8 @@ inline bool take_digest(const wire::Digest* from, Digest& to) {
 inline bool take_position(const wire::Position* from, WorldPos& to) {
   if (from == nullptr) return false;
   to = {from->x(), from->y(), from->z()};
-  const auto inside = [](double c) {
-    return std::fabs(c) <= kWorldLimit;
-  };  // so written, a NaN is outside
+  // Written so that a NaN is outside.
+  const auto inside = [](double c) { return std::fabs(c) <= kWorldLimit; };
   return inside(to.x) && inside(to.y) && inside(to.z);
 }
 
@@ -85,7 +83,7 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Entries of a vector that may be absent; nothing if they exceed `count_max`.
+/// Returns the number of entries of a vector that may be absent, or nullopt if it exceeds `count_max`.
 template <class Vector>
 std::optional<std::uint32_t> count_of(const Vector* vector, std::size_t count_max) {
   const std::uint32_t count = vector == nullptr ? 0 : vector->size();

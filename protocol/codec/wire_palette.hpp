@@ -1,5 +1,5 @@
-// WirePalette: the materials of a run list, ascending, and the place of each. Internal to the chunk codec.
-// Reused from call to call, it allocates nothing in a steady state.
+// WirePalette: the materials of a run list in ascending order, and the index of each. Internal to the chunk codec. It reuses
+// its memory from call to call.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@ namespace runstone {
 
 class WirePalette {
  public:
-  /// O(runs + largest id / 64).
+  /// Finds the materials of the runs. Cost: O(runs + largest id / 64).
   template <class Runs>
   void find(const Runs& runs) {
     Material highest = 0;
@@ -37,12 +37,12 @@ class WirePalette {
   }
 
   const std::vector<Material>& ids() const { return ids_; }
-  /// Requires an id of the runs that find() saw last.
+  /// Returns the index of a material. Requires a material of the runs that find() got last.
   std::uint16_t index_of(Material id) const { return index_of_[id]; }
 
  private:
   std::array<std::uint64_t, 1024> present_{};  // one bit per material id; all zero between calls
-  std::vector<std::uint16_t> index_of_;        // by material id; meaningful for ids()
+  std::vector<std::uint16_t> index_of_;        // by material id; valid for ids()
   std::vector<Material> ids_;
 };
 

@@ -26,7 +26,7 @@ Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes) {
     return fail(ErrorCode::bad_value, "zstd frame of another size than the body");
   }
   if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
-    return fail(ErrorCode::trailing_bytes, "zstd frame is cut or something follows it");
+    return fail(ErrorCode::trailing_bytes, "zstd frame is truncated or bytes follow it");
   }
   thread_local Scratch s;
   if (!s.decompressor) s.decompressor.reset(ZSTD_createDCtx());

@@ -1,4 +1,4 @@
-// A zstd frame from outside, unpacked into scratch of this thread. Internal to the chunk codec.
+// Unpacks a zstd frame from an untrusted source. Internal to the chunk codec.
 #pragma once
 #include <cstddef>
 
@@ -7,9 +7,11 @@
 
 namespace runstone {
 
-/// Unpacks `frame`, which has to announce just `bytes` bytes (bad_value), to end where its data ends (trailing_bytes),
-/// and to be sound (bad_checksum). So many bytes are taken: the caller has held them to what the chunk may need. Offsets
-/// of errors are 0. The view lives until the next call on the thread.
+/// Unpacks `frame` into scratch of this thread. The view lives until the thread's next call. Allocates `bytes`, which the
+/// caller must have bounded. Offsets of errors are 0. Fails with
+///   - bad_value if the frame does not announce exactly `bytes` bytes;
+///   - trailing_bytes if it is truncated or bytes follow it;
+///   - bad_checksum if it is damaged.
 Result<ByteView> unpack_zstd_frame(ByteView frame, std::size_t bytes);
 
 }  // namespace runstone

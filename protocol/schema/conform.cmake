@@ -1,5 +1,5 @@
-# Holds today's schema to those of the protocol versions that are out there: fields may be added at the end of a
-# table and members to a union, nothing may move, change its type or go.
+# Tests that the schema conforms to the frozen schemas of earlier protocol versions: fields may be added at the end of a
+# table and members at the end of a union. Nothing may move, change its type or be removed.
 file(GLOB frozen CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/protocol/schema/frozen/*.fbs)
 foreach(schema ${frozen})
   get_filename_component(version ${schema} NAME_WE)
@@ -7,7 +7,7 @@ foreach(schema ${frozen})
            COMMAND flatbuffers::flatc --conform ${schema} ${PROJECT_SOURCE_DIR}/protocol/schema/runstone.fbs)
 endforeach()
 
-# The gate itself is tested: with two fields swapped it must close.
+# Tests the check itself: a schema with two swapped fields must fail it.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/protocol/schema/runstone.fbs)
 file(READ ${PROJECT_SOURCE_DIR}/protocol/schema/runstone.fbs text)
 string(REPLACE "table Durable { epoch:uint; seq:ulong; }" "table Durable { seq:ulong; epoch:uint; }" broken "${text}")

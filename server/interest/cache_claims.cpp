@@ -2,18 +2,18 @@
 
 namespace runstone {
 
-bool CacheClaims::add(const HeldChunk& chunk) {
+bool CacheClaims::add(const CachedChunk& chunk) {
   const auto found = claims_.find(chunk.key);
   if (found != claims_.end()) {
     found->second = chunk;
     return true;
   }
-  if (claims_.size() >= kHeldClaimsMax) return false;
+  if (claims_.size() >= kClaimsPerSessionMax) return false;
   claims_.emplace(chunk.key, chunk);
   return true;
 }
 
-const HeldChunk* CacheClaims::find(const ChunkKey& key) const {
+const CachedChunk* CacheClaims::find(const ChunkKey& key) const {
   const auto found = claims_.find(key);
   return found == claims_.end() ? nullptr : &found->second;
 }

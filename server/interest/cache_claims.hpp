@@ -1,5 +1,5 @@
 // CacheClaims: the copies of chunks that a client claims to have, until the server answers the
-// claim. Bound: kHeldClaimsMax. One thread.
+// claim. Bound: kClaimsPerSessionMax. One thread.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -14,10 +14,10 @@ class CacheClaims {
  public:
   /// Adds a claim, or replaces the claim of the same chunk. Returns false if there is no room for a
   /// new one.
-  [[nodiscard]] bool add(const HeldChunk& chunk);
+  [[nodiscard]] bool add(const CachedChunk& chunk);
   /// Returns the claim of this chunk, or null if there is none. The pointer is valid until the next
   /// change.
-  const HeldChunk* find(const ChunkKey& key) const;
+  const CachedChunk* find(const ChunkKey& key) const;
   void drop(const ChunkKey& key) { claims_.erase(key); }
   /// Removes claims outside of the view. Cost: O(claims).
   void keep(const View& view);
@@ -25,7 +25,7 @@ class CacheClaims {
   std::size_t count() const { return claims_.size(); }
 
  private:
-  std::unordered_map<ChunkKey, HeldChunk, ChunkKeyHash> claims_;
+  std::unordered_map<ChunkKey, CachedChunk, ChunkKeyHash> claims_;
 };
 
 }  // namespace runstone

@@ -109,7 +109,7 @@ void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
 }
 
 void NetSession::set_features(std::uint64_t features) {
-  if ((features & kFeatureReceived) == 0) return;
+  if ((features & kFeatureReceiveAck) == 0) return;
   const std::lock_guard lock(mutex_);
   gate_.pace();
 }

@@ -9,7 +9,7 @@ namespace {
 
 /// Returns true if the log may hold the edits that the copy lacks: they are on disk, and the
 /// claimed version precedes the chunk's.
-bool can_read_missing_edits(const WorldState& world, const HeldChunk& claim,
+bool can_read_missing_edits(const WorldState& world, const CachedChunk& claim,
                             const Version& version) {
   return claim.version.seq < version.seq && claim.version.epoch <= version.epoch &&
          version.seq <= world.durable;
@@ -21,21 +21,22 @@ void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& 
   WorldSession& mine = *world.find(session);
   if (mine.history) return;  // a session in the past gets nothing of the live world
   const SessionInterest& interest = *world.interest.find(session);
-  for (const HeldChunk& chunk : cached.chunks) {
+  for (const CachedChunk& chunk : cached.chunks) {
     const auto state = interest.state(chunk.key);
     const bool is_answered =
         state && *state != ChunkInterest::wanted && *state != ChunkInterest::waiting;
     if (is_answered) continue;
     if (mine.claims.add(chunk)) continue;
-    return close_session(world, session, GoodbyeReason::flooding,
-                         "claims to hold more than " + std::to_string(kHeldClaimsMax) + " chunks");
+    return close_session(
+        world, session, GoodbyeReason::flooding,
+        "claims to hold more than " + std::to_string(kClaimsPerSessionMax) + " chunks");
   }
 }
 
 ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& key,
                          const ChunkPtr& chunk) {
   WorldSession& mine = *world.find(session);
-  const HeldChunk* claim = mine.claims.find(key);
+  const CachedChunk* claim = mine.claims.find(key);
   if (claim == nullptr) return ClaimAnswer::none;
   if (claim->version == chunk->version) {
     const bool is_same = claim->digest == claim_digest(chunk->digest);
@@ -65,17 +66,19 @@ ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& k
 bool send_not_modified(WorldState& world, SessionId session, bool is_more) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr) return true;
-  std::vector<SameChunk>& due = mine->not_modified_due;
-  while (due.size() >= (is_more ? kSameChunksMax : 1)) {
-    const std::size_t count = std::min(due.size(), kSameChunksMax);
+  std::vector<UnmodifiedChunk>& due = mine->not_modified_due;
+  while (due.size() >= (is_more ? kChunksNotModifiedMax : 1)) {
+    const std::size_t count = std::min(due.size(), kChunksNotModifiedMax);
     const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
     ChunksNotModified same{{due.begin(), end}};
     // A chunk that left the view and came back may be due twice. The newer version is sent.
-    const auto newest_first = [](const SameChunk& a, const SameChunk& b) {
+    const auto newest_first = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
       return a.key != b.key ? a.key < b.key : a.seq > b.seq;
     };
     std::sort(same.chunks.begin(), same.chunks.end(), newest_first);
-    const auto one_key = [](const SameChunk& a, const SameChunk& b) { return a.key == b.key; };
+    const auto one_key = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
+      return a.key == b.key;
+    };
     same.chunks.erase(std::unique(same.chunks.begin(), same.chunks.end(), one_key),
                       same.chunks.end());
     if (!world.environment.send(session, encode_message(same))) {

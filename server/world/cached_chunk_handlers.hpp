@@ -13,7 +13,7 @@
 namespace runstone {
 
 /// Stores the claims of chunks that were not sent yet. Closes the session (flooding) if it has more
-/// than kHeldClaimsMax claims.
+/// than kClaimsPerSessionMax claims.
 void on_cached_chunks(WorldState& world, SessionId session, const CachedChunks& cached);
 
 enum class ClaimAnswer {

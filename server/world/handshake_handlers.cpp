@@ -70,7 +70,8 @@ void on_hello(WorldState& world, SessionId session, const Hello& hello) {
   mine.name = hello.name;
   mine.auth_transcript = client_transcript(hello, welcome);
   mine.durable_sent = welcome.durable;
-  mine.state = SessionStage::awaits_auth;
+  mine.state = SessionStage::authenticating;
+  mine.features = welcome.features;
   world.environment.set_encoding(session, welcome.encoding);
   world.environment.set_features(session, welcome.features);
   send_or_close(world, session, welcome);

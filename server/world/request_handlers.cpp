@@ -1,11 +1,22 @@
 #include "server/world/request_handlers.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "server/world/delivery.hpp"
 #include "server/world/edit_check.hpp"
 
 namespace runstone {
+namespace {
+
+/// Returns what is wrong with the descriptor, for the author of the client.
+std::string detail_of(RejectReason reason, const EditRequest& request) {
+  if (reason != RejectReason::bad_edit || !request.fault) return "";
+  return std::string(request.fault->what) + " (at byte " + std::to_string(request.fault->offset) +
+         ")";
+}
+
+}  // namespace
 
 void on_chunk_request(WorldState& world, SessionId session, const ChunkRequest& request,
                       const Clocks& now) {
@@ -30,8 +41,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   WorldSession& mine = *world.find(session);
   const OperationId op{mine.author, mine.instance, request.client_seq};
   const double reach = world.config.reach_max;
-  const std::uint64_t tokens =
-      std::min(edit_tokens(request.edit, world.config.chunk_edge), world.config.edit_burst);
+  // An invalid descriptor touches nothing: it costs the least that an edit costs.
+  const std::uint64_t cost = request.fault ? 1 : edit_tokens(request.edit, world.config.chunk_edge);
+  const std::uint64_t tokens = std::min(cost, world.config.edit_burst);
   std::optional<RejectReason> refusal;
   if (world.authority.resolved().knows(op)) {
     refusal = world.authority.resolved().answer_to(op);
@@ -52,7 +64,7 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   const bool maybe_applied = *refusal == RejectReason::already_resolved;
   const Sequence applied_by = maybe_applied ? world.authority.sequence_bound() : 0;
   mine.awaits_durable = std::max(mine.awaits_durable, applied_by);
-  answer(world, session, {request.client_seq, *refusal, "", applied_by});
+  answer(world, session, {request.client_seq, *refusal, detail_of(*refusal, request), applied_by});
 }
 
 void on_move(WorldState& world, SessionId session, const Move& move) {

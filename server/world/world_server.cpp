@@ -24,15 +24,6 @@ namespace {
 
 constexpr std::size_t kEvictionStepsPerTick = 512;
 
-/// Returns true for messages that only an open session may send.
-bool needs_open(const Message& message) {
-  return std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
-         std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-         std::holds_alternative<Ping>(message) || std::holds_alternative<HistoryRequest>(message) ||
-         std::holds_alternative<CommandRequest>(message) ||
-         std::holds_alternative<CachedChunks>(message);
-}
-
 void on_open_message(WorldState& world, SessionId session, const Message& message,
                      const Clocks& now) {
   if (const auto* view = std::get_if<View>(&message)) return on_view(world, session, *view, now);
@@ -112,19 +103,12 @@ void WorldServer::received(SessionId session, Message&& message, const Clocks& n
     close_session(world, session, GoodbyeReason::closing, "the client said goodbye");
     return;
   }
-  if (mine->state == SessionStage::awaits_hello && std::holds_alternative<Hello>(message)) {
-    on_hello(world, session, *std::get_if<Hello>(&message));
-  } else if (mine->state == SessionStage::awaits_auth &&
-             std::holds_alternative<ClientAuth>(message)) {
-    on_client_auth(world, session, *std::get_if<ClientAuth>(&message), now);
-  } else if (mine->state == SessionStage::open && needs_open(message)) {
-    on_open_message(world, session, message, now);
-  } else if (mine->state != SessionStage::open && needs_open(message)) {
-    close_session(world, session, GoodbyeReason::not_authenticated, "the handshake comes first");
-  } else {
-    close_session(world, session, GoodbyeReason::unexpected_message,
-                  "this message is not allowed at this stage, or not from a client");
-  }
+  const auto refusal = refusal_of(info_of(message), Sender::client, mine->state, mine->features);
+  if (refusal) return close_session(world, session, refusal->reason, refusal->text);
+  if (const auto* hello = std::get_if<Hello>(&message)) return on_hello(world, session, *hello);
+  if (const auto* auth = std::get_if<ClientAuth>(&message))
+    return on_client_auth(world, session, *auth, now);
+  on_open_message(world, session, message, now);
 }
 
 void WorldServer::disconnected(SessionId session) {

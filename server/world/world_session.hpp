@@ -1,5 +1,5 @@
-// WorldSession: the state of one connection on the world strand. Its stages are awaits_hello,
-// awaits_auth, open, in this order. A session that is closed is removed at once.
+// WorldSession: the state of one connection on the world strand. Its stages are greeting,
+// authenticating and open, in this order. A session that is closed is removed at once.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "common/core/bytes.hpp"
-#include "protocol/codec/messages.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "server/interest/cache_claims.hpp"
 #include "server/limits/token_bucket.hpp"
 
 namespace runstone {
-
-enum class SessionStage { awaits_hello, awaits_auth, open };
 
 /// Views that were replaced before they took effect. Beyond so many, every chunk counts as dropped
 /// by the client.
@@ -41,13 +39,14 @@ struct HistoryView {
 
 /// Times are of the steady clock.
 struct WorldSession {
-  SessionStage state = SessionStage::awaits_hello;
+  SessionStage state = SessionStage::greeting;
+  std::uint64_t features = 0;  // in force, from welcome on
   TimeUs connected_us = 0;
   TimeUs last_message_us = 0;
   PublicKey key{};
   ClientInstance instance = 0;
   std::string name;
-  Bytes auth_transcript;  // the bytes that the client must sign; empty outside of awaits_auth
+  Bytes auth_transcript;  // the bytes that the client must sign; empty in other stages
   AuthorId author = 0;    // valid when open
   Pose pose;
   bool pose_changed = false;     // since poses were sent last
@@ -68,7 +67,7 @@ struct WorldSession {
   bool has_skipped_too_many = false;  // there were more
   // Cached chunks (cached_chunk_handlers.hpp).
   CacheClaims claims;
-  std::vector<SameChunk> not_modified_due;  // subscribed, and not answered yet
+  std::vector<UnmodifiedChunk> not_modified_due;  // subscribed, and not answered yet
   // Chunks of one material that are subscribed at these versions and not sent yet. While loads are
   // under way, a few wait for more, to be sent in one message.
   std::vector<UniformChunk> uniform;

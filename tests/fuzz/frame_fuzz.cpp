@@ -1,6 +1,5 @@
-// Any bytes as a stream from either side, split by the bytes themselves. Input: 1 byte sender and pieces
-// (bit 0: sender; the rest seeds the split), then the stream. The same stream must give the same messages and
-// the same outcome however it is split, and no message may exceed its limit.
+// Reads any bytes as a stream from either side. Input: 1 byte (bit 0: sender; the other bits seed the split), then the
+// stream. The stream must give the same messages and the same result however it is split. No message may exceed its limit.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -13,7 +12,7 @@ namespace {
 using namespace runstone;
 
 struct Outcome {
-  std::vector<Bytes> messages;  // class in the first byte
+  std::vector<Bytes> messages;  // the first byte is the class
   bool failed = false;
   friend bool operator==(const Outcome&, const Outcome&) = default;
 };

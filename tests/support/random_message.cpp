@@ -6,6 +6,7 @@
 
 #include "common/core/m61.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -204,7 +205,7 @@ CachedChunks any_cached_chunks(SplitMix64& rng) {
 
 ChunksNotModified any_chunks_not_modified(SplitMix64& rng) {
   ChunksNotModified m;
-  for (const ChunkKey& key : ascending_keys(rng, kSameChunksMax))
+  for (const ChunkKey& key : ascending_keys(rng, kChunksNotModifiedMax))
     m.chunks.push_back({key, any_version(rng).seq});
   return m;
 }
@@ -320,6 +321,16 @@ PlayerList any_player_list(SplitMix64& rng) {
 
 }  // namespace
 
+EditRequest any_edit_request(SplitMix64& rng) {
+  EditRequest request{1 + (any64(rng) >> 1), any_time(rng), {}};
+  if (rng.below(8) == 0) {
+    request.fault = Error{ErrorCode::truncated, "no descriptor", 0};
+  } else {
+    request.edit = any_edit(rng);
+  }
+  return request;
+}
+
 Message random_message(SplitMix64& rng, std::size_t kind) {
   switch (kind) {
     case 0:
@@ -337,7 +348,7 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 6:
       return any_snapshot(rng);
     case 7:
-      return EditRequest{1 + (any64(rng) >> 1), any_time(rng), any_edit(rng)};
+      return any_edit_request(rng);
     case 8:
       return any_commit(rng);
     case 9:
@@ -384,14 +395,7 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
 }
 
 Sender sender_of(const Message& message) {
-  const bool client =
-      std::holds_alternative<Hello>(message) || std::holds_alternative<ClientAuth>(message) ||
-      std::holds_alternative<View>(message) || std::holds_alternative<ChunkRequest>(message) ||
-      std::holds_alternative<EditRequest>(message) || std::holds_alternative<Move>(message) ||
-      std::holds_alternative<Ping>(message) || std::holds_alternative<HistoryRequest>(message) ||
-      std::holds_alternative<Goodbye>(message) || std::holds_alternative<CommandRequest>(message) ||
-      std::holds_alternative<ReceiveAck>(message) || std::holds_alternative<CachedChunks>(message);
-  return client ? Sender::client : Sender::server;
+  return may_send(info_of(message), Sender::client) ? Sender::client : Sender::server;
 }
 
 Result<Message> decode(const Message& kind, const EncodedMessage& encoded) {

@@ -90,7 +90,7 @@ void flood_absurd_views(HostileFleet& fleet) {
 
 /// Of so many chunks of a block around the middle, each said to be held as it was after edit 1.
 std::vector<EncodedMessage> claims_of(std::int32_t reach, SplitMix64& random) {
-  std::vector<HeldChunk> chunks;
+  std::vector<CachedChunk> chunks;
   for (std::int32_t x = -reach; x <= reach; ++x) {
     for (std::int32_t y = -reach; y <= reach; ++y) {
       for (std::int32_t z = -reach; z <= reach; ++z) {
@@ -101,7 +101,8 @@ std::vector<EncodedMessage> claims_of(std::int32_t reach, SplitMix64& random) {
   std::sort(chunks.begin(), chunks.end(),
             [](const auto& a, const auto& b) { return a.key < b.key; });
   std::vector<EncodedMessage> out;
-  for (const Message& message : held_messages(chunks)) out.push_back(encode_message(message));
+  for (const Message& message : cached_chunks_messages(chunks))
+    out.push_back(encode_message(message));
   return out;
 }
 

@@ -195,7 +195,7 @@ struct PictureReceiver::Parts {
           decode_message(Sender::server, frame_class, body, static_cast<std::uint16_t>(scene.edge));
       if (!message) return Unexpected<Error>{message.error()};
       auto* snapshot = std::get_if<ChunkSnapshot>(&*message);
-      if (snapshot == nullptr || !digest_holds(*snapshot))
+      if (snapshot == nullptr || !digest_matches(*snapshot))
         return fail(ErrorCode::bad_value, "not a sound snapshot");
       const ChunkCoord at = snapshot->key.at;
       runs[at] = std::move(snapshot->chunk.voxels);

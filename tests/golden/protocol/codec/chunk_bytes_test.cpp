@@ -6,8 +6,8 @@
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/support/hex.hpp"
 
-// Worked out by hand from docs/protocol.md, coded bodies by a second decoder that was written from it. They are on the wire and in stores: a change here is a new
-// version of chunk bytes.
+// The bytes were computed by hand from docs/protocol.md, coded bodies by a second decoder that was written from it. They
+// are on the wire and in stores: a change here is a new version of chunk bytes.
 namespace runstone::test {
 namespace {
 
@@ -68,7 +68,7 @@ TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
   check_bytes(three_runs(), ChunkEncoding::coded, "03 01 02  08 08 08  03 00 00 aa02  95fe3d9fa0");
   check_bytes(two_wide_runs(), ChunkEncoding::coded, "03 01 00  40 40 40  02 00 01  787d58bd");
 
-  // Two boundaries that wander and meet others, and a material that follows only in the last layers.
+  // Two surfaces that vary and meet, and a material that appears only in the last layers.
   RunBuilder builder({8, 8, 8}, AxisOrder::xzy);
   for (unsigned y = 0; y < 8; ++y) {
     for (unsigned z = 0; z < 8; ++z) {
@@ -83,8 +83,8 @@ TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
 }
 
 TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
-  // 64 times 40 of material 1 and 24 of air. Other releases of zstd may make other bytes: only reading is
-  // pinned.
+  // 64 times 40 voxels of material 1 and 24 of air. Other releases of zstd may make other bytes, so only decoding
+  // is pinned.
   RunBuilder builder({16, 16, 16}, AxisOrder::zyx);
   for (int i = 0; i < 64; ++i) {
     builder.append(40, 1);
@@ -97,7 +97,8 @@ TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
   CHECK(*decoded == builder.finish());
 }
 
-TEST_CASE("packed chunks of version 1 are read, whole only", "[protocol][golden]") {
+TEST_CASE("packed chunks of version 1 are decoded, and no truncation of them",
+          "[protocol][golden]") {
   RunBuilder builder({16, 16, 16}, AxisOrder::zyx);
   for (int i = 0; i < 64; ++i) {
     builder.append(40, 1);

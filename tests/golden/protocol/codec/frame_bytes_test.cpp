@@ -5,7 +5,7 @@
 #include "protocol/codec/frame.hpp"
 #include "tests/support/hex.hpp"
 
-// Worked out by hand from docs/protocol.md: a change here is a new protocol version.
+// The bytes were computed by hand from docs/protocol.md: a change here is a new protocol version.
 namespace runstone::test {
 
 TEST_CASE("frame headers are pinned", "[protocol][golden]") {

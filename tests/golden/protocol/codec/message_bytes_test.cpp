@@ -1,13 +1,16 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
 
+#include "protocol/codec/chunk_lists.hpp"
 #include "protocol/codec/handshake.hpp"
-#include "protocol/codec/held_lists.hpp"
 #include "protocol/codec/messages.hpp"
 #include "tests/support/hex.hpp"
 
-// Messages as versions 1 and 2 of the protocol wrote them: the same but for the version in hello and welcome.
-// Reading them must never change: peers of the current version are out there. How FlatBuffers arranges the
-// fields may differ between its releases, so writing is not pinned.
+// Messages as versions 1 and 2 of the protocol wrote them; they differ only in the version of Hello and Welcome. How they are
+// decoded must never change. Releases of FlatBuffers may arrange fields differently, so the encoder's bytes are not
+// pinned.
 namespace runstone::test {
 namespace {
 
@@ -60,6 +63,25 @@ Welcome a_welcome() {
   m.view_radius_max = 16;
   m.features = 5;
   return m;
+}
+
+/// Returns the hexadecimal digits of the example in docs/protocol.md. A comment follows two blanks or more.
+std::string transcript_of_the_page() {
+  std::ifstream file(RUNSTONE_SOURCE_DIR "/docs/protocol.md");
+  std::string digits;
+  bool is_inside = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line == "```transcript") {
+      is_inside = true;
+    } else if (is_inside && line == "```") {
+      break;
+    } else if (is_inside) {
+      line.resize(std::min(line.find("  "), line.size()));
+      std::erase(line, ' ');
+      digits += line;
+    }
+  }
+  return digits;
 }
 
 constexpr const char* kServerSignature =
@@ -154,7 +176,7 @@ TEST_CASE("unavailable chunks of protocol 1 are read", "[protocol][golden]") {
         Message(ChunkUnavailable{{{0, {1, -2, 3}}, {0, {-4, 0, 7}}}, UnavailableReason::damaged}));
 }
 
-TEST_CASE("travel of protocol 2 is read", "[protocol][golden]") {
+TEST_CASE("a history request of protocol 2 is read", "[protocol][golden]") {
   const Message read_back =
       read(Sender::client, FrameClass::control,
            "1400000052554e310000000008000c0007000800080000000000001410000000"
@@ -162,7 +184,7 @@ TEST_CASE("travel of protocol 2 is read", "[protocol][golden]") {
   CHECK(read_back == Message(HistoryRequest{3, HistoryTarget::time, 0, 1'700'000'000'123'456}));
 }
 
-TEST_CASE("a moment of protocol 2 is read", "[protocol][golden]") {
+TEST_CASE("a history state of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::chunks,
                                  "1400000052554e310000000008000c0007000800080000000000001514000000"
                                  "10002000080006000700100018000c0010000000000001010300000014000000"
@@ -171,7 +193,7 @@ TEST_CASE("a moment of protocol 2 is read", "[protocol][golden]") {
         Message(HistoryState{3, HistoryPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
 }
 
-TEST_CASE("a refused moment of protocol 2 is read", "[protocol][golden]") {
+TEST_CASE("a refused history request of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::chunks,
                                  "1000000052554e3108000c000700080008000000000000151400000010001000"
                                  "080007000000000000000c001000000000000003040000000400000009000000"
@@ -196,7 +218,7 @@ TEST_CASE("the output of a command of protocol 2 is read", "[protocol][golden]")
   CHECK(read_back == Message(CommandOutput{9, {"preview p1:", "439 edits"}, true, true}));
 }
 
-TEST_CASE("a change of the roster of protocol 2 is read", "[protocol][golden]") {
+TEST_CASE("a change of the player list of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::server, FrameClass::control,
                                  "1000000052554e3108000e0007000800080000000000000f1000000000000a00"
                                  "1000080007000c000a00000000000001080000000c0000000100000018000000"
@@ -205,7 +227,8 @@ TEST_CASE("a change of the roster of protocol 2 is read", "[protocol][golden]") 
   CHECK(read_back == Message(PlayerList{{{7, "bob"}}, true, {8, 300}}));
 }
 
-TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[protocol][golden]") {
+TEST_CASE("cached chunks, unmodified chunks and chunk edits of protocol 2 are read",
+          "[protocol][golden]") {
   const CachedChunks held{{{{0, {-3, 0, 7}}, {}, 0x0123456789abcdefULL},
                            {{0, {1, -2, 3}}, {3, 500}, 1},
                            {{0, {1, -2, 4}}, {2, 70}, 0}}};
@@ -213,8 +236,8 @@ TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[p
              "1000000052554e3108000e0007000800080000000000001a0c00000000000600"
              "0800040006000000040000002700000005000e00efcdab896745230108030703"
              "f40301000000000000000000020246000000000000000000") == Message(held));
-  // The lists are the project's own: writing them is pinned, too.
-  CHECK(to_hex(encode_held(held.chunks)) ==
+  // The lists are not FlatBuffers, so the encoder's bytes are pinned too.
+  CHECK(to_hex(encode_cached_chunks(held.chunks)) ==
         "05000e00efcdab8967452301"
         "08030703f4030100000000000000"
         "00000202460000000000000000");
@@ -223,7 +246,7 @@ TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[p
   CHECK(read(Sender::server, FrameClass::chunks,
              "1000000052554e3108000e0007000800080000000000001b0c00000000000600"
              "0800040006000000040000000e00000005000e00080307e807000002db060000") == Message(same));
-  CHECK(to_hex(encode_same(same.chunks)) == "05000e00080307e807000002db06");
+  CHECK(to_hex(encode_unmodified(same.chunks)) == "05000e00080307e807000002db06");
   ChunkEdits edits{
       {0, {1, -2, 3}}, 480, {3, 500}, {{0x1d097e98f4fc2824ULL, 0x07cd14195a2e2b9aULL}}, {}};
   edits.edits.push_back({499, {SetVoxel{{17, -31, 50}}, {}, 300}});
@@ -234,10 +257,11 @@ TEST_CASE("what is held, the same and missing edits of protocol 2 are read", "[p
              "0300000000000000f4010000000000002428fcf4987e091d9a2b2e5a1914cd07"
              "000000000c000000e0010000000000001200000013070100ac02223d64010703"
              "0207283b64030000") == Message(edits));
-  CHECK(to_hex(encode_missing(edits.edits, edits.from)) == "13070100ac02223d640107030207283b6403");
+  CHECK(to_hex(encode_missing_edits(edits.edits, edits.from)) ==
+        "13070100ac02223d640107030207283b6403");
 }
 
-TEST_CASE("a view of protocol 2 says where its client looks", "[protocol][golden]") {
+TEST_CASE("a view of protocol 2 with a direction is read", "[protocol][golden]") {
   const Message read_back = read(Sender::client, FrameClass::control,
                                  "1000000052554e3108000c000700080008000000000000051800000014001800"
                                  "0c001000140004000500060008000a00140000000603004000f0002001000000"
@@ -245,7 +269,7 @@ TEST_CASE("a view of protocol 2 says where its client looks", "[protocol][golden
   CHECK(read_back == Message(View{{1, -2, 3}, 6, 3, 16'384, -4'096, 8'192}));
 }
 
-TEST_CASE("received of protocol 2 is read", "[protocol][golden]") {
+TEST_CASE("a receive ack of protocol 2 is read", "[protocol][golden]") {
   const Message read_back = read(Sender::client, FrameClass::control,
                                  "1000000052554e3108000e000700080008000000000000180c00000000000600"
                                  "0c000400060000008967452301000000");
@@ -296,6 +320,7 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
           "08000000 40420f0000000000"      // edit_volume_max
           "01000000 10"                    // view_radius_max
           "08000000 0500000000000000")));  // welcome.features
+  CHECK(to_hex(transcript) == transcript_of_the_page());
   CHECK(to_hex(sign(keys_of(1), transcript)) == kServerSignature);
   CHECK(to_hex(sign(keys_of(2), client_transcript(hello, welcome))) ==
         "84d50dc41accf04644e3a969534a705651518dc6c2c2cd7d34b8e369dc13382c"

@@ -3,7 +3,7 @@
 #include "protocol/codec/uniform_list.hpp"
 #include "tests/support/hex.hpp"
 
-// The bytes in docs/protocol.md.
+// The bytes are those of docs/protocol.md.
 namespace runstone::test {
 namespace {
 

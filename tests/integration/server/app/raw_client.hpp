@@ -52,9 +52,10 @@ class RawClient {
       bytes = bytes.subspan(static_cast<std::size_t>(sent));
     }
   }
-  void send(const Message& message) {
+  void send(const Message& message) { send(encode_message(message)); }
+  void send(const EncodedMessage& message) {
     Bytes bytes;
-    frames_.append(encode_message(message), bytes);
+    frames_.append(message, bytes);
     send_bytes(bytes);
   }
   void shutdown_send() { ::shutdown(socket_, SHUT_WR); }

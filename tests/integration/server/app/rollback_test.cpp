@@ -74,6 +74,7 @@ TEST_CASE("players undo and redo by a command; other commands are for operators"
   config.operators = {key_pair_of(seed).public_key};
   auto server = start_server(config, flat_creation());
   RawClient ana(server->port());
+  ana.features = kFeatureCommands;
   REQUIRE(ana.join(1).has_value());
   CHECK((ana.welcome.features & kFeatureCommands) == 0);  // the client did not offer the feature
   build(ana, 1, FillBox{{{0, 70, 0}, {4, 74, 4}}}, 1);
@@ -92,6 +93,7 @@ TEST_CASE("players undo and redo by a command; other commands are for operators"
   CHECK(command(ana, "help").text.find("rollback") == std::string::npos);
 
   RawClient boss(server->port());
+  boss.features = kFeatureCommands;
   REQUIRE(boss.join(2).has_value());
   CHECK(command(boss, "rollback list").is_ok);
   CHECK(command(boss, "log limit 3").text.find(" player1 #1 redo of 2 restored 2 70 0 to 5 73 3\n") !=

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <memory>
 #include <set>
 #include <thread>
 
@@ -194,6 +196,10 @@ TEST_CASE("a client that breaks a rule ends its own session only, with a numbere
     CHECK(goodbye->reason == expected);
     CHECK_FALSE(goodbye->text.empty());
   }
+  const auto goodbye = bad.goodbye();
+  REQUIRE(goodbye.has_value());
+  CHECK(goodbye->reason == expected);
+  CHECK_FALSE(goodbye->text.empty());
   CHECK(bad.sees_the_end());
   good.send(Ping{42});
   const auto pong = good.next_of<Pong>();
@@ -284,9 +290,9 @@ TEST_CASE("a wrong receive ack closes the session, and so does one without the f
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient liar(server->port());
-  liar.features = kFeatureReceived;
+  liar.features = kFeatureReceiveAck;
   REQUIRE(liar.join(1).has_value());
-  CHECK(liar.welcome.features == kFeatureReceived);
+  CHECK(liar.welcome.features == kFeatureReceiveAck);
   liar.send(View{{0, 0, 0}, 1, 1});
   snapshots(liar, 5 * 3);
   liar.send(ReceiveAck{1ULL << 40});
@@ -307,7 +313,7 @@ TEST_CASE("a client that sends no receive acks still gets its view", "[integrati
   const TempFolder folder;
   const auto server = start_server(quiet_config(folder / "world"), flat_creation());
   RawClient quiet(server->port());
-  quiet.features = kFeatureReceived;
+  quiet.features = kFeatureReceiveAck;
   REQUIRE(quiet.join(1).has_value());
   quiet.send(View{{0, 0, 0}, 2, 1});
   CHECK(snapshots(quiet, 13 * 3).size() == 13 * 3);

@@ -27,17 +27,16 @@ TEST_CASE("a chunk comes back from all encodings, run for run", "[protocol][prop
   }
 }
 
-TEST_CASE("packed is no larger than raw but for its few bytes of palette", "[protocol][property]") {
+TEST_CASE("packed is larger than raw by its palette at most", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 1};
   for (int step = 0; step < 100; ++step) {
     const RunChunk chunk = random_chunk(rng);
-    // Worst case: every run a material of its own (3 bytes in the palette, 2 in the plane) and a length of 3.
+    // Worst case: every run has another material (3 bytes in the palette, 2 in the plane) and a length of 3 bytes.
     CHECK(encode_chunk(chunk, ChunkEncoding::packed).size() <= 20 + 8 * chunk.runs.size());
   }
 }
 
-TEST_CASE("no truncation and no extra byte of a chunk passes for that chunk",
-          "[protocol][property]") {
+TEST_CASE("no truncation and no extra byte decodes to the same chunk", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   for (int step = 0; step < 30; ++step) {
     const RunChunk chunk = random_chunk(rng, 16, 1 + rng.below(6));
@@ -50,7 +49,7 @@ TEST_CASE("no truncation and no extra byte of a chunk passes for that chunk",
         const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
         const auto decoded = decode_chunk(cut);
         if (encoding != ChunkEncoding::coded) REQUIRE_FALSE(decoded.has_value());
-        // Coded runs are not counted: what is left may be the one spelling of other runs that fill the chunk.
+        // Coded bodies do not count runs: a truncated body may be the spelling of other runs.
         if (decoded) REQUIRE(encode_chunk(*decoded, encoding) == cut);
       }
       for (const int extra : {0, 1, 0x28, 0xff}) {

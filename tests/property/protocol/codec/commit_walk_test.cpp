@@ -1,4 +1,4 @@
-// The walk over a commit against the decoder that makes a struct of it: one verdict on every input.
+// Compares the walk over a commit with the decoder that makes a struct: both must have the same result on every input.
 #include "protocol/codec/commit_walk.hpp"
 
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCommitKind = 8;
 
-/// Walks the bytes and puts the edits together again.
+/// Walks the bytes and collects the edits.
 Result<Message> walked(ByteView bytes) {
   CommitWalk walk;
   Commit commit;
@@ -34,7 +34,7 @@ Result<Message> walked(ByteView bytes) {
 
 }  // namespace
 
-TEST_CASE("a walk hands out the edits that the decoder finds", "[protocol][property]") {
+TEST_CASE("a walk delivers the edits that the decoder finds", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 20};
   for (int step = 0; step < 100; ++step) {
     CAPTURE(Catch::rngSeed(), step);
@@ -69,7 +69,7 @@ TEST_CASE("a walk refuses what the decoder refuses", "[protocol][property]") {
   CHECK(refused > 100);
 }
 
-TEST_CASE("a walk leaves other messages alone, and passes on an error of who walks", "[protocol]") {
+TEST_CASE("a walk ignores other messages and returns an error of its handler", "[protocol]") {
   CommitWalk walk;
   const auto none = [](const WalkedEdit&) -> Result<void> {
     return fail(ErrorCode::bad_value, "enough");

@@ -32,7 +32,7 @@ Messages random_messages(SplitMix64& rng, Sender sender) {
   return out;
 }
 
-/// Fragments of random size, classes interleaved at random.
+/// Returns a stream with fragments of random size and randomly interleaved classes.
 Bytes random_stream(SplitMix64& rng, const Messages& messages) {
   Bytes stream;
   FrameWriter writer;
@@ -61,7 +61,7 @@ Bytes random_stream(SplitMix64& rng, const Messages& messages) {
   }
 }
 
-/// Feeds the stream in pieces; nothing if the reader refused it.
+/// Feeds the stream in pieces. Returns the messages, or nullopt if the reader refused it.
 std::optional<Messages> read_in_pieces(SplitMix64& rng, Sender sender, ByteView stream) {
   FrameReader reader(sender);
   Messages out;
@@ -129,7 +129,7 @@ TEST_CASE("a flipped byte of a frame header never crashes the reader", "[protoco
         rng.below(static_cast<std::uint32_t>(std::min<std::size_t>(stream.size(), 400)));
     stream[at] = static_cast<std::uint8_t>(stream[at] ^ (1u << rng.below(8)));
     const auto received = read_in_pieces(rng, Sender::server, stream);
-    // Bodies are not the frame's business; a header that was changed cannot give the same messages.
+    // The reader does not check bodies. A changed header never gives the same messages.
     if (received) CHECK(*received != sent);
   }
 }

@@ -1,11 +1,12 @@
 #include <catch2/catch.hpp>
 
+#include "protocol/codec/message_table.hpp"
 #include "tests/support/random_message.hpp"
 
 namespace runstone::test {
 namespace {
 
-/// Such a message says nothing but its version.
+/// Returns true for a Hello or Welcome of another version: it decodes to its version alone.
 bool of_other_protocol(const Message& message) {
   if (const auto* hello = std::get_if<Hello>(&message)) return hello->protocol != kProtocolVersion;
   if (const auto* welcome = std::get_if<Welcome>(&message))
@@ -13,7 +14,8 @@ bool of_other_protocol(const Message& message) {
   return false;
 }
 
-/// Decodes altered bytes on both sides and in every class: an error or a struct whose own bytes decode to it.
+/// Decodes altered bytes on both sides and in every class. Each gives an error, or a struct that encodes to bytes which decode
+/// to it again.
 void survives(const Bytes& bytes) {
   for (const Sender sender : {Sender::client, Sender::server}) {
     for (const FrameClass c : {FrameClass::control, FrameClass::edits, FrameClass::chunks}) {
@@ -30,14 +32,14 @@ void survives(const Bytes& bytes) {
 
 }  // namespace
 
-TEST_CASE("every message comes back as it went", "[protocol][property]") {
+TEST_CASE("every message comes back from its bytes unchanged", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
     for (int step = 0; step < 60; ++step) {
       CAPTURE(Catch::rngSeed(), kind, step);
       const Message message = random_message(rng, kind);
       const EncodedMessage encoded = encode_message(message);
-      CHECK(encoded.frame_class == frame_class_of(message));
+      CHECK(encoded.frame_class == info_of(message).frame_class);
       const auto decoded = decode(message, encoded);
       if (!decoded) FAIL(decoded.error().what);
       REQUIRE(decoded->index() == kind);
@@ -46,7 +48,7 @@ TEST_CASE("every message comes back as it went", "[protocol][property]") {
   }
 }
 
-TEST_CASE("a packed snapshot carries what a raw one does", "[protocol][property]") {
+TEST_CASE("a snapshot comes back unchanged from all encodings", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 1};
   for (int step = 0; step < 60; ++step) {
     CAPTURE(Catch::rngSeed(), step);
@@ -57,24 +59,24 @@ TEST_CASE("a packed snapshot carries what a raw one does", "[protocol][property]
       const auto decoded = decode(message, encode_snapshot(snapshot.key, snapshot.chunk, encoding));
       REQUIRE(decoded.has_value());
       REQUIRE(*decoded == message);
-      REQUIRE(digest_holds(std::get<ChunkSnapshot>(*decoded)));
+      REQUIRE(digest_matches(std::get<ChunkSnapshot>(*decoded)));
     }
   }
 }
 
-TEST_CASE("no truncation of a message passes for it", "[protocol][property]") {
+TEST_CASE("no truncation of a message decodes to it", "[protocol][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
     const Message message = random_message(rng, kind);
     const EncodedMessage encoded = encode_message(message);
     for (std::size_t size = 0; size < encoded.bytes->size(); ++size) {
       CAPTURE(Catch::rngSeed(), kind, size);
-      // A buffer of just that size, so that sanitizers see a read behind its end.
+      // The buffer has exactly that size, so that sanitizers see a read behind its end.
       const Bytes cut(encoded.bytes->begin(),
                       encoded.bytes->begin() + static_cast<std::ptrdiff_t>(size));
       const auto decoded =
           decode_message(sender_of(message), encoded.frame_class, cut, kMessageEdge);
-      // The last bytes may be padding that carries nothing.
+      // The last bytes may be padding.
       if (decoded) REQUIRE((size + 8 > encoded.bytes->size() && *decoded == message));
     }
   }
@@ -100,7 +102,7 @@ TEST_CASE("a flipped byte gives an error or a valid message", "[protocol][proper
 }
 
 TEST_CASE("bytes after a message change nothing", "[protocol][property]") {
-  // FlatBuffers reads by offsets: what nothing points at is never looked at.
+  // FlatBuffers reads by offsets: bytes without an offset to them are not read.
   SplitMix64 rng{Catch::rngSeed() + 4};
   for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
     const Message message = random_message(rng, kind);

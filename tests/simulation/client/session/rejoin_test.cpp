@@ -220,7 +220,7 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
   bench.join(2, 2);
   bench.view(2, kSmall);
   std::int32_t next = -30'000;
-  for (int message = 0; message <= static_cast<int>(kHeldClaimsMax / 64); ++message) {
+  for (int message = 0; message <= static_cast<int>(kClaimsPerSessionMax / 64); ++message) {
     CachedChunks held;
     for (int i = 0; i < 64; ++i) held.chunks.push_back({{0, {next++, 0, 0}}, {}, 1});
     bench.server.received(1, held, bench.now());

@@ -11,10 +11,11 @@ TEST_CASE("what was read is told at once after a pause, then by time or by bytes
   CHECK(report.is_due(1, 5'000'000));
   report.told(1, 5'000'000);
   CHECK_FALSE(report.due(1).has_value());  // nothing new
-  CHECK_FALSE(report.is_due(2, 5'000'000 + kReceivedEveryUs - 1));
-  CHECK(report.is_due(2, 5'000'000 + kReceivedEveryUs));
-  CHECK(report.is_due(1 + kReceivedEveryBytes, 5'000'000 + kReceivedUsMin));
-  CHECK_FALSE(report.is_due(1 + kReceivedEveryBytes, 5'000'000 + kReceivedUsMin - 1));  // no flood
+  CHECK_FALSE(report.is_due(2, 5'000'000 + kReceiveAckEveryUs - 1));
+  CHECK(report.is_due(2, 5'000'000 + kReceiveAckEveryUs));
+  CHECK(report.is_due(1 + kReceiveAckEveryBytes, 5'000'000 + kReceiveAckUsMin));
+  CHECK_FALSE(
+      report.is_due(1 + kReceiveAckEveryBytes, 5'000'000 + kReceiveAckUsMin - 1));  // no flood
 }
 
 }  // namespace

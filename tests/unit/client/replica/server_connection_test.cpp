@@ -111,6 +111,14 @@ TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with o
     receive(welcome());
     CHECK(receive(welcome()) == Dispatch::handled);
   }
+  SECTION("a message of the open session before welcome") {
+    greet();
+    CHECK(receive(Durable{1, 7}) == Dispatch::handled);
+  }
+  SECTION("command output in a session without commands") {
+    open();
+    CHECK(receive(CommandOutput{1, {}, true, true}) == Dispatch::handled);
+  }
   SECTION("ready twice") {
     open();
     CHECK(receive(SessionAccepted{6, 0}) == Dispatch::handled);
@@ -132,10 +140,10 @@ TEST_CASE_METHOD(Fixture, "hello's answers out of turn end the connection with o
 TEST_CASE_METHOD(Fixture, "what is not of the connection is left to the session, whole",
                  "[replica]") {
   greet();
+  receive(welcome());
   Message message = Durable{1, 7};
   CHECK(connection.receive(message, {now, now, now}) == Dispatch::for_session);
   CHECK(std::get<Durable>(message).seq == 7);
-  receive(welcome());
   CHECK(receive(Pong{now, now}) == Dispatch::for_session);  // to no ping: none is sent before ready
   CHECK(connection.pongs() == 0);
   receive(SessionAccepted{6, 0});

@@ -35,9 +35,9 @@ TEST_CASE("chunk bytes with a bad head are refused", "[protocol]") {
   CHECK(error_of("01 00 00 00 08080800 01000000 00020000") == ErrorCode::bad_version);
   CHECK(error_of("01 01 06 00 08080800 01000000 00020000") == ErrorCode::bad_value);  // order
   CHECK(error_of("01 01 08 00 08080800 01000000 00020000") ==
-        ErrorCode::bad_value);  // raw has no zstd
+        ErrorCode::bad_value);  // raw has no zstd flag
   CHECK(error_of("01 01 00 01 08080800 01000000 00020000") ==
-        ErrorCode::not_canonical);  // reserved
+        ErrorCode::not_canonical);  // reserved byte
   CHECK(error_of("01 01 00 00 08080801 01000000 00020000") == ErrorCode::not_canonical);
   CHECK(error_of("01 01 00 00 07080800 01000000 c0010000") == ErrorCode::bad_value);  // side 7
   CHECK(error_of("01 01 00 00 08810800 01000000 00000000") == ErrorCode::bad_value);  // side 129
@@ -46,12 +46,13 @@ TEST_CASE("chunk bytes with a bad head are refused", "[protocol]") {
 TEST_CASE("raw runs that are not canonical are refused", "[protocol]") {
   const std::string head = "01 01 00 00 08080800 ";
   CHECK(error_of(head + "00000000") == ErrorCode::broken_invariant);    // no runs
-  CHECK(error_of(head + "ffffffff 00020000") == ErrorCode::truncated);  // count lies
+  CHECK(error_of(head + "ffffffff 00020000") == ErrorCode::truncated);  // fewer runs than counted
   CHECK(error_of(head + "02000000 00020000") == ErrorCode::truncated);
   CHECK(error_of(head + "01000000 00020000 00") == ErrorCode::trailing_bytes);
   CHECK(error_of(head + "01000000 ff010000") ==
-        ErrorCode::broken_invariant);  // short of the volume
-  CHECK(error_of(head + "01000000 01020000") == ErrorCode::broken_invariant);           // behind it
+        ErrorCode::broken_invariant);  // ends before the volume
+  CHECK(error_of(head + "01000000 01020000") ==
+        ErrorCode::broken_invariant);  // ends behind the volume
   CHECK(error_of(head + "02000000 00000000 00020100") == ErrorCode::broken_invariant);  // empty run
   CHECK(error_of(head + "02000000 00020000 00010100") ==
         ErrorCode::broken_invariant);  // descending
@@ -60,7 +61,7 @@ TEST_CASE("raw runs that are not canonical are refused", "[protocol]") {
   CHECK_FALSE(error_of(head + "02000000 00010100 00020000"));
 }
 
-TEST_CASE("the spelling of packed bytes is right where it is not bent", "[protocol]") {
+TEST_CASE("the packed bytes that the next tests change are valid", "[protocol]") {
   RunBuilder builder({8, 8, 8}, AxisOrder::yxz);
   builder.append(3, 1);
   builder.append(197, 0);
@@ -76,7 +77,7 @@ TEST_CASE("the spelling of packed bytes is right where it is not bent", "[protoc
   CHECK(*decoded == chunk);
 }
 
-TEST_CASE("packed bytes that lie are refused", "[protocol]") {
+TEST_CASE("packed bytes whose fields contradict each other are refused", "[protocol]") {
   const struct {
     const char* what;
     std::function<void(PackedSpelling&)> bend;
@@ -151,7 +152,7 @@ TEST_CASE("a varint of the head in more bytes than needed is refused", "[protoco
   CHECK(error_of(bytes) == ErrorCode::not_canonical);
 }
 
-TEST_CASE("zstd that does not hold exactly the body is refused", "[protocol]") {
+TEST_CASE("a zstd frame that does not contain exactly the body is refused", "[protocol]") {
   PackedSpelling s;
   s.order = 2 + 8;
   const Bytes good = zstd_frame(s.body);
@@ -161,23 +162,23 @@ TEST_CASE("zstd that does not hold exactly the body is refused", "[protocol]") {
   };
   REQUIRE_FALSE(error_with(good));
   CHECK(error_with({}) == ErrorCode::bad_value);
-  CHECK(error_with(zstd_frame(s.body, false)) == ErrorCode::bad_value);  // tells no size
-  CHECK(error_with(zstd_frame(Bytes(4, 1))) == ErrorCode::bad_value);    // another size
+  CHECK(error_with(zstd_frame(s.body, false)) == ErrorCode::bad_value);  // announces no size
+  CHECK(error_with(zstd_frame(Bytes(4, 1))) == ErrorCode::bad_value);    // announces another size
   CHECK(error_with(zstd_frame(Bytes(12, 1))) == ErrorCode::bad_value);
   CHECK(error_with(concat(from_hex("28b52ffd"), good)) ==
-        ErrorCode::bad_value);  // the magic number
+        ErrorCode::bad_value);  // has the magic number
   CHECK(error_with(concat(good, {0})) == ErrorCode::trailing_bytes);
   CHECK(error_with(concat(concat(good, from_hex("28b52ffd")), good)) == ErrorCode::trailing_bytes);
   const Bytes skippable = from_hex("502a4d18 00000000");
   CHECK(error_with(concat(good, skippable)) == ErrorCode::trailing_bytes);
   CHECK(error_with(concat(skippable, good)) == ErrorCode::bad_value);
-  CHECK(error_with(s.body) == ErrorCode::bad_value);  // the flag lies
+  CHECK(error_with(s.body) == ErrorCode::bad_value);  // not compressed
   for (std::size_t size = 1; size < good.size(); ++size) {
     CHECK(error_with(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))));
   }
 }
 
-TEST_CASE("zstd is used exactly where it makes the body smaller", "[protocol]") {
+TEST_CASE("the encoder compresses exactly if that makes the body smaller", "[protocol]") {
   SplitMix64 rng{4};
   const auto flag = [](const RunChunk& chunk) {
     return encode_chunk(chunk, ChunkEncoding::packed)[2] & 8;
@@ -198,7 +199,7 @@ TEST_CASE("zstd is used exactly where it makes the body smaller", "[protocol]") 
   CHECK(compressed > 20);
 }
 
-TEST_CASE("lengths of runs take the token that docs/protocol.md gives them", "[protocol]") {
+TEST_CASE("run lengths have the tokens of docs/protocol.md", "[protocol]") {
   const auto tokens_of = [](Extent extent, std::uint32_t first, std::uint32_t second) {
     RunBuilder builder(extent, AxisOrder::xyz);
     builder.append_to(first, 0);
@@ -221,7 +222,7 @@ TEST_CASE("lengths of runs take the token that docs/protocol.md gives them", "[p
   CHECK(tokens_of(cube, 65 * 32, 65 * 32 + 1) == Bytes{0, 1, 0xa0, 0x10});
   CHECK(tokens_of(cube, 31, 64 * 32) == Bytes{31, 192});
   CHECK(tokens_of(cube, 31, 65 * 32) == Bytes{31, 0, 0x81, 0x10});
-  CHECK(tokens_of(odd, 8, 12) == Bytes{255, 4});  // of 24, the line is 8
+  CHECK(tokens_of(odd, 8, 12) == Bytes{255, 4});  // a side of 24 has lines of 8
   CHECK(tokens_of(odd, 12, 24) == Bytes{12, 254});
 }
 
@@ -249,7 +250,7 @@ TEST_CASE("a chunk of another extent than expected is refused in every encoding"
   }
 }
 
-TEST_CASE("the largest chunk goes all ways and fits its limit", "[protocol]") {
+TEST_CASE("the largest chunk comes back from all encodings and fits its limit", "[protocol]") {
   SplitMix64 rng{9};
   const RunChunk chunk = random_chunk(rng, Extent::cube(128), AxisOrder::xyz, 65'536, Shape::noise);
   REQUIRE(chunk.runs.size() > 2'000'000);

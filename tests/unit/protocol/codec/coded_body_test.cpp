@@ -27,7 +27,7 @@ ErrorCode error_of(const Bytes& bytes) {
   return decoded.error().code;
 }
 
-/// Bits as they stand; each but the bits of a palette index meets its model for the first time.
+/// Returns a body of these bits. Each bit meets a fresh model, except the bits of a palette index.
 class Spelling {
  public:
   Spelling& index(bool bit) { return put(material_, bit); }
@@ -52,20 +52,20 @@ class Spelling {
 
 }  // namespace
 
-TEST_CASE("bits come back from a range coder, likely or not", "[protocol]") {
+TEST_CASE("bits come back from a range coder, whatever their probability", "[protocol]") {
   SplitMix64 rng{4};
   for (const unsigned ones : {0u, 1u, 50u, 128u, 250u, 256u}) {
     CAPTURE(ones);
     std::vector<bool> bits;
     for (int i = 0; i < 20'000; ++i) bits.push_back(rng.below(256) < ones);
-    Bytes bytes = {7};  // stays
+    Bytes bytes = {7};  // must stay
     AdaptiveBit model;
     RangeEncoder encoder(bytes);
     for (const bool bit : bits) encoder.code(model, bit);
     encoder.finish();
     CHECK(bytes[0] == 7);
     if (ones % 256 == 0) CHECK(bytes.size() < 20);
-    CHECK(bytes.size() < 2750);  // a tenth above a bit each
+    CHECK(bytes.size() < 2750);  // at most 10 % above one bit each
 
     const ByteView body = ByteView(bytes).subspan(1);
     model = {};
@@ -75,8 +75,8 @@ TEST_CASE("bits come back from a range coder, likely or not", "[protocol]") {
   }
 }
 
-TEST_CASE("a carry runs through bytes that are full", "[protocol]") {
-  // Every ninth bit against a model that has learnt the other value: sums of many bounds, each a carry away.
+TEST_CASE("a carry passes through bytes of 255", "[protocol]") {
+  // Every ninth bit contradicts a model that has learnt the other value, so many sums end with a carry.
   for (int period = 2; period < 40; ++period) {
     CAPTURE(period);
     Bytes bytes;
@@ -91,7 +91,7 @@ TEST_CASE("a carry runs through bytes that are full", "[protocol]") {
   }
 }
 
-TEST_CASE("coded runs that are spelt right are read", "[protocol]") {
+TEST_CASE("canonical coded runs are decoded", "[protocol]") {
   RunChunk chunk{{8, 8, 8}, AxisOrder::xyz, RunList(512)};
   chunk.runs.push_back({3, 0});
   chunk.runs.push_back({512, 1});
@@ -100,22 +100,23 @@ TEST_CASE("coded runs that are spelt right are read", "[protocol]") {
   CHECK(*decoded == chunk);
 }
 
-TEST_CASE("coded bytes that lie are refused", "[protocol]") {
+TEST_CASE("coded bytes whose fields contradict each other are refused", "[protocol]") {
   CHECK(error_of(with_body({})) == ErrorCode::truncated);
   CHECK(error_of(with_body({0xff, 0xff, 0xff, 0xff})) != ErrorCode::unknown_kind);
   CHECK(error_of(with_body({0}, "01 05")) ==
         ErrorCode::trailing_bytes);  // one material needs no body
   CHECK(error_of(with_body({}, "00")) == ErrorCode::broken_invariant);  // no material
   CHECK(error_of(with_body({}, "03 00 00")) ==
-        ErrorCode::truncated);  // palette of three, two are there
+        ErrorCode::truncated);  // counts three materials, has two
   CHECK(error_of(with_body({}, "81 04 00 00")) ==
         ErrorCode::bad_value);  // more materials than voxels
   CHECK(error_of(from_hex("03 02 00 08 08 08 01 00")) == ErrorCode::bad_version);
-  CHECK(error_of(from_hex("03 01 08 08 08 08 01 00")) == ErrorCode::bad_value);  // packed's flag
+  CHECK(error_of(from_hex("03 01 08 08 08 08 01 00")) ==
+        ErrorCode::bad_value);  // the zstd flag of packed
   CHECK(error_of(from_hex("03 01 00 07 08 08 01 00")) == ErrorCode::bad_value);
   CHECK(decode_chunk(from_hex("03 01 00 08 08 08 01 05")).has_value());
 
-  // A run that ends behind its stretch: 7 of at most 6.
+  // A run that ends behind its stretch: distance 7, at most 6.
   CHECK(error_of(Spelling().index(false).fresh(true).fresh(true).fresh(true).fresh(true).bytes()) ==
         ErrorCode::not_canonical);
   // A change to the same material.
@@ -127,7 +128,7 @@ TEST_CASE("coded bytes that lie are refused", "[protocol]") {
                      .fresh(false)
                      .index(false)
                      .bytes()) == ErrorCode::not_canonical);
-  // A third index of two bits, where there are three.
+  // A palette index of 3 in two bits; there are three materials.
   AdaptiveBit high, low;
   Bytes body;
   RangeEncoder coder(body);
@@ -137,8 +138,8 @@ TEST_CASE("coded bytes that lie are refused", "[protocol]") {
   CHECK(error_of(with_body(body, "03 00 00 00")) == ErrorCode::not_canonical);
 }
 
-TEST_CASE("a palette that coded runs do not use up is refused", "[protocol]") {
-  // All voxels of index 0. Stretches begin at 0, 8 and 64, and nothing changes at them or within.
+TEST_CASE("a palette with a material that no coded run has is refused", "[protocol]") {
+  // All voxels have index 0. Stretches begin at 0, 8 and 64, without a change.
   Bytes body;
   RangeEncoder coder(body);
   AdaptiveBit index, line, start, layer, rest;
@@ -155,7 +156,7 @@ TEST_CASE("a palette that coded runs do not use up is refused", "[protocol]") {
   CHECK(std::string(decoded.error().what) == "palette names a material that no run has");
 }
 
-TEST_CASE("no two short bodies are one chunk", "[protocol]") {
+TEST_CASE("no two short bodies decode to the same chunk", "[protocol]") {
   for (unsigned bits = 0; bits < 65'536; ++bits) {
     const Bytes bytes =
         with_body({static_cast<std::uint8_t>(bits >> 8), static_cast<std::uint8_t>(bits & 255)});

@@ -14,7 +14,7 @@ std::optional<DrawAnswer> back(const DrawAnswer& answer) {
 
 }  // namespace
 
-TEST_CASE("draw answers are these lines, and are read back", "[protocol]") {
+TEST_CASE("draw answers have pinned lines, and come back from them", "[protocol]") {
   CHECK(to_line(DrawReady{1, "EGL surfaceless"}) == "ready 1 EGL surfaceless\n");
   CHECK(to_line(PictureDrawn{12, 3, 4567, "a b.png"}) ==
         "drawn quads=12 chunks=3 us=4567 a b.png\n");
@@ -27,8 +27,7 @@ TEST_CASE("draw answers are these lines, and are read back", "[protocol]") {
   }
 }
 
-TEST_CASE("what would break the line of an answer becomes blanks, and long text is cut",
-          "[protocol]") {
+TEST_CASE("unprintable bytes of an answer become blanks, and long text is cut", "[protocol]") {
   CHECK(back(DrawFailed{"two\nlines\x80"}) == DrawAnswer{DrawFailed{"two lines "}});
   const std::string line = to_line(DrawFailed{std::string(20'000, 'x')});
   CHECK(line.size() == kDrawAnswerBytesMax);

@@ -77,7 +77,7 @@ Outcome read(ByteView stream, std::size_t piece = ~std::size_t{0}) {
   return out;
 }
 
-/// What is said of a frame after a sound world.
+/// Returns the error of a frame that follows a valid world.
 Error error_after_world(const Bytes& frame) {
   Bytes stream = world();
   const std::size_t at = stream.size();
@@ -96,7 +96,7 @@ Error picture_error(const DrawPicture& picture) {
 
 }  // namespace
 
-TEST_CASE("draw orders come back as they were given, however the stream is cut", "[protocol]") {
+TEST_CASE("draw orders come back unchanged, however the stream is cut", "[protocol]") {
   const std::size_t piece = GENERATE(std::size_t{1}, 3, 4096, 1 << 20);
   const Outcome outcome = read(whole_stream(), piece);
   CAPTURE(piece, outcome.error ? outcome.error->what : "");
@@ -118,7 +118,7 @@ TEST_CASE("draw orders come back as they were given, however the stream is cut",
   CHECK(picture.file == sample_picture().file);
 }
 
-TEST_CASE("the bytes of draw orders are these", "[protocol]") {
+TEST_CASE("the bytes of draw orders are pinned", "[protocol]") {
   Bytes out;
   append_draw_forget(kKey, out);
   DrawPicture picture;
@@ -150,7 +150,7 @@ TEST_CASE("the bytes of draw orders are these", "[protocol]") {
   CHECK(to_hex(ByteView(head).subspan(4, 3)) == "010110");
 }
 
-TEST_CASE("orders that break off anywhere are an error, and nothing is taken that is not whole",
+TEST_CASE("a truncated stream of orders is an error, and no incomplete order is delivered",
           "[protocol]") {
   const Bytes stream = whole_stream();
   for (std::size_t size = 0; size < stream.size(); ++size) {
@@ -181,7 +181,8 @@ TEST_CASE("a flipped byte never gives an order outside its limits", "[protocol]"
   }
 }
 
-TEST_CASE("frames that announce what may not be are refused where they begin", "[protocol]") {
+TEST_CASE("frames with an invalid header are refused, with the offset of their first byte",
+          "[protocol]") {
   CHECK(error_after_world(from_hex("0000000000")).code == ErrorCode::unknown_kind);
   CHECK(error_after_world(from_hex("0000000006")).code == ErrorCode::unknown_kind);
   CHECK(error_after_world(from_hex("0100000102")).code == ErrorCode::limit_exceeded);
@@ -197,8 +198,8 @@ TEST_CASE("frames that announce what may not be are refused where they begin", "
         ErrorCode::trailing_bytes);
   Bytes end;
   append_draw_end(end);
-  CHECK(read(end).error->code == ErrorCode::broken_invariant);  // before the world
-  // A chunk of another edge than the world's.
+  CHECK(read(end).error->code == ErrorCode::broken_invariant);  // the world must come first
+  // A chunk whose edge is not that of the world.
   Bytes chunk;
   append_draw_chunk(kKey, uniform_chunk(Extent::cube(32), 1), chunk);
   error_after_world(chunk);
@@ -219,7 +220,7 @@ TEST_CASE("a world of another version, edge or material table is refused", "[pro
   }
 }
 
-TEST_CASE("a picture outside its limits is refused by name", "[protocol]") {
+TEST_CASE("a picture outside its limits is refused, and the error names the field", "[protocol]") {
   CHECK(validate(sample_picture()).has_value());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto with = [](auto change) {
@@ -244,7 +245,7 @@ TEST_CASE("a picture outside its limits is refused by name", "[protocol]") {
         std::string::npos);
 }
 
-TEST_CASE("an error of the taker ends the reading", "[protocol]") {
+TEST_CASE("an error of the handler ends the reading", "[protocol]") {
   DrawOrderReader reader;
   int taken = 0;
   const auto refuse = [&](DrawOrder) -> Result<void> {

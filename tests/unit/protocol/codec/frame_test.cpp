@@ -11,7 +11,7 @@ namespace {
 
 const FrameReader::OnMessage kIgnore = [](FrameClass, ByteView) -> Result<void> { return {}; };
 
-/// Error of a server's stream given in hex; nothing if it is taken.
+/// Returns the error of a server's stream given in hex, or nullopt if it is accepted.
 std::optional<Error> error_of(std::string_view hex, Sender sender = Sender::server) {
   FrameReader reader(sender);
   const auto fed = reader.feed(from_hex(hex), kIgnore);
@@ -46,7 +46,7 @@ TEST_CASE("a frame with a bad header is refused, and the error names where it be
       {"01000000 00 00 0100 01000000", ErrorCode::bad_value},  // reserved
       {"01000000 00 00 0080 01000000", ErrorCode::bad_value},
       {"01000000 00 00 0000 00000000", ErrorCode::broken_invariant},  // counter: repeated
-      {"01000000 00 00 0000 02000000", ErrorCode::broken_invariant},  // counter: one lost
+      {"01000000 00 00 0000 02000000", ErrorCode::broken_invariant},  // counter: a frame is missing
       {"01000000 00 00 0000 01000001", ErrorCode::broken_invariant},
   };
   for (const auto& c : cases) {
@@ -58,7 +58,7 @@ TEST_CASE("a frame with a bad header is refused, and the error names where it be
   }
 }
 
-TEST_CASE("clients may not send chunks, servers may", "[protocol]") {
+TEST_CASE("servers may use the class chunks, clients may not", "[protocol]") {
   CHECK(message_bytes_max(Sender::client, FrameClass::chunks) == 0);
   const std::string frame = "01000000 02 00 0000 00000000 aa";
   CHECK_FALSE(error_of(frame, Sender::server));
@@ -67,7 +67,7 @@ TEST_CASE("clients may not send chunks, servers may", "[protocol]") {
   CHECK(error->code == ErrorCode::unknown_kind);
 }
 
-TEST_CASE("a message fills the limit of its class and not one byte more", "[protocol]") {
+TEST_CASE("a message may have the size of its class limit and not one byte more", "[protocol]") {
   for (const Sender sender : {Sender::client, Sender::server}) {
     for (const FrameClass c : {FrameClass::control, FrameClass::edits, FrameClass::chunks}) {
       const std::size_t limit = message_bytes_max(sender, c);
@@ -87,7 +87,7 @@ TEST_CASE("a message fills the limit of its class and not one byte more", "[prot
   }
 }
 
-TEST_CASE("a reader that failed stays failed", "[protocol]") {
+TEST_CASE("after an error the reader returns it for every call", "[protocol]") {
   FrameReader reader(Sender::server);
   const auto first = reader.feed(from_hex("01000000 00 00 0000 05000000"), kIgnore);
   REQUIRE_FALSE(first.has_value());
@@ -117,7 +117,8 @@ TEST_CASE("an error of the handler ends the stream with that error", "[protocol]
   CHECK(calls == 1);
 }
 
-TEST_CASE("large messages are cut into fragments of 16 KiB, and the last says so", "[protocol]") {
+TEST_CASE("large messages are cut into fragments of 16 KiB, and only the last lacks the flag",
+          "[protocol]") {
   const Bytes stream = frames_of(FrameClass::chunks, 2 * kFragmentBytesMax + 1);
   REQUIRE(stream.size() == 2 * kFragmentBytesMax + 1 + 3 * kFrameHeaderBytes);
   const std::size_t second = kFragmentBytesMax + kFrameHeaderBytes;
@@ -127,7 +128,7 @@ TEST_CASE("large messages are cut into fragments of 16 KiB, and the last says so
   CHECK(stream[2 * second] == 1);  // length
 }
 
-TEST_CASE("nothing at all is a fine piece of a stream", "[protocol]") {
+TEST_CASE("an empty piece of a stream is accepted", "[protocol]") {
   FrameReader reader(Sender::client);
   CHECK(reader.feed({}, kIgnore).has_value());
   CHECK(reader.feed(frames_of(FrameClass::control, 5), kIgnore).has_value());

@@ -63,7 +63,7 @@ TEST_CASE("both sides prove who they are", "[protocol]") {
   CHECK(exchange.client_proven());
 }
 
-TEST_CASE("whatever hello or welcome says differently on the way breaks both signatures",
+TEST_CASE("a change of any field of Hello or Welcome on the way breaks both signatures",
           "[protocol]") {
   const std::vector<std::function<void(Exchange&)>> changes = {
       [](Exchange& e) { e.hello.protocol ^= 1; },
@@ -103,13 +103,13 @@ TEST_CASE("whatever hello or welcome says differently on the way breaks both sig
     changes[i](exchange);
     CHECK_FALSE(exchange.server_proven());
     CHECK_FALSE(exchange.client_proven());
-    exchange.sign_both();  // it was the change, not the check
+    exchange.sign_both();  // signed again, the changed fields verify
     CHECK(exchange.server_proven());
     CHECK(exchange.client_proven());
   }
 }
 
-TEST_CASE("another key cannot stand in for either side", "[protocol]") {
+TEST_CASE("a signature of another key is refused on both sides", "[protocol]") {
   Exchange exchange;
   exchange.welcome.server_key = keys_of(3).public_key;
   CHECK_FALSE(exchange.server_proven());
@@ -120,10 +120,10 @@ TEST_CASE("another key cannot stand in for either side", "[protocol]") {
   CHECK_FALSE(exchange.client_proven());
 }
 
-TEST_CASE("a signature made for one role is none for the other", "[protocol]") {
+TEST_CASE("a signature made for one role is invalid for the other", "[protocol]") {
   Exchange exchange;
   const Signature of_client = exchange.proof.signature;
-  // The same key on both sides: only the label tells the transcripts apart.
+  // Both sides have the same key: only the label differs.
   exchange.server = exchange.client;
   exchange.welcome.server_key = exchange.client.public_key;
   exchange.sign_both();
@@ -132,7 +132,7 @@ TEST_CASE("a signature made for one role is none for the other", "[protocol]") {
   CHECK(of_client != exchange.proof.signature);
 }
 
-TEST_CASE("a recorded handshake is worth nothing in the next one", "[protocol]") {
+TEST_CASE("a recorded signature is invalid in the next handshake", "[protocol]") {
   const Exchange recorded;
   Exchange next;
   next.hello.nonce[0] ^= 0x55;  // an honest client draws a new nonce

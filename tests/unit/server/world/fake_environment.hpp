@@ -51,6 +51,7 @@ class FakeEnvironment : public WorldEnvironment {
   std::deque<std::pair<SessionId, HistoryRequest>> history_requests;
   std::deque<HistoryLoad> history_loads;
   std::vector<std::string> lines;
+  std::vector<std::string> commands;
   std::map<SessionId, ChunkEncoding> encodings;
   std::set<SessionId> full;          // sessions whose queue is full
   std::set<SessionId> refuse_edits;  // sessions whose queue of the edits class is full

@@ -1,4 +1,4 @@
-#include "protocol/codec/held_lists.hpp"
+#include "protocol/codec/chunk_lists.hpp"
 
 #include <algorithm>
 
@@ -7,9 +7,9 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kHeldMessageOverheadMax = 128;  // of the FlatBuffers around the list
+constexpr std::size_t kMessageOverheadMax = 128;  // of the FlatBuffers around the list
 
-/// Keys one after another, each as its difference to the one before, the first to (0, 0, 0).
+/// Writes keys, each as its difference to the one before, the first to (0, 0, 0).
 class KeyWriter {
  public:
   void put(ByteWriter& out, const ChunkKey& key) {
@@ -53,14 +53,14 @@ class KeyReader {
   bool is_first_ = true;
 };
 
-void put_held(ByteWriter& out, KeyWriter& keys, const HeldChunk& chunk) {
+void put_cached_chunk(ByteWriter& out, KeyWriter& keys, const CachedChunk& chunk) {
   keys.put(out, chunk.key);
   out.varint(chunk.version.epoch);
   if (chunk.version.epoch != 0) out.varint(chunk.version.seq);
   out.u64(chunk.digest);
 }
 
-/// Calls `take` for entry after entry until the bytes end, at most `count_max` times, at least once.
+/// Calls `take` for each entry until the bytes end. Requires at least one entry; fails if there are more than `count_max`.
 template <class Entry, class Take>
 Result<std::vector<Entry>> entries_of(ByteView bytes, std::size_t count_max, Take&& take) {
   std::vector<Entry> out;
@@ -76,36 +76,36 @@ Result<std::vector<Entry>> entries_of(ByteView bytes, std::size_t count_max, Tak
 
 }  // namespace
 
-Bytes encode_held(std::span<const HeldChunk> chunks) {
-  RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kHeldChunksMax);
+Bytes encode_cached_chunks(std::span<const CachedChunk> chunks) {
+  RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kCachedChunksMax);
   Bytes bytes;
   ByteWriter out(bytes);
   KeyWriter keys;
-  for (const HeldChunk& chunk : chunks) put_held(out, keys, chunk);
+  for (const CachedChunk& chunk : chunks) put_cached_chunk(out, keys, chunk);
   return bytes;
 }
 
-std::size_t held_that_fit(std::span<const HeldChunk> chunks) {
+std::size_t cached_chunks_that_fit(std::span<const CachedChunk> chunks) {
   RUNSTONE_ASSERT(!chunks.empty());
   Bytes bytes;
   ByteWriter out(bytes);
   KeyWriter keys;
   std::size_t count = 0;
-  for (const HeldChunk& chunk : chunks.first(std::min(chunks.size(), kHeldChunksMax))) {
-    put_held(out, keys, chunk);
-    if (bytes.size() > kClientControlBytesMax - kHeldMessageOverheadMax) break;
+  for (const CachedChunk& chunk : chunks.first(std::min(chunks.size(), kCachedChunksMax))) {
+    put_cached_chunk(out, keys, chunk);
+    if (bytes.size() > kClientControlBytesMax - kMessageOverheadMax) break;
     ++count;
   }
   return count;
 }
 
-Bytes encode_same(std::span<const SameChunk> chunks) {
-  RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kSameChunksMax);
+Bytes encode_unmodified(std::span<const UnmodifiedChunk> chunks) {
+  RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kChunksNotModifiedMax);
   Bytes bytes;
   ByteWriter out(bytes);
   KeyWriter keys;
   Sequence last = 0;
-  for (const SameChunk& chunk : chunks) {
+  for (const UnmodifiedChunk& chunk : chunks) {
     keys.put(out, chunk.key);
     out.svarint(static_cast<std::int64_t>(chunk.seq) - static_cast<std::int64_t>(last));
     last = chunk.seq;
@@ -113,7 +113,7 @@ Bytes encode_same(std::span<const SameChunk> chunks) {
   return bytes;
 }
 
-Bytes encode_missing(std::span<const MissingEdit> edits, Sequence from) {
+Bytes encode_missing_edits(std::span<const MissingEdit> edits, Sequence from) {
   Bytes bytes;
   ByteWriter out(bytes);
   for (const MissingEdit& missing : edits) {
@@ -127,10 +127,10 @@ Bytes encode_missing(std::span<const MissingEdit> edits, Sequence from) {
   return bytes;
 }
 
-Result<std::vector<HeldChunk>> decode_held(ByteView bytes, std::int32_t edge) {
+Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::int32_t edge) {
   KeyReader keys(edge);
-  return entries_of<HeldChunk>(bytes, kHeldChunksMax, [&keys](ByteReader& in) {
-    HeldChunk chunk;
+  return entries_of<CachedChunk>(bytes, kCachedChunksMax, [&keys](ByteReader& in) {
+    CachedChunk chunk;
     chunk.key = keys.take(in);
     chunk.version.epoch = static_cast<Epoch>(in.varint_max(0xffff'ffff, "epoch exceeds 32 bits"));
     if (chunk.version.epoch != 0)
@@ -144,11 +144,11 @@ Result<std::vector<HeldChunk>> decode_held(ByteView bytes, std::int32_t edge) {
   });
 }
 
-Result<std::vector<SameChunk>> decode_same(ByteView bytes, std::int32_t edge) {
+Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::int32_t edge) {
   KeyReader keys(edge);
   std::int64_t last = 0;
-  return entries_of<SameChunk>(bytes, kSameChunksMax, [&](ByteReader& in) {
-    SameChunk chunk;
+  return entries_of<UnmodifiedChunk>(bytes, kChunksNotModifiedMax, [&](ByteReader& in) {
+    UnmodifiedChunk chunk;
     chunk.key = keys.take(in);
     const auto most = static_cast<std::int64_t>(kSequenceMax) - last;
     last += in.svarint_in(-last, most, "sequence is out of range");
@@ -157,7 +157,7 @@ Result<std::vector<SameChunk>> decode_same(ByteView bytes, std::int32_t edge) {
   });
 }
 
-Result<std::vector<MissingEdit>> decode_missing(ByteView bytes, Sequence from) {
+Result<std::vector<MissingEdit>> decode_missing_edits(ByteView bytes, Sequence from) {
   return entries_of<MissingEdit>(bytes, kChunkEditsMax, [&from](ByteReader& in) {
     MissingEdit missing;
     const Sequence step = in.varint_max(kSequenceMax - from, "sequence exceeds 63 bits");

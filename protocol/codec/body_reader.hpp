@@ -1,0 +1,81 @@
+// BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier cannot check. Internal to
+// the message decoder. The readers are in session_bodies.cpp, chunk_bodies.cpp and edit_bodies.cpp.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/result.hpp"
+#include "protocol/codec/messages.hpp"
+#include "protocol/codec/wire_fields.hpp"
+#include "protocol/schema/runstone_generated.h"
+
+namespace runstone {
+
+inline Unexpected<Error> bad(const char* what) { return fail(ErrorCode::bad_value, what); }
+
+/// Returns true if a reader can subtract this time from another one without an overflow.
+inline bool is_time(TimeUs t) { return t >= -kWireTimeUsMax && t <= kWireTimeUsMax; }
+
+/// Returns the message in these bytes, which must be 8-aligned. Fails if they exceed the limit of the class, do not
+/// verify, or hold a kind of message that this build does not know or that the sender may not send in this class.
+Result<const wire::Message*> open_message(Sender sender, FrameClass frame_class, ByteView bytes);
+
+struct BodyReader {
+  std::int32_t chunk_edge;    // 0 before Welcome
+  std::size_t message_bytes;  // bounds the total size of lists that tables share
+
+  // ---- session_bodies.cpp
+  Result<Message> read(const wire::Hello& t) const;
+  Result<Message> read(const wire::Welcome& t) const;
+  Result<Message> read(const wire::ClientAuth& t) const;
+  Result<Message> read(const wire::SessionAccepted& t) const;
+  Result<Message> read(const wire::Ping& t) const;
+  Result<Message> read(const wire::Pong& t) const;
+  Result<Message> read(const wire::Goodbye& t) const;
+  Result<Message> read(const wire::Move& t) const;
+  Result<Message> read(const wire::PlayerPoses& t) const;
+  Result<Message> read(const wire::PlayerList& t) const;
+  Result<Message> read(const wire::CommandRequest& t) const;
+  Result<Message> read(const wire::CommandOutput& t) const;
+  Result<Message> read(const wire::ReceiveAck& t) const;
+
+  // ---- chunk_bodies.cpp
+  Result<Message> read(const wire::View& t) const;
+  Result<Message> read(const wire::ChunkRequest& t) const;
+  Result<Message> read(const wire::CachedChunks& t) const;
+  Result<Message> read(const wire::Chunk& t) const;
+  Result<Message> read(const wire::UniformChunks& t) const;
+  Result<Message> read(const wire::ChunksNotModified& t) const;
+  Result<Message> read(const wire::ChunkEdits& t) const;
+  Result<Message> read(const wire::ChunkUnavailable& t) const;
+  Result<Message> read(const wire::HistoryRequest& t) const;
+  Result<Message> read(const wire::HistoryState& t) const;
+  Result<Message> read(const wire::DigestCheck& t) const;
+
+  // ---- edit_bodies.cpp
+  Result<Message> read(const wire::EditRequest& t) const;
+  Result<Message> read(const wire::Commit& t) const;
+  Result<Message> read(const wire::Reject& t) const;
+  Result<Message> read(const wire::Durable& t) const;
+
+  using TakeEdit = std::function<Result<void>(Sequence)>;
+  /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then calls `take` with its
+  /// sequence. `take` may move from both. Before Welcome, `touched` stays empty and `previous` is not compared with it.
+  Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit,
+                          std::vector<ChunkCoord>& touched, const TakeEdit& take) const;
+
+  /// Returns the chunk edge that bounds keys: before Welcome, the largest one allows the fewest coordinates.
+  std::int32_t key_edge() const {
+    return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax);
+  }
+
+ private:
+  Result<void> read_edit(const wire::OrderedEdit& e, Sequence seq, OrderedEdit& out) const;
+  Result<void> read_previous(ByteView bytes, Sequence seq, OrderedEdit& out,
+                             std::vector<ChunkCoord>& touched) const;
+};
+
+}  // namespace runstone

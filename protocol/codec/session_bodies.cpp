@@ -1,0 +1,181 @@
+#include <utility>
+
+#include "protocol/codec/body_reader.hpp"
+
+namespace runstone {
+namespace {
+
+using MaterialRows = flatbuffers::Vector<flatbuffers::Offset<wire::MaterialRow>>;
+
+bool take_row(const wire::MaterialRow& row, MaterialInfo& info) {
+  if (!take_text(row.name(), 1, kMaterialNameBytesMax, info.name)) return false;
+  for (unsigned c = 0; c < 4; ++c)
+    info.colour[c] = static_cast<std::uint8_t>(row.rgba() >> (8 * c));
+  if (row.visibility() > static_cast<std::uint8_t>(Visibility::transparent)) return false;
+  info.visibility = static_cast<Visibility>(row.visibility());
+  return true;
+}
+
+Result<void> take_materials(const MaterialRows* rows, MaterialTable& table) {
+  const auto count = count_of(rows, kMaterialCountMax);
+  if (!count || *count == 0) return bad("welcome.materials has not 1 .. 65536 rows");
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    MaterialInfo info;
+    if (!take_row(*rows->Get(i), info)) return bad("bad row in welcome.materials");
+    if (i == 0) {
+      if (info != table[kEmpty]) return bad("row 0 of welcome.materials is not air");
+    } else if (const auto id = table.add(std::move(info)); !id) {
+      return Unexpected<Error>{id.error()};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Message> BodyReader::read(const wire::Hello& t) const {
+  Hello m;
+  m.protocol = t.protocol();
+  if (m.protocol != kProtocolVersion) return m;
+  m.instance = t.instance();
+  m.encodings = t.encodings();
+  m.features = t.features();
+  if (!take_exact(t.key(), m.key)) return bad("hello.key is not 32 bytes");
+  if (!take_exact(t.nonce(), m.nonce)) return bad("hello.nonce is not 32 bytes");
+  if (!take_text(t.name(), 1, kPlayerNameBytesMax, m.name))
+    return bad("hello.name is not 1 .. 32 bytes of text");
+  // Unknown bits are accepted: they stand for encodings of later versions.
+  if ((m.encodings & kEncodingsKnown) == 0) return bad("hello.encodings names none that is known");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::Welcome& t) const {
+  Welcome m;
+  m.protocol = t.protocol();
+  if (m.protocol != kProtocolVersion) return m;
+  m.epoch = t.epoch();
+  m.durable = t.durable();
+  m.head = t.head();
+  m.chunk_edge = t.chunk_edge();
+  m.heights = {t.y_min(), t.y_max()};
+  m.encoding = static_cast<ChunkEncoding>(t.encoding());
+  m.edit_volume_max = t.edit_volume_max();
+  m.view_radius_max = t.view_radius_max();
+  m.features = t.features();
+  if (!take_exact(t.world_id(), m.world_id)) return bad("welcome.world_id is not 16 bytes");
+  if (!take_exact(t.server_key(), m.server_key)) return bad("welcome.server_key is not 32 bytes");
+  if (!take_exact(t.challenge(), m.challenge)) return bad("welcome.challenge is not 32 bytes");
+  if (!take_exact(t.signature(), m.signature)) return bad("welcome.signature is not 64 bytes");
+  if (!take_position(t.spawn(), m.spawn)) return bad("welcome.spawn is outside the world");
+  if (m.epoch == 0) return bad("welcome.epoch is 0");
+  if (m.durable > m.head) return bad("welcome.durable is ahead of welcome.head");
+  const bool edge_known =
+      m.chunk_edge == 16 || m.chunk_edge == 32 || m.chunk_edge == 64 || m.chunk_edge == 128;
+  if (!edge_known) return bad("welcome.chunk_edge is not 16, 32, 64 or 128");
+  if (!validate(m.heights)) return bad("welcome.y_min .. y_max");
+  if (!encoding_known(t.encoding())) return bad("welcome.encoding is unknown");
+  if (m.view_radius_max > kViewRadiusMax) return bad("welcome.view_radius_max exceeds 64");
+  if (const auto ok = take_materials(t.materials(), m.materials); !ok)
+    return Unexpected<Error>{ok.error()};
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::ClientAuth& t) const {
+  ClientAuth m;
+  if (!take_exact(t.signature(), m.signature)) return bad("client_auth.signature is not 64 bytes");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::SessionAccepted& t) const {
+  return SessionAccepted{t.author(), t.resolved()};
+}
+
+Result<Message> BodyReader::read(const wire::Ping& t) const {
+  if (!is_time(t.sent_us())) return bad("ping time is out of range");
+  return Ping{t.sent_us()};
+}
+
+Result<Message> BodyReader::read(const wire::Pong& t) const {
+  if (!is_time(t.sent_us()) || !is_time(t.server_us())) return bad("pong time is out of range");
+  return Pong{t.sent_us(), t.server_us()};
+}
+
+Result<Message> BodyReader::read(const wire::Goodbye& t) const {
+  Goodbye m;
+  if (t.reason() == 0 || t.reason() > kGoodbyeReasonMax) return bad("goodbye reason is unknown");
+  m.reason = static_cast<GoodbyeReason>(t.reason());
+  if (!take_text(t.text(), 0, kTextBytesMax, m.text))
+    return bad("goodbye text is not 0 .. 256 bytes of text");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::Move& t) const {
+  Move m;
+  if (!take_pose(t.pose(), m.pose)) return bad("pose is missing or outside the world");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::PlayerPoses& t) const {
+  const auto count = count_of(t.players(), kPlayersMax);
+  if (!count) return bad("too many poses");
+  PlayerPoses m;
+  m.players.resize(*count);
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    const wire::PlayerPose& p = *t.players()->Get(i);
+    m.players[i].author = p.author();
+    if (!take_pose(p.pose(), m.players[i].pose)) return bad("pose is missing or outside the world");
+  }
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::PlayerList& t) const {
+  const auto count = count_of(t.players(), kPlayersMax);
+  if (!count) return bad("too many players");
+  PlayerList m;
+  m.players.resize(*count);
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    const wire::PlayerName& p = *t.players()->Get(i);
+    m.players[i].author = p.author();
+    if (!take_text(p.name(), 1, kPlayerNameBytesMax, m.players[i].name)) {
+      return bad("player name is not 1 .. 32 bytes of text");
+    }
+  }
+  m.is_change = t.change();
+  const auto gone =
+      t.left() == nullptr ? std::optional<std::uint32_t>(0) : count_of(t.left(), kPlayersMax);
+  if (!gone || (*gone != 0 && !m.is_change))
+    return bad("a complete player list names players that left, or a change too many");
+  if (*gone != 0) m.left.assign(t.left()->begin(), t.left()->end());
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::CommandRequest& t) const {
+  CommandRequest m;
+  m.id = t.id();
+  if (!take_text(t.text(), 1, kCommandBytesMax, m.text))
+    return bad("command is not 1 .. 1024 bytes of text");
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::CommandOutput& t) const {
+  CommandOutput m;
+  m.id = t.id();
+  m.is_done = t.done();
+  m.is_ok = t.ok();
+  const auto count = count_of(t.lines(), kCommandLinesMax);
+  if (!count) return bad("command output has more than 64 lines");
+  m.lines.resize(*count);
+  for (std::uint32_t i = 0; i < *count; ++i) {
+    if (!take_text(t.lines()->Get(i), 0, kCommandLineBytesMax, m.lines[i])) {
+      return bad("line of command output is not 0 .. 1024 bytes of text");
+    }
+  }
+  return m;
+}
+
+Result<Message> BodyReader::read(const wire::ReceiveAck& t) const {
+  if (t.chunk_bytes() == 0) return bad("receive ack counts no bytes");
+  return ReceiveAck{t.chunk_bytes()};
+}
+
+}  // namespace runstone
