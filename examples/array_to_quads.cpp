@@ -33,6 +33,6 @@ int main() {
   std::printf("%zu runs, %zu opaque quads, %zu transparent quads\n", chunk.runs.size(),
               mesh.opaque.quads.size(), mesh.transparent.quads.size());
   const QuadFields first = unpack(mesh.opaque.quads.front());
-  std::printf("first quad: corner %d %d %d, %d x %d faces of material %d\n", first.x, first.y, first.z,
-              first.width, first.height, first.material);
+  std::printf("first quad: corner %d %d %d, %d x %d faces of material %d\n", first.x, first.y,
+              first.z, first.width, first.height, first.material);
 }

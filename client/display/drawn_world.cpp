@@ -19,7 +19,8 @@ DrawnWorld::DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& m
                        unsigned workers)
     : screen_(screen),
       edge_(edge),
-      pool_(VisibilityTable(visibilities(materials)), workers, steady_now_ns, [this] { results_.release(); }) {
+      pool_(VisibilityTable(visibilities(materials)), workers, steady_now_ns,
+            [this] { results_.release(); }) {
   screen_.set_materials(materials);
 }
 

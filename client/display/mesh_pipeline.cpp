@@ -24,7 +24,8 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
   if (draw_thread_) draw_thread_->set_materials(materials_);
   planner_.forget_meshes();
   pool_.reset();
-  pool_ = std::make_unique<MeshPool>(VisibilityTable(visibilities(materials_)), workers_, steady_now_ns, wake_);
+  pool_ = std::make_unique<MeshPool>(VisibilityTable(visibilities(materials_)), workers_,
+                                     steady_now_ns, wake_);
 }
 
 void MeshPipeline::take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us) {

@@ -8,8 +8,8 @@
 namespace runstone {
 namespace {
 
-/// Reads one block line after line. A target chunk in the block's own axis order visits each block's lines in
-/// ascending index, so the cursor only ever moves forward.
+/// Reads one block line after line. A target chunk in the block's own axis order visits the lines
+/// of each block in ascending index, so the cursor only moves forward.
 class BlockCursor {
  public:
   explicit BlockCursor(const RunChunk* block) : block_(block) {}
@@ -54,7 +54,8 @@ RunChunk assemble_chunk(std::int32_t edge, ChunkCoord at, const BlockLookup& loo
   const std::int32_t side = edge / kLuantiBlockEdge;  // in blocks
   std::vector<BlockCursor> blocks;                    // x fastest, then y, then z
   blocks.reserve(static_cast<std::size_t>(side * side * side));
-  bool uniform = true;  // sky and deep rock are most of a world
+  // Most blocks of a world are uniform: sky and deep rock.
+  bool uniform = true;
   Material only = kEmpty;
   for (std::int32_t z = 0; z < side; ++z) {
     for (std::int32_t y = 0; y < side; ++y) {

@@ -1,5 +1,5 @@
-// Putting 16^3 blocks of a foreign world together to world chunks, runs to runs: no voxel buffer, only a
-// cursor per block.
+// Assembles 16^3 blocks of another program's world into world chunks, from runs to runs. There is
+// no voxel buffer, only one cursor per block.
 #pragma once
 #include <functional>
 #include <span>
@@ -11,16 +11,18 @@
 
 namespace runstone {
 
-/// The same runs with every material i replaced by to[i]; what became equal merges. Requires every material
-/// of the chunk below to.size(). O(runs).
+/// Returns the same runs with every material i replaced by to[i]. Runs that became equal merge.
+/// Requires every material of the chunk below to.size(). Cost: O(runs).
 RunChunk with_materials(const RunChunk& chunk, std::span<const Material> to);
 
-/// A 16^3 block of the foreign world in AxisOrder::xyz with the world's own material ids, or null where there
-/// is none (it becomes empty). The pointer must stay valid until assemble_chunk() returns.
+/// Returns a 16^3 block of the other world in AxisOrder::xyz with that world's material ids, or
+/// null where there is none (it becomes empty). The pointer must stay valid until assemble_chunk()
+/// returns.
 using BlockLookup = std::function<const RunChunk*(ChunkCoord block)>;
 
-/// The world chunk of edge 16, 32, 64 or 128 at `at` in the grid of chunks of that edge, in AxisOrder::xyz.
-/// Calls `lookup` once for each of its (edge / 16)^3 blocks. O(lines of the blocks + runs).
+/// Returns the world chunk of edge 16, 32, 64 or 128 at `at` in the grid of chunks of that edge, in
+/// AxisOrder::xyz. Calls `lookup` once for each of its (edge / 16)^3 blocks. Cost: O(lines of the
+/// blocks + runs).
 RunChunk assemble_chunk(std::int32_t edge, ChunkCoord at, const BlockLookup& lookup);
 
 }  // namespace runstone

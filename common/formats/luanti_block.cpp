@@ -14,14 +14,15 @@ namespace {
 constexpr std::uint8_t kVersion = 29;
 constexpr std::uint32_t kNodeCount = kLuantiBlockEdge * kLuantiBlockEdge * kLuantiBlockEdge;
 constexpr std::size_t kNodeIdBytes = 2, kNodeParamBytes = 2;
-// A longer name table than nodes cannot be used up, and i + 1 must fit a material id.
+// A block cannot use more names than it has nodes, and i + 1 must fit a material id.
 constexpr std::size_t kNameCountMax = kNodeCount;
 
 struct StreamDeleter {
   void operator()(ZSTD_DStream* stream) const { ZSTD_freeDStream(stream); }
 };
 
-/// One zstd frame, whole and alone. The streaming calls are needed: Luanti writes no content size.
+/// Decompresses exactly one zstd frame. The streaming calls are needed, because Luanti writes no
+/// content size.
 Result<Bytes> decompress(ByteView in) {
   const std::unique_ptr<ZSTD_DStream, StreamDeleter> stream(ZSTD_createDStream());
   RUNSTONE_ASSERT(stream != nullptr);
@@ -31,7 +32,7 @@ Result<Bytes> decompress(ByteView in) {
   while (true) {
     ZSTD_outBuffer target{out.data(), out.size(), filled};
     const std::size_t status = ZSTD_decompressStream(stream.get(), &target, &source);
-    const std::uint64_t offset = source.pos + 1;  // the version byte stands before the stream
+    const std::uint64_t offset = source.pos + 1;  // the version byte precedes the stream
     if (ZSTD_isError(status) != 0) {
       return fail(ErrorCode::bad_value, "luanti block: not a zstd stream, or a damaged one",
                   offset);
@@ -45,7 +46,7 @@ Result<Bytes> decompress(ByteView in) {
       return out;
     }
     if (filled < out.size()) {
-      // Room was left, so the stream wants input, and all of it was offered.
+      // Room was left, so the stream needs more input, but all of it was consumed.
       return fail(ErrorCode::truncated, "luanti block: the zstd stream ends early", offset);
     }
     if (out.size() == kLuantiBlockBytesMax) {
@@ -56,7 +57,7 @@ Result<Bytes> decompress(ByteView in) {
   }
 }
 
-/// Big-endian reads over the common reader.
+/// Big-endian reads with the common reader.
 class BigEndian {
  public:
   explicit BigEndian(ByteReader& in) : in_(in) {}
@@ -69,12 +70,12 @@ class BigEndian {
   ByteReader& in_;
 };
 
-/// The block's name table: what a foreign id means here. Ids are few and small in practice, but any u16 may
-/// come.
+/// The block's name table, which maps its node ids to materials. Ids are few and small in practice,
+/// but any u16 may occur.
 struct NameTable {
   std::vector<std::string> names;
-  std::vector<std::pair<std::uint16_t, Material>>
-      of_id;  // foreign id and our material, sorted by id
+  // Node id and material, sorted by id.
+  std::vector<std::pair<std::uint16_t, Material>> of_id;
 
   std::optional<Material> find(std::uint16_t id) const {
     const auto at = std::lower_bound(of_id.begin(), of_id.end(), std::pair{id, Material{0}});
@@ -116,8 +117,8 @@ std::int32_t low_12_bits_signed(std::int64_t v) {
 
 ChunkCoord luanti_block_coord(std::int64_t pos) {
   ChunkCoord out;
-  // Each shift is exact: the low 12 bits were just taken off. Unsigned, for a hostile pos near the ends of
-  // i64.
+  // Each shift is exact, because the low 12 bits were just subtracted. The arithmetic is unsigned,
+  // for a hostile pos near the ends of i64.
   auto rest = static_cast<std::uint64_t>(pos);
   out.x = low_12_bits_signed(static_cast<std::int64_t>(rest));
   rest = static_cast<std::uint64_t>(
@@ -147,15 +148,15 @@ Result<LuantiBlock> decode_luanti_block(ByteView data) {
     in.reject(ErrorCode::bad_value, "luanti block: node ids are not of 2 bytes");
   if (in.u8() != kNodeParamBytes)
     in.reject(ErrorCode::bad_value, "luanti block: parameters are not of 2 bytes");
-  // This plane is the foreign program's own dense form: it is read where it was decompressed, node by node
-  // into runs, and no dense buffer of ours is made.
+  // This plane is the other program's dense form. It is read node by node into runs, from the place
+  // where it was decompressed, so no dense buffer of this project is made.
   const std::uint64_t plane_at = in.offset();
   const ByteView plane = in.bytes(kNodeCount * kNodeIdBytes);
   in.bytes(kNodeCount * kNodeParamBytes);
   if (!in.ok()) return Unexpected<Error>{in.error()};
 
   RunBuilder runs(Extent::cube(kLuantiBlockEdge), AxisOrder::xyz);
-  std::uint32_t first = 0;  // node at which the open stretch of one id began
+  std::uint32_t first = 0;  // node at which the current stretch of one id began
   const auto id_at = [&](std::uint32_t node) {
     return static_cast<std::uint16_t>(plane[2 * node] << 8 | plane[2 * node + 1]);
   };

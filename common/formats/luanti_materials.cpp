@@ -1,5 +1,6 @@
-// Colours of another program's nodes. Names of minetest_game that occur in generated worlds were picked by
-// hand; the rest goes by the words in its name. Nothing here is that game's art: a node is one flat colour.
+// Colours of another program's nodes. Names of minetest_game that occur in generated worlds were
+// chosen by hand; other names get a colour from the words in them. No art of that game is used: a
+// node is one flat colour.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -14,7 +15,7 @@ namespace {
 enum class Kind : std::uint8_t {
   solid,  // a whole cube
   clear,  // liquids and glass
-  thin,   // plants, torches, rails: no cube, so not there unless asked for
+  thin,   // plants, torches, rails: no cube, so empty unless requested
 };
 
 struct Look {
@@ -87,7 +88,7 @@ constexpr Look kNodes[] = {
     {"default:pine_bush_needles", 0x2f5f42},
     {"default:blueberry_bush_leaves", 0x3b7340},
     {"default:blueberry_bush_leaves_with_berries", 0x42647e},
-    // Drawn thin by the game, but a bush would float without it.
+    // The game draws it thin, but a bush would float without it.
     {"default:bush_stem", 0x6d5030},
     {"default:acacia_bush_stem", 0x7d6048},
     {"default:pine_bush_stem", 0x57432e},
@@ -129,7 +130,8 @@ constexpr Look kNodes[] = {
     {"butterflies:butterfly_violet", 0x8d5cb8, Kind::thin},
 };
 
-/// For names not above: the first word found decides, so the particular stand before the general.
+/// For names not listed above. The first word found decides, so specific words precede general
+/// ones.
 constexpr Look kWords[] = {
     {"torch", 0xffd27a, Kind::thin},
     {"lantern", 0xffe2a0},
@@ -201,9 +203,10 @@ constexpr Look kWords[] = {
     {"trunk", 0x6a4f31},
 };
 
-constexpr std::uint8_t kThinAlpha = 176;  // of thin nodes that are kept: a cube one can see past
+// Of thin nodes that are kept: a cube that one can see through.
+constexpr std::uint8_t kThinAlpha = 176;
 
-/// FNV-1a, then mixed: the same number everywhere, for every name.
+/// FNV-1a, then mixed: the same number for a name on every platform.
 std::uint64_t hash_of(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
@@ -216,7 +219,7 @@ const Look* exact(std::string_view name) {
   return found == std::end(kNodes) ? nullptr : found;
 }
 
-/// "stairs:stair_inner_cobble" and its like look as what they are made of.
+/// Returns the name of the material that "stairs:stair_inner_cobble" and similar nodes are made of.
 std::optional<std::string> made_of(std::string_view name) {
   for (const std::string_view prefix :
        {"stairs:stair_inner_", "stairs:stair_outer_", "stairs:stair_", "stairs:slab_", "walls:"}) {
@@ -225,7 +228,7 @@ std::optional<std::string> made_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// A pale to middling colour from the hash alone, for names that say nothing.
+/// Returns a pale to medium colour from the hash alone, for names without a known word.
 std::uint32_t colour_of_hash(std::uint64_t hash) {
   std::uint32_t rgb = 0;
   for (int channel = 0; channel < 3; ++channel) {
@@ -242,7 +245,7 @@ Look look_of(std::string_view name) {
   const std::uint64_t hash = hash_of(name);
   for (const Look& word : kWords) {
     if (name.find(word.name) == std::string_view::npos) continue;
-    // A shade of its own, so that neighbours of one kind can be told apart.
+    // The shade depends on the name, so that different nodes of one kind can be distinguished.
     Look look = word;
     look.rgb = 0;
     for (int shift = 16; shift >= 0; shift -= 8) {
@@ -255,7 +258,7 @@ Look look_of(std::string_view name) {
   return {name, colour_of_hash(hash), Kind::solid, 255};
 }
 
-/// A material name out of any bytes. What had to be changed carries the hash of the original.
+/// Returns a material name made of any bytes. A changed name carries the hash of the original.
 std::string material_name(std::string_view name) {
   const bool printable =
       std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });

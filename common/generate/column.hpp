@@ -1,5 +1,5 @@
-// Column: the materials of one vertical line of the world, painted interval by interval; later paint wins.
-// A handful of spans, never a voxel buffer.
+// Column: the materials of one vertical line of the world, painted interval by interval; later
+// paint wins. It holds a few spans, never a voxel buffer.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace runstone {
 class Column {
  public:
   struct Span {
-    std::int32_t end;  // one past; the span begins where the one before it ends
+    std::int32_t end;  // one past; the span begins where the previous one ends
     Material material;
   };
 
@@ -24,7 +24,7 @@ class Column {
     spans_.assign(1, {y_max, kEmpty});
   }
 
-  /// Sets [from, to), clipped to the bounds, to `material`. O(spans).
+  /// Sets [from, to), clipped to the bounds, to `material`. Cost: O(spans).
   void paint(std::int32_t from, std::int32_t to, Material material) {
     from = std::max(from, y_min_);
     to = std::min(to, spans_.back().end);
@@ -45,7 +45,7 @@ class Column {
     spans_.swap(next_);
   }
 
-  /// Sets what is empty in [y_min, to) to `material`.
+  /// Sets the empty voxels of [y_min, to) to `material`.
   void flood(std::int32_t to, Material material) {
     // Most columns of a landscape have no empty voxel below the sea.
     std::int32_t begin = y_min_;
@@ -66,7 +66,7 @@ class Column {
     spans_.swap(next_);
   }
 
-  /// Highest non-empty voxel + 1, or y_min if there is none.
+  /// Returns the highest non-empty voxel + 1, or y_min if there is none.
   std::int32_t top() const {
     for (std::size_t i = spans_.size(); i-- > 0;) {
       if (spans_[i].material != kEmpty) return spans_[i].end;
@@ -74,7 +74,7 @@ class Column {
     return y_min_;
   }
 
-  /// Material at height y; empty out of bounds. O(spans).
+  /// Returns the material at height y, or kEmpty out of bounds. Cost: O(spans).
   Material at(std::int32_t y) const {
     if (y < y_min_) return kEmpty;
     for (const Span& span : spans_) {
@@ -83,7 +83,7 @@ class Column {
     return kEmpty;
   }
 
-  /// Appends the `count` voxels from y = `from` upwards; what is out of bounds is empty.
+  /// Appends the `count` voxels from y = `from` upwards. Voxels out of bounds are empty.
   void emit(std::int32_t from, std::uint32_t count, RunBuilder& out) const {
     const std::int32_t to = from + static_cast<std::int32_t>(count);
     std::int32_t at = from;
@@ -99,7 +99,8 @@ class Column {
   }
 
  private:
-  /// paint() from the lowest voxel, as nearly every layer of terrain does: what it covers goes, in place.
+  /// Does paint() from the lowest voxel, as nearly every layer of terrain does: removes the covered
+  /// spans in place.
   void paint_bottom(std::int32_t to, Material material) {
     std::size_t covered = 0;  // spans that end at or below `to`
     while (covered < spans_.size() && spans_[covered].end <= to) ++covered;
@@ -113,7 +114,7 @@ class Column {
     }
   }
 
-  /// Appends to the list in the making; empty spans vanish and equal neighbours merge.
+  /// Appends to the new list. Empty spans vanish and equal neighbours merge.
   void push(std::int32_t end, Material material) {
     if (!next_.empty() && end <= next_.back().end) return;
     if (next_.empty() && end <= y_min_) return;

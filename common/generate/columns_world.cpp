@@ -10,7 +10,7 @@ namespace {
 constexpr std::int32_t kSidesMax = 1024;
 constexpr std::int32_t kHeightLimit = 4096;
 
-/// Reads one line; `good` is false from the first thing that does not belong.
+/// Reads one line. `good` is false from the first character that does not belong to it.
 struct LineReader {
   std::string_view left;
   bool good = true;
@@ -100,8 +100,8 @@ Result<std::unique_ptr<ColumnsWorld>> ColumnsWorld::parse(std::string_view csv) 
   world->width_ = static_cast<std::int32_t>(width);
   world->depth_ = static_cast<std::int32_t>(depth);
   world->y_max_ = y_max;
-  // In this order a full rectangle is exactly the sequence of its places: a gap or a double shows as a
-  // mismatch.
+  // In this order a full rectangle is exactly the sequence of its places. A gap or a duplicate
+  // shows as a mismatch.
   bool full = width > 0 && read.size() == static_cast<std::size_t>(width * depth);
   for (std::size_t i = 0; full && i < read.size(); ++i) {
     const auto place = static_cast<std::int32_t>(i);

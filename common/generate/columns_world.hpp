@@ -1,8 +1,9 @@
-// ColumnsWorld: a small world written out as columns of runs; outside of it everything is empty. It carries
-// the thesis' noise scenario (number 5) voxel by voxel, which no generator of ours makes: its noise is
-// another's. The text, as the thesis data has it, is a header line and then one line per column:
-//   x,y,runs            x,y: the thesis' horizontal axes, our x and z
-//   -32,-32,3:41|0:44|-1:11   runs id:length upwards from the thesis' z = -32, our y; ids are ours - 1
+// ColumnsWorld: a small world written out as columns of runs; outside of it everything is empty. It
+// holds the voxels of the thesis' noise scenario (number 5), whose noise no generator of this
+// project makes. The text, as in the thesis data, is a header line and then one line per column:
+//   x,y,runs                  x, y: the thesis' horizontal axes, here x and z
+//   -32,-32,3:41|0:44|-1:11   runs id:length upwards from the thesis' z = -32, here y; ids are
+//                             one less than here
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,8 +20,8 @@ class ColumnsWorld final : public Generator {
   static constexpr std::int32_t kBottom = -32;  // y of every column's first voxel
 
   /// Reads the text. The columns must fill a rectangle and end at one height. Fails with bad_value,
-  /// bad_version (another header), truncated or limit_exceeded (above 1024 columns a side or 4096 voxels a
-  /// column); the offset is the line.
+  /// bad_version (another header), truncated or limit_exceeded (above 1024 columns a side or 4096
+  /// voxels a column). The offset is the line.
   static Result<std::unique_ptr<ColumnsWorld>> parse(std::string_view csv);
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;
@@ -28,7 +29,7 @@ class ColumnsWorld final : public Generator {
   std::int32_t y_max() const override { return y_max_; }
   std::int32_t surface_y(std::int32_t x, std::int32_t z) const override;
 
-  /// The voxels that were written out.
+  /// Returns the box of the voxels in the text.
   VoxelBox bounds() const { return {{x_, kBottom, z_}, {x_ + width_, y_max_, z_ + depth_}}; }
 
  private:

@@ -18,7 +18,7 @@ Result<std::unique_ptr<Generator>> FlatGenerator::make(const FlatParameters& par
     out->column_.paint(out->y_min_, out->y_max_, *ground);
     out->column_.paint(out->y_max_ - 1 - parameters.filling_depth, out->y_max_, *filling);
     out->column_.paint(out->y_max_ - 1, out->y_max_, *surface);
-    // A layer of air on top is allowed; the bounds must not promise voxels that are not there.
+    // A layer of air on top is allowed. The bounds must not include it.
     out->y_max_ = out->column_.top();
   }
   return std::unique_ptr<Generator>(std::move(out));
@@ -30,7 +30,7 @@ std::unique_ptr<Generator> FlatGenerator::make_empty() {
 
 RunChunk FlatGenerator::generate(VoxelPos origin, Extent extent) const {
   if (origin.y + extent.y <= y_min_ || origin.y >= y_max_) return uniform_chunk(extent, kEmpty);
-  // y slowest: one append per layer at most, and as few runs as there can be.
+  // y is slowest: at most one append per layer, and the fewest runs.
   RunBuilder out(extent, AxisOrder::xzy);
   const std::uint32_t layer = std::uint32_t{extent.x} * extent.z;
   for (std::int32_t y = 0; y < extent.y; ++y) out.append(layer, column_.at(origin.y + y));

@@ -1,4 +1,4 @@
-// FlatGenerator: the same few layers everywhere, and nothing at all as its smallest case. For building on.
+// FlatGenerator: the same few layers everywhere, or no layer at all. For building on.
 #pragma once
 #include "common/generate/column.hpp"
 #include "common/generate/generator.hpp"
@@ -11,7 +11,7 @@ class FlatGenerator final : public Generator {
   /// Fails with not_found if a parameter names no material of the table.
   static Result<std::unique_ptr<Generator>> make(const FlatParameters& parameters,
                                                  const MaterialTable& materials);
-  /// The generator of "empty".
+  /// Makes the generator "empty".
   static std::unique_ptr<Generator> make_empty();
 
   RunChunk generate(VoxelPos origin, Extent extent) const override;

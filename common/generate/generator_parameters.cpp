@@ -1,4 +1,4 @@
-// The only file of this module that sees a TOML library.
+// The only file of this module that includes a TOML library.
 #include "common/generate/generator_parameters.hpp"
 
 #include <toml++/toml.h>
@@ -9,8 +9,8 @@
 namespace runstone {
 namespace {
 
-/// Both directions walk the same list of fields, so that they cannot come apart: visit(field) is called with
-/// key, value, default and range for each field in canonical order.
+/// Reader and writer use the same list of fields, so that they agree. Calls visit(field) with key,
+/// value, default and range for each field in canonical order.
 template <class P, class Visit>
 void each_field(P& p, const FlatParameters& d, Visit&& visit) {
   visit("height", p.height, d.height, kHeightMin, kHeightMax);

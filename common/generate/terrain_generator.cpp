@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::int32_t kCoverDepth = 3;  // voxels of beach and rock
 
-/// First integer not below `value`. By hand: the rounding functions of a maths library cost a call each.
+/// Returns the first integer not below `value`. The rounding functions of a maths library would
+/// cost a call each.
 std::int32_t ceiling(double value) {
   auto out = static_cast<std::int32_t>(value);
   out += static_cast<std::int32_t>(static_cast<double>(out) < value);
@@ -65,7 +66,8 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
     if (rule->reversed) layer.reversed = surface(*rule->reversed);
     const double reach = std::fabs(rule->surface.elevation);
     y_max = std::max(y_max, ceiling(rule->surface.distance + reach) + 1);
-    // The last layer wins everywhere below its lowest surface, unless a cover or a reversed surface cuts in.
+    // The last layer fills everything below its lowest surface, unless a cover or a reversed
+    // surface replaces it.
     out->solid_below_ =
         rule->reversed ? kHeightMin : ceiling(rule->surface.distance - reach) - 1 - kCoverDepth;
     out->layers_.push_back(layer);
@@ -78,13 +80,14 @@ Result<std::unique_ptr<Generator>> TerrainGenerator::make(std::uint64_t seed,
   return std::unique_ptr<Generator>(std::move(out));
 }
 
-/// `height(surface, index)` is the surface's height in this column; index counts the surfaces in layer order.
+/// `height(surface, index)` returns the surface's height in this column. `index` counts the
+/// surfaces in layer order.
 template <class Height>
 void TerrainGenerator::paint_column(Column& column, Height&& height) const {
   column.reset(y_min_, y_max_);
   std::size_t index = 0;
   for (const Layer& layer : layers_) {
-    // A voxel at y belongs to the layer iff reversed < y < surface, both real numbers.
+    // A voxel at y belongs to the layer if reversed < y < surface, both real numbers.
     const std::int32_t to = ceiling(height(layer.surface, index++));
     std::int32_t from = y_min_;
     if (layer.reversed) {

@@ -1,7 +1,7 @@
-// TerrainGenerator: layered noise in the manner of the thesis (7.4, 7.5). Every material with a generation
-// rule fills its columns up to its surface (and, with a reversed surface, only above that one); where rules
-// overlap, the last in the table wins. Then beaches, rock and peaks change the cover, and the sea fills what
-// is empty below it.
+// TerrainGenerator: layered noise in the manner of the thesis (7.4, 7.5). Every material with a
+// generation rule fills its columns up to its surface and, if it has a reversed surface, only above
+// that one. Where rules overlap, the last in the table wins. Then beaches, rock and peaks change
+// the cover, and the sea fills the empty voxels below its level.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,8 +18,9 @@ inline constexpr std::size_t kTerrainRuleCountMax = 64;
 
 class TerrainGenerator final : public Generator {
  public:
-  /// Fails with not_found if a parameter names no material of the table or the table has no generation rule,
-  /// with limit_exceeded above kTerrainRuleCountMax rules, with bad_value if y_min is above everything.
+  /// Fails with not_found if a parameter names no material of the table or the table has no
+  /// generation rule, with limit_exceeded above kTerrainRuleCountMax rules, and with bad_value if
+  /// y_min is above all terrain.
   static Result<std::unique_ptr<Generator>> make(std::uint64_t seed,
                                                  const TerrainParameters& parameters,
                                                  const MaterialTable& materials);
@@ -46,9 +47,9 @@ class TerrainGenerator final : public Generator {
 
   std::vector<Layer> layers_;
   std::int32_t y_min_ = 0, y_max_ = 0;
-  std::int32_t solid_below_ = 0;  // under it every voxel from y_min up is the last layer's material
+  std::int32_t solid_below_ = 0;  // below it every voxel from y_min up is the last layer's material
   std::int32_t sea_level_ = 0;
-  std::int32_t beach_below_ = 0;  // columns that end at or below get the beach cover
+  std::int32_t beach_below_ = 0;  // columns that end at or below it get the beach cover
   std::int32_t rock_level_ = 0, peak_level_ = 0;
   std::optional<Material> water_, beach_, rock_, peak_;
 };

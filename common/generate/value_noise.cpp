@@ -8,10 +8,11 @@
 namespace runstone {
 namespace {
 
-/// Cells that kSideMax columns can touch at the highest frequency, 4, and the far corner of the last one.
+/// The cells that kSideMax columns can touch at the highest frequency, 4, and the far corner of the
+/// last one.
 constexpr std::size_t kCornersMax = 4 * kSideMax + 2;
 
-/// Lattice value in [-1, 1), a multiple of 2^-23 and so exact in a double.
+/// Returns a lattice value in [-1, 1). It is a multiple of 2^-23, so it is exact in a double.
 double corner_value(std::uint64_t key, std::int64_t i, std::int64_t k) {
   const std::uint64_t cell =
       (static_cast<std::uint64_t>(i) & 0xffffffffU) | (static_cast<std::uint64_t>(k) << 32);
@@ -19,7 +20,7 @@ double corner_value(std::uint64_t key, std::int64_t i, std::int64_t k) {
   return static_cast<double>(top - (1 << 23)) * 0x1p-23;
 }
 
-/// 6t^5 - 15t^4 + 10t^3: 0 to 1 with two vanishing derivatives at both ends.
+/// 6t^5 - 15t^4 + 10t^3: from 0 to 1 with two vanishing derivatives at both ends.
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 
 /// A lattice coordinate as its cell and the fade inside it.
@@ -30,7 +31,8 @@ struct Place {
 
 Place place_of(std::int32_t voxel, double frequency, double shift) {
   const double at = static_cast<double>(voxel) * frequency + shift;
-  auto cell = static_cast<std::int64_t>(at);  // towards zero: one too high for negative fractions
+  auto cell =
+      static_cast<std::int64_t>(at);  // rounds towards zero: one too high for negative fractions
   cell -= static_cast<std::int64_t>(static_cast<double>(cell) > at);
   return {cell, fade(at - static_cast<double>(cell))};
 }
@@ -69,8 +71,8 @@ double ValueNoise::at(std::int32_t x, std::int32_t z) const {
 void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z,
                             std::uint32_t width, std::uint32_t depth, std::span<double> out) const {
   if (width == 0 || depth == 0) return;
-  std::array<std::uint32_t, kSideMax>
-      corner;  // of each column along x, from the first cell touched
+  // Corner of each column along x, counted from the first cell touched.
+  std::array<std::uint32_t, kSideMax> corner;
   std::array<double, kSideMax> fade_x;
   const std::int64_t first = place_of(x, octave.frequency, octave.shift_x).cell;
   for (std::uint32_t i = 0; i < width; ++i) {
@@ -82,8 +84,8 @@ void ValueNoise::add_octave(const Octave& octave, std::int32_t x, std::int32_t z
   const std::size_t corners = std::size_t{corner[width - 1]} + 2;
   RUNSTONE_ASSERT(corners <= kCornersMax);
 
-  // Terrain frequencies put dozens of columns into one cell: the two lattice rows around z change rarely, and
-  // the blend along z is done once per corner instead of once per column.
+  // Terrain frequencies put dozens of columns into one cell. So the two lattice rows around z
+  // change rarely, and the blend along z is done once per corner instead of once per column.
   std::array<double, kCornersMax> near_row, far_row, row;
   std::int64_t loaded = 0;
   for (std::uint32_t k = 0; k < depth; ++k) {

@@ -1,9 +1,10 @@
-// ValueNoise: fractal value noise over columns, the same bits on every compiler and machine.
-// Random values sit on an integer lattice and are blended with a quintic fade; three octaves are summed, each
-// of twice the frequency and half the weight of the one before. Doubles with + - * only (fused multiply-add
-// is off for the whole project) and an integer hash, so nothing depends on a maths library. Sources: value
-// noise as in Ebert et al., Texturing and Modeling; the fade is Perlin 2002; octaves, weights and frequencies
-// are those of the thesis' generators.
+// ValueNoise: fractal value noise over columns, with the same bits on every compiler and machine.
+// Random values sit on an integer lattice and are blended with a quintic fade. Three octaves are
+// summed, each with twice the frequency and half the weight of the previous one. It uses doubles
+// with + - * only (fused multiply-add is off for the whole project) and an integer hash, so the
+// result depends on no maths library. Sources: value noise as in Ebert et al., Texturing and
+// Modeling; the fade is Perlin 2002; octaves, weights and frequencies are those of the thesis'
+// generators.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,9 +19,9 @@ class ValueNoise {
   /// Requires 0 < frequency <= 1 (cycles per voxel, of the first octave).
   ValueNoise(std::uint64_t seed, double frequency);
 
-  /// Noise in [-1, 1] of the columns [x, x + width) x [z, z + depth); out[i + width * k] belongs to (x + i, z
-  /// + k). A column's value does not depend on the rectangle it is asked in. Requires width, depth <=
-  /// kSideMax and out.size() == width * depth. About 1 ns a column and octave at terrain frequencies.
+  /// Writes noise in [-1, 1] of the columns [x, x + width) x [z, z + depth); out[i + width * k]
+  /// belongs to (x + i, z + k). A column's value does not depend on the rectangle. Requires width,
+  /// depth <= kSideMax and out.size() == width * depth. Cost: O(width * depth).
   void fill(std::int32_t x, std::int32_t z, std::uint32_t width, std::uint32_t depth,
             std::span<double> out) const;
 
@@ -32,7 +33,8 @@ class ValueNoise {
     double frequency;
     double weight;
     double shift_x,
-        shift_z;  // lattice cells; keeps the octaves' lattices from meeting at the origin
+        // In lattice cells. The shifts keep the octaves' lattices from meeting at the origin.
+        shift_z;
   };
   void add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,
                   std::uint32_t depth, std::span<double> out) const;

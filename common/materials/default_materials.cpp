@@ -1,4 +1,4 @@
-// The built-in table. Ids are frozen: worlds store them. New materials go to the end.
+// The built-in table. Ids are frozen: worlds store them. New materials are appended.
 #include "common/core/assert.hpp"
 #include "common/materials/material_table.hpp"
 
@@ -12,7 +12,7 @@ struct PaletteRow {
 };
 
 constexpr PaletteRow kPalette[] = {
-    // Terrain; the first four carry generation rules.
+    // Terrain. The first four have generation rules.
     {"grass", 0x6a9f3dff},
     {"sand", 0xe2cf98ff},
     {"dirt", 0x7d5a3cff},
@@ -51,7 +51,7 @@ constexpr PaletteRow kPalette[] = {
     {"wool_brown", 0x6d4a2fff},
 };
 
-/// The rows of figure 7.21 in the thesis' order, which decides what overlays what.
+/// The rows of figure 7.21 in the thesis' order. The order decides which material covers which.
 std::optional<GenerationRule> thesis_rule(std::string_view name) {
   if (name == "grass") return GenerationRule{{1, 50, 40, 0.007}, std::nullopt};
   if (name == "sand") return GenerationRule{{2, 50, 0, 0.007}, SurfaceRule{4, -1500, 300, 0.06}};

@@ -11,7 +11,7 @@ namespace {
 
 const char* broken_rule(const SurfaceRule& rule) {
   constexpr double kReach = 10000;
-  // Written so that a NaN fails.
+  // The conditions are written so that a NaN fails.
   if (!(std::fabs(rule.elevation) <= kReach)) return "elevation must be within -10000 .. 10000";
   if (!(std::fabs(rule.distance) <= kReach)) return "distance must be within -10000 .. 10000";
   if (!(rule.frequency > 0 && rule.frequency <= 1))

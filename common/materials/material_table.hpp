@@ -1,5 +1,6 @@
-// MaterialTable: what a material id means. A data file (TOML), as the thesis' table (7.4): row i describes id
-// i, and the table does not change while a world is open. Id 0 is always "air", empty.
+// MaterialTable: the properties of each material id. It is a data file (TOML) like the thesis'
+// table (7.4): row i describes id i, and the table does not change while a world is open. Id 0 is
+// always "air", empty.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,9 +19,9 @@
 
 namespace runstone {
 
-/// How a generator turns this material into a layer of terrain (thesis 7.4 and figure 7.21).
-/// Units are voxels; frequency is cycles per voxel. The thesis' z is up, ours is y. The surface of a column
-/// lies at distance + elevation * N, N a fractal noise in [-1, 1].
+/// The layer of terrain that a generator makes of this material (thesis 7.4 and figure 7.21). Units
+/// are voxels; frequency is cycles per voxel. The thesis' z is up; here y is up. The surface of a
+/// column lies at distance + elevation * N, where N is a fractal noise in [-1, 1].
 struct SurfaceRule {
   std::int32_t seed = 1;
   double elevation = 0;      // noise amplitude, -10000 .. 10000
@@ -30,25 +31,27 @@ struct SurfaceRule {
 };
 
 struct GenerationRule {
-  SurfaceRule surface;                  // the material fills below this surface
-  std::optional<SurfaceRule> reversed;  // and, if given, only above this one ("reversed surface")
+  SurfaceRule surface;                  // the material fills the column below this surface
+  std::optional<SurfaceRule> reversed;  // if given, only above this one ("reversed surface")
   friend bool operator==(const GenerationRule&, const GenerationRule&) = default;
 };
 
 struct MaterialInfo {
   std::string name;  // unique, 1 .. 64 bytes of UTF-8 without control characters
   std::array<std::uint8_t, 4> colour{0, 0, 0,
-                                     255};  // sRGB and alpha; alpha < 255 only where transparent
+                                     // sRGB and alpha. Alpha is below 255 only for transparent
+                                     // materials.
+                                     255};
   Visibility visibility = Visibility::opaque;
   std::optional<GenerationRule> generation;
   friend bool operator==(const MaterialInfo&, const MaterialInfo&) = default;
 };
 
-/// Where a text file is wrong. Says file, line and key, as its reader needs them.
+/// An error in a text file: file, line and key.
 struct TextError {
   std::string file;
-  std::uint32_t line = 0;  // from 1; 0 if the file as a whole is meant
-  std::string key;         // e.g. "material[3].colour"; empty if none
+  std::uint32_t line = 0;  // from 1; 0: the file as a whole
+  std::string key;         // such as "material[3].colour"; empty if none
   std::string what;
   std::string message() const;  // "file:line: key: what"
 };
@@ -57,7 +60,7 @@ inline constexpr std::size_t kMaterialNameBytesMax = 64;
 
 class MaterialTable {
  public:
-  /// Only air.
+  /// Makes a table with only air.
   MaterialTable();
 
   std::size_t size() const { return rows_.size(); }
@@ -67,9 +70,9 @@ class MaterialTable {
   std::optional<Material> find(std::string_view name) const;
   std::span<const MaterialInfo> rows() const { return rows_; }
 
-  /// Appends a row and returns its id. Fails with limit_exceeded when the table is full, and with bad_value
-  /// on a bad or double name, a see-through colour of an opaque material or a number outside its range. O(log
-  /// size).
+  /// Appends a row and returns its id. Fails with limit_exceeded if the table is full, and with
+  /// bad_value for a bad or duplicate name, an opaque material with alpha below 255, or a number
+  /// outside its range. Cost: O(log size).
   Result<Material> add(MaterialInfo info);
 
   friend bool operator==(const MaterialTable&, const MaterialTable&) = default;
@@ -79,17 +82,17 @@ class MaterialTable {
   std::map<std::string, Material, std::less<>> ids_;  // row by name
 };
 
-/// Returns the visibility of each material by id, as the mesher's VisibilityTable takes it.
+/// Returns the visibility of each material by id, in the form of the mesher's VisibilityTable.
 std::vector<Visibility> visibilities(const MaterialTable& table);
 
-/// Reads `[[material]]` tables in id order, air first; `file` is only for messages. Unknown keys are errors.
-/// See docs/materials.md for the keys.
+/// Reads `[[material]]` tables in id order, air first. `file` is only for messages. Unknown keys
+/// are errors. docs/materials.md lists the keys.
 Result<MaterialTable, TextError> parse_material_table(std::string_view toml, std::string_view file);
 
-/// The table as TOML that parse_material_table() reads back to an equal table.
+/// Returns the table as TOML, which parse_material_table() reads back to an equal table.
 std::string to_toml(const MaterialTable& table);
 
-/// The built-in table: air, grass, sand, dirt, stone, water and the builders' palette.
+/// Returns the built-in table: air, grass, sand, dirt, stone, water and the builders' palette.
 const MaterialTable& default_material_table();
 
 }  // namespace runstone

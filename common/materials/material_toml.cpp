@@ -1,4 +1,5 @@
-// The text form of a material table, both ways. The only file of this module that sees a TOML library.
+// The text form of a material table, both ways. The only file of this module that includes a TOML
+// library.
 #include <toml++/toml.h>
 
 #include <charconv>
@@ -21,7 +22,7 @@ namespace {
 
 constexpr const char* kVisibilityNames[] = {"empty", "opaque", "transparent"};
 
-/// The first error wins; every read after it does nothing that matters.
+/// The first error is kept. The results of later reads are not used.
 class TableReader {
  public:
   explicit TableReader(std::string_view file) : file_(file) {}
@@ -155,7 +156,7 @@ void read_row(TableReader& in, const toml::table& row, const std::string& path, 
   if (!name) in.reject(row, path + ".name", "is missing");
   MaterialInfo info;
   info.visibility = in.visibility(row, path);
-  // What is never drawn needs no colour.
+  // A material that is never drawn needs no colour.
   if (info.visibility != Visibility::empty || row.contains("colour")) {
     info.colour = in.colour(row, path);
   } else {
@@ -183,7 +184,8 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
-/// Shortest decimal that reads back to the same double, always with a mark that makes it a TOML float.
+/// Returns the shortest decimal that reads back to the same double, always in a form that TOML
+/// reads as a float.
 std::string decimal(double value) {
   char buffer[32];
   const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);

@@ -90,7 +90,8 @@ std::uint64_t rlog_payload_checksum(ByteView stored) {
 
 void pack_rlog_payload(ByteView raw, int level, Bytes& out) {
   if (level != 0 && raw.size() > 1) {
-    out.resize(raw.size() - 1);  // zstd stops when it runs out of room: no gain
+    // zstd fails if this room does not suffice; then compression gains nothing.
+    out.resize(raw.size() - 1);
     const std::size_t size = ZSTD_compress(out.data(), out.size(), raw.data(), raw.size(), level);
     if (ZSTD_isError(size) == 0) {
       out.resize(size);

@@ -22,7 +22,8 @@ enum Column : std::size_t {
 };
 static_assert(kDescriptor + 1 == kRlogColumns);
 
-/// A client counts on by one; what differs from that is stored. Modulo 2^64, so that nothing overflows.
+/// Returns the difference from the client's next expected sequence, modulo 2^64, so that it cannot
+/// overflow. A client counts by one, so it is mostly 0.
 std::int64_t step_of(ClientSequence before, ClientSequence now) {
   return static_cast<std::int64_t>(now - (before + 1));
 }
@@ -125,12 +126,12 @@ Result<EditRecord> RlogEditsReader::next() {
   const auto& at = [this](Column column) -> ByteReader& { return columns_[column]; };
   EditRecord record;
   const std::uint64_t client = at(kClient).varint();
-  // Each client is named in the order in which they come, so a new one is the next one.
+  // Clients are listed in the order in which they first occur, so a new client has the next index.
   if (at(kClient).ok() && (client > clients_seen_ || client >= clients_.size())) {
     at(kClient).reject(ErrorCode::bad_value, "client is not named, or not in order of appearance");
   }
   const std::uint64_t epoch_step = at(kEpoch).varint();
-  // The first step counts from 0, so that the block stands alone.
+  // The first step counts from 0, so that the block does not depend on another.
   const bool is_first = seq_ == block_.first;
   const std::uint64_t epoch = (is_first ? 0 : epoch_) + std::min(epoch_step, kU32Max);
   if (at(kEpoch).ok() && (epoch > kU32Max || epoch_step > kU32Max)) {

@@ -1,6 +1,6 @@
-// RlogEdits: the payload of a block of edits: records as columns, numbers as differences from what stands
-// before them, so that zstd finds little left to say about a builder's next voxel. A block needs no other
-// block: readers begin at any.
+// RlogEdits: the payload of a block of edits: records as columns, and numbers as differences from
+// their predecessors, so that zstd packs them well. A block depends on no other block: readers may
+// begin at any block.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,25 +14,27 @@
 
 namespace runstone {
 
-/// client, epoch, client sequence, time, cause, subject, descriptor length, descriptor.
+/// Client, epoch, client sequence, time, cause, subject, descriptor length, descriptor.
 inline constexpr std::size_t kRlogColumns = 8;
 using RlogClient = std::pair<AuthorId, ClientInstance>;
 
 /// Collects one block.
 class RlogEditsWriter {
  public:
-  /// Requires a valid record that continues the one before: next sequence, neither epoch nor time falls.
+  /// Requires a valid record that continues the previous one: the next sequence; epoch and time do
+  /// not fall.
   void add(const EditRecord& record);
   std::uint32_t count() const { return count_; }
-  /// Bytes of the columns so far.
+  /// Returns the bytes of the columns so far.
   std::size_t bytes() const;
-  /// The payload; `block` gets kind, count, first sequence and times. Empties the writer. Requires count() > 0.
+  /// Returns the payload and empties the writer. `block` gets kind, count, first sequence and
+  /// times. Requires count() > 0.
   Bytes take(RlogBlock& block);
 
  private:
   std::map<RlogClient, std::uint32_t> index_;  // into clients_
-  std::vector<std::pair<RlogClient, ClientSequence>>
-      clients_;  // in order of appearance; last client sequence
+  // In order of appearance, with the last client sequence.
+  std::vector<std::pair<RlogClient, ClientSequence>> clients_;
   std::array<Bytes, kRlogColumns> columns_;
   std::uint32_t count_ = 0;
   Sequence first_ = 0;
@@ -40,15 +42,15 @@ class RlogEditsWriter {
   TimeUs first_us_ = 0, last_us_ = 0;
 };
 
-/// Reads one block record by record, so that what stands before a bad record can be had. Every byte is
-/// hostile; the offset of an error is a byte of the payload.
+/// Reads one block record by record, so that the records before a bad one can be used. Every byte
+/// is untrusted. The offset of an error is a byte of the payload.
 class RlogEditsReader {
  public:
   /// The payload must outlive the reader. `epoch` is that of the last edit known before the block.
   static Result<RlogEditsReader> open(ByteView payload, const RlogBlock& block, Epoch epoch);
-  /// The next record. Call block.count times, until one fails.
+  /// Returns the next record. Call it block.count times, or until it fails.
   Result<EditRecord> next();
-  /// After the last record: whether the block held what it announced and nothing else.
+  /// Call it after the last record. Fails if the block held more than the header announced.
   Result<void> finish();
 
  private:

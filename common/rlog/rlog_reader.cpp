@@ -33,7 +33,7 @@ RlogResult<RlogBlock> RlogReader::read_any_header() {
   };
   if (block->position != position_) return bad("block stands at another place than it says");
   if (next_ != 0 && block->first != next_) return bad("block does not continue the sequence");
-  // Before the first edit of all there is no time to fall from.
+  // The first edit of a log has no predecessor whose time could be later.
   if (next_ > 1 && block->first_us < last_us_) return bad("time falls from block to block");
   if (next_ != 0 && block->kind != RlogKind::edits && block->first_us != last_us_) {
     return bad("time of a block without edits is not that of the edit before it");
@@ -93,7 +93,7 @@ RlogResult<void> RlogReader::read_head() {
     position_ += kRlogHeaderBytes + block->stored_bytes;
     checksum_ = block->header_checksum;
     auto header = read_any_header();
-    // What is wrong behind the players is met again by whoever asks for the next block.
+    // An error behind the players is reported again when the caller reads the next block.
     if (!header || header->kind != RlogKind::players) return {};
     block = *header;
     if (const auto read = read_payload(*block); !read) return read;

@@ -1,6 +1,6 @@
-// RlogReader: reads an .rlog. Every byte is hostile: lengths, counts and times are bounded before they are
-// used, and memory is that of one block. Reading stops at the first block or record that is wrong; the error
-// names its sequence and file position, and every record handed over before it stands. One thread.
+// RlogReader: reads an .rlog. Every byte is untrusted: lengths, counts and times are bounded before
+// use, and memory is that of one block. Reading stops at the first bad block or record. The error
+// names its sequence and file position, and every record delivered before it is valid. Thread: one.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -15,12 +15,12 @@
 
 namespace runstone {
 
-/// Reads up to out.size() bytes of the file at `position` and returns how many there were (fewer only at the
-/// end); nothing when the file cannot be read.
+/// Reads up to out.size() bytes of the file at `position` and returns their number, which is
+/// smaller only at the end of the file. Returns nullopt if the file cannot be read.
 using RlogSource =
     std::function<std::optional<std::size_t>(std::uint64_t position, std::span<std::uint8_t> out)>;
 
-/// The first edit wanted: not before this sequence and not before this time.
+/// The first edit to read: not before this sequence and not before this time.
 struct RlogFrom {
   Sequence seq = 1;
   TimeUs time_us = std::numeric_limits<TimeUs>::min();  // UTC
@@ -34,15 +34,17 @@ class RlogReader {
   const RlogWorld& world() const { return world_; }
   const std::vector<RlogPlayer>& players() const { return players_; }
 
-  /// Header of the next block of edits, its payload unread; nothing behind the last one, where the end mark
-  /// must stand and nothing after it. Hopping over a block costs one read of 64 bytes.
+  /// Returns the header of the next block of edits; its payload is not read. Returns nullopt behind
+  /// the last one; then the end mark must follow, and no byte after it. Skipping a block costs one
+  /// read of 64 bytes.
   RlogResult<std::optional<RlogBlock>> next_block();
-  /// Calls `each` for the edits of the block that next_block() returned last, in order; stops when it returns
-  /// false, which is reported.
+  /// Calls `each` for the edits of the block that next_block() returned last, in order. Stops if
+  /// `each` returns false, and then returns false.
   RlogResult<bool> read_block(const std::function<bool(const EditRecord&)>& each);
 
-  /// Both, for every edit from `from` on that lies ahead; hops over the blocks before it (only their headers
-  /// are checked). Stops when `each` returns false; otherwise returns at the sound end of the file.
+  /// Does both for every remaining edit from `from` on. Of the blocks before `from` only the
+  /// headers are checked. Stops if `each` returns false; otherwise returns at the valid end of the
+  /// file.
   RlogResult<void> read(const RlogFrom& from, const std::function<bool(const EditRecord&)>& each);
 
  private:

@@ -1,5 +1,6 @@
-// RlogWorld and RlogPlayer: what an .rlog says beside its edits: which world they belong to, what that world
-// was before them, and who the authors are. No secrets: the server's key stays in the world.
+// RlogWorld and RlogPlayer: the contents of an .rlog besides its edits: the world that the edits
+// belong to, its state before them, and their authors. It has no secrets: the server's key stays in
+// the world.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,11 +22,12 @@ struct RlogWorld {
   GeneratorPin generator;
   std::string materials;          // TOML (docs/materials.md)
   std::array<double, 3> spawn{};  // x, y, z in voxels
-  /// Whether the world holds base chunks that no generator makes (imported, or compacted edits). Edits alone
-  /// then do not give the world again: they belong on a copy of it.
+  /// True if the world has base chunks that no generator makes (imported, or compacted edits). Then
+  /// the edits alone do not restore the world: they are imported into a copy of it.
   bool has_base = false;
-  Version
-      head;  // the edit before the first one of the file; (0, 0): the file begins at the beginning
+  // The edit before the first one of the file. (0, 0): the file begins with the first edit of the
+  // log.
+  Version head;
   TimeUs head_us = 0;  // UTC, of that edit
   friend bool operator==(const RlogWorld&, const RlogWorld&) = default;
 };
@@ -33,17 +35,20 @@ struct RlogWorld {
 struct RlogPlayer {
   AuthorId author = 0;  // from 1
   std::array<std::uint8_t, 32> key{};
-  std::string name;  // last used, at most kRlogNameBytesMax bytes
+  std::string name;  // the last one used, at most kRlogNameBytesMax bytes
   friend bool operator==(const RlogPlayer&, const RlogPlayer&) = default;
 };
 
-/// Payload of the world block; requires that it fits a block. head.seq + 1 and head_us stand in its header.
+/// Returns the payload of the world block. Requires that it fits a block. head.seq + 1 and head_us
+/// are in the block's header.
 Bytes encode_rlog_world(const RlogWorld& world);
-/// The reverse, without what stands in the header. The offset of an error is a byte of the payload.
+/// Decodes a world block, without the fields of its header. The offset of an error is a byte of the
+/// payload.
 Result<RlogWorld> decode_rlog_world(ByteView in);
 
 void encode_rlog_player(const RlogPlayer& player, Bytes& out);
-/// Exactly `count` players with ascending author numbers above `author_before`, appended to `out`.
+/// Decodes exactly `count` players with ascending author numbers above `author_before`, and appends
+/// them to `out`.
 Result<void> decode_rlog_players(ByteView in, std::uint32_t count, AuthorId author_before,
                                  std::vector<RlogPlayer>& out);
 

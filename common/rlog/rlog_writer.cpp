@@ -7,7 +7,8 @@
 namespace runstone {
 namespace {
 
-// A block is closed here, so that with one more record of the largest kind it stays below its bound.
+// A block is closed at this size, so that one more record of the largest kind keeps it below its
+// bound.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 static_assert(kBlockBytes * 2 + kRecordDescriptorBytesMax < kRlogRawBytesMax);
 
@@ -76,7 +77,7 @@ RlogResult<void> RlogWriter::add(const EditRecord& record) {
   if (record.log != 0) return bad("belongs to another log");
   if (record.version.seq != next_) return bad("does not continue the log");
   if (record.version.epoch < epoch_) return bad("epoch falls");
-  // Before the first edit of all there is no time to fall from.
+  // The first edit of a log has no predecessor whose time could be later.
   if (record.time_us < last_us_ && !(is_first_ && next_ == 1)) return bad("time falls");
   edits_.add(record);
   ++next_;

@@ -1,5 +1,5 @@
-// RlogWriter: writes a log as an .rlog, front to back, holding one block at a time. The sink gets the file's
-// bytes in order; what it got so far is a file that was cut, until finish(). One thread.
+// RlogWriter: writes a log as an .rlog, front to back, with one block in memory. The sink gets the
+// file's bytes in order. Until finish(), these bytes are a truncated file. Thread: one.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,12 +11,14 @@
 
 namespace runstone {
 
-/// Takes the next bytes of the file; false when they cannot be written, which ends the writing.
+/// Takes the next bytes of the file. Returns false if they cannot be written, which ends the
+/// writing.
 using RlogSink = std::function<bool(ByteView)>;
 
 struct RlogOptions {
-  int zstd_level = 9;  // 1 .. 19; 0: blocks stay as they are
-  /// Larger blocks pack better; a damaged byte costs its block and what follows. 1 .. kRlogCountMax.
+  int zstd_level = 9;  // 1 .. 19; 0: blocks are not compressed
+  /// Larger blocks pack better; a damaged byte costs its block and all later ones. 1 ..
+  /// kRlogCountMax.
   std::uint32_t edits_per_block = 4096;
 };
 
@@ -24,12 +26,13 @@ class RlogWriter {
  public:
   explicit RlogWriter(RlogSink sink, RlogOptions options = {});
 
-  /// Mark, world and players (ascending by author). Call once, first.
+  /// Writes mark, world and players (ascending by author). Call it once, first.
   RlogResult<void> begin(const RlogWorld& world, std::span<const RlogPlayer> players);
-  /// The next edit. Fails with bad_value if it does not continue the log: another sequence than the next one,
-  /// another log than 0, an epoch or a time that falls, numbers no record can have.
+  /// Adds the next edit. Fails with bad_value if it does not continue the log: a sequence that is
+  /// not the next one, a log other than 0, an epoch or a time that falls, or numbers that no record
+  /// can have.
   RlogResult<void> add(const EditRecord& record);
-  /// Writes what is left and the end mark. Call once, last.
+  /// Writes the remaining edits and the end mark. Call it once, last.
   RlogResult<void> finish();
 
   std::uint64_t bytes() const { return position_; }  // given to the sink

@@ -12,7 +12,7 @@ namespace {
 
 using namespace scenario;
 
-/// Bits [from, to) of a column. Requires to <= 128.
+/// Returns bits [from, to) of a column. Requires to <= 128.
 ColumnBits bits_between(unsigned from, unsigned to) {
   ColumnBits out{};
   for (unsigned word = 0; word < 2; ++word) {
@@ -26,7 +26,7 @@ ColumnBits bits_between(unsigned from, unsigned to) {
 bool bit(const ColumnBits& bits, unsigned at) { return (bits[at / 64] >> (at % 64) & 1) != 0; }
 
 ColumnBits strips_along(unsigned gaps, unsigned edge) {
-  // floor(edge / (2 gaps + 3/4)) in whole numbers.
+  // floor(edge / (2 gaps + 3/4)) in integers.
   const unsigned width = std::max(1u, 4 * edge / (8 * gaps + 3));
   ColumnBits out{};
   for (unsigned at = 0; at < edge; ++at) {
@@ -35,14 +35,15 @@ ColumnBits strips_along(unsigned gaps, unsigned edge) {
   return out;
 }
 
-/// The thesis' stream: state = a * state + c before each draw, of which the upper 23 bits count.
+/// The thesis' random stream: state = a * state + c before each draw. The upper 23 bits are the
+/// draw.
 struct Stream {
   std::uint32_t state;
   std::uint32_t draw() {
     state = 196314165u * state + 907633515u;
     return state >> 9;
   }
-  /// Skips draws by squaring the step. O(log count).
+  /// Skips draws by squaring the step. Cost: O(log count).
   void skip(std::uint32_t count) {
     std::uint32_t factor = 196314165u, summand = 907633515u;
     for (; count != 0; count /= 2) {
@@ -53,7 +54,8 @@ struct Stream {
   }
 };
 
-/// A threshold of the thesis, a float, in units of 1 / 2^23: draws below it are solid.
+/// Returns a threshold of the thesis, which is a float, in units of 1 / 2^23. Draws below it are
+/// solid.
 std::uint32_t threshold_of(float threshold) {
   return static_cast<std::uint32_t>(std::ceil(static_cast<double>(threshold) * (1 << 23)));
 }
@@ -66,9 +68,9 @@ std::optional<ScenarioModel::Formula> formula_of(unsigned number) {
     case 2:
       return Fraction{2, 1, 1};
     case 3:
-      return Fraction{1, 2, 1};  // half of the thesis' z
+      return Fraction{1, 2, 1};  // half along the thesis' z
     case 4:
-      return Fraction{1, 1, 2};  // half of its y
+      return Fraction{1, 1, 2};  // half along the thesis' y
     case 6:
       return Sphere{4};
     case 7:
@@ -106,12 +108,12 @@ std::optional<ScenarioModel::Formula> formula_of(unsigned number) {
       break;
   }
   if (number >= 23 && number <= 27) return Strips{0, 0, kGaps[number - 23]};  // the thesis' y
-  if (number >= 28 && number <= 32) return Strips{0, kGaps[number - 28], 0};  // its z
+  if (number >= 28 && number <= 32) return Strips{0, kGaps[number - 28], 0};  // the thesis' z
   if (number >= 33 && number <= 37) return Strips{kGaps[number - 33], 0, 0};
   return std::nullopt;
 }
 
-/// A column of each formula.
+/// Returns a column of each formula.
 struct ColumnOf {
   unsigned edge, x, z;
   const std::array<ColumnBits, 3>& solid;
@@ -129,7 +131,7 @@ struct ColumnOf {
     const int dz = from_middle(z);
     const int left = static_cast<int>(f.radius * f.radius) - dx * dx - dz * dz;
     if (left <= 0) return {};
-    int reach = 0;  // the largest whose square is below `left`
+    int reach = 0;  // the largest integer whose square is below `left`
     while ((reach + 1) * (reach + 1) < left) ++reach;
     const int middle = static_cast<int>(edge / 2);
     return bits_between(static_cast<unsigned>(std::max(middle - reach, 0)),

@@ -1,8 +1,9 @@
-// ScenarioModel: the voxel models of the thesis' 37 profiling scenarios (chapter 8.2), one chunk each, as
-// formulas over columns. Scenario 5 is not among them: its noise is another's, and its voxels are data
-// (columns_world.hpp). The thesis has z up; here its z is y and its y is z. Its flattened order y, z, x is
-// our zyx. Solid or not is all a model says. Everything but ComplexShape is integers; its sums of three sines
-// keep clear of zero by far more than any two maths libraries differ (a test pins how far).
+// ScenarioModel: the voxel models of the thesis' 37 profiling scenarios (chapter 8.2), one chunk
+// each, as formulas over columns. Scenario 5 is not among them: its noise is not known, and its
+// voxels are data (columns_world.hpp). The thesis has z up: its z is y here, and its y is z here.
+// Its flattened order y, z, x is zyx here. A model only says which voxels are solid. All formulas
+// except ComplexShape use integers. Its sums of three sines differ from zero by far more than two
+// maths libraries differ; a test pins the distance.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,17 +21,19 @@ using ColumnBits = std::array<std::uint64_t, 2>;
 
 namespace scenario {
 
-/// Each of these is a model of an edge of 8 .. 128 voxels, a power of two; x, y and z are 0 .. edge - 1.
+/// Each formula gives a model with an edge of 8 .. 128 voxels, a power of two; x, y and z are 0 ..
+/// edge - 1.
 
-/// x < floor(edge / x_fraction), and so on. Fractions from 1 up; all 1: everything.
+/// x < floor(edge / x_fraction), and the same for y and z. Fractions are at least 1; if all are 1,
+/// every voxel is solid.
 struct Fraction {
   unsigned x_fraction, y_fraction, z_fraction;
 };
-/// Nearer than `radius` to the corner between the eight middle voxels.
+/// Voxels nearer than `radius` to the corner between the eight middle voxels.
 struct Sphere {
   unsigned radius;
 };
-/// floor(a / w) even on all three axes, w = max(1, floor(edge / (2 gaps + 0.75))).
+/// floor(a / w) is even on all three axes, w = max(1, floor(edge / (2 gaps + 0.75))).
 struct Strips {
   unsigned x_gaps, y_gaps, z_gaps;
 };
@@ -38,10 +41,10 @@ struct Strips {
 struct Waves {
   unsigned omega;
 };
-/// x + y + z even.
+/// x + y + z is even.
 struct Chessboard {};
-/// One draw of a congruential generator a voxel, x outermost, y innermost; solid below `threshold` in 1 /
-/// 2^23.
+/// One draw of a congruential generator per voxel, x outermost, y innermost. A voxel is solid if
+/// the draw is below `threshold`, in units of 1 / 2^23.
 struct Random {
   std::uint32_t threshold, seed;
 };
@@ -57,7 +60,7 @@ class ScenarioModel {
   ScenarioModel(const Formula& formula, unsigned edge);
 
   unsigned edge() const { return edge_; }
-  /// Requires x, z < edge. Cost: a few operations, or O(edge) for Waves and Random.
+  /// Requires x, z < edge. Cost: O(1); Waves and Random: O(edge).
   ColumnBits column(unsigned x, unsigned z) const;
 
  private:
@@ -67,12 +70,12 @@ class ScenarioModel {
   std::array<double, kSideMax> wave_{};  // Waves: by coordinate
 };
 
-/// 8, 16, 32, 64 or 128.
+/// Returns true for 8, 16, 32, 64 and 128.
 bool scenario_edge_valid(unsigned edge);
 
-/// The model of scenario 1 .. 37 at `edge`, with the parameters it was measured with (12: gap count 2, as the
-/// maps had it, not the 7 of the shipped asset). Fails with not_found for 5 and numbers beyond, with
-/// bad_value for another edge.
+/// Returns the model of scenario 1 .. 37 at `edge`, with the parameters of its measurement (12: gap
+/// count 2, as in the maps, not the 7 of the shipped asset). Fails with not_found for 5 and for
+/// numbers out of range, and with bad_value for another edge.
 Result<ScenarioModel> scenario_model(unsigned number, unsigned edge);
 
 }  // namespace runstone

@@ -8,7 +8,7 @@
 namespace runstone {
 namespace {
 
-/// Where the stretch of equal bits that holds `at` ends, `edge` at most.
+/// Returns the end of the stretch of equal bits that holds `at`; at most `edge`.
 unsigned stretch_end(const ColumnBits& bits, unsigned at, unsigned edge) {
   const bool solid = (bits[at / 64] >> (at % 64) & 1) != 0;
   while (at < edge) {
@@ -72,7 +72,7 @@ RunChunk ScenarioWorld::generate(VoxelPos origin, Extent extent) const {
       }
       const ColumnBits bits = column(x, z);
       out.append(static_cast<std::uint32_t>(solid.min.y - asked.min.y), kEmpty);
-      for (std::int32_t y = solid.min.y; y < solid.max.y;) {  // model upon model
+      for (std::int32_t y = solid.min.y; y < solid.max.y;) {  // one model above another
         const std::int32_t foot = floor_div(y, edge()) * edge();
         const std::int32_t end = std::min(foot + edge(), solid.max.y);
         append(bits, static_cast<unsigned>(y - foot), static_cast<unsigned>(end - foot), material_,

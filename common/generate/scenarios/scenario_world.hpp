@@ -1,5 +1,5 @@
-// ScenarioWorld: a scenario the way the thesis ran it, 3 x 3 x 3 chunks with the same model in each and
-// nothing around them, from -edge to 2 edge on every axis.
+// ScenarioWorld: a scenario as the thesis ran it: 3 x 3 x 3 chunks with the same model in each,
+// from -edge to 2 edge on every axis. Everything outside is empty.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,19 +11,19 @@
 
 namespace runstone {
 
-/// A model as one chunk of solid `material`. Order yzx, that of its columns. O(edge^2 + runs), Waves and
-/// Random O(edge^3).
+/// Returns a model as one chunk of solid `material`, in order yzx, that of its columns. Cost:
+/// O(edge^2 + runs); Waves and Random: O(edge^3).
 RunChunk scenario_chunk(const ScenarioModel& model, Material material);
 
 class ScenarioWorld final : public Generator {
  public:
-  /// Fails as scenario_model() does, and with not_found if the material is none of the table.
+  /// Fails as scenario_model() does, and with not_found if the table lacks the material.
   static Result<std::unique_ptr<Generator>> make(const ScenarioParameters& parameters,
                                                  const MaterialTable& materials);
   ScenarioWorld(const ScenarioModel& model, Material material)
       : model_(model), material_(material) {}
 
-  /// Any place and extent, not only whole models. Order yzx.
+  /// Takes any place and extent, not only whole models. The order is yzx.
   RunChunk generate(VoxelPos origin, Extent extent) const override;
   std::int32_t y_min() const override { return -edge(); }
   std::int32_t y_max() const override { return 2 * edge(); }

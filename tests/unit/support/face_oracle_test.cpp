@@ -214,7 +214,8 @@ TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is cau
       std::swap(swaps.neighbours[d], swaps.neighbours[d + 1]);
     mirrored += scene_difference(scene, mesh_of(swaps)) ? 1 : 0;
 
-    mesh_rdm(scene.chunk, scene.pointers(), VisibilityTable(visibilities(all_opaque)), scratch, mesh);
+    mesh_rdm(scene.chunk, scene.pointers(), VisibilityTable(visibilities(all_opaque)), scratch,
+             mesh);
     visibility += scene_difference(scene, mesh) ? 1 : 0;
   }
   CHECK(neighbour > scenes / 2);

@@ -5,8 +5,8 @@
 #include "common/edits/descriptor/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
 
-// Bytes worked out by hand from docs/edit-log.md. They are stored in logs: a change here is a new kind or
-// version.
+// Bytes derived by hand from docs/edit-log.md. They are stored in logs: a change here is a new kind
+// or version.
 namespace runstone::test {
 namespace {
 
@@ -36,7 +36,7 @@ TEST_CASE("descriptor bytes of a filled box are pinned", "[edits][golden]") {
               {0x02, 0x03, 0xff, 0xff, 0x03,  // box, only_material 65,535
                0x00,                          // removes
                0x01, 0x00, 0xc8, 0x01,        // min: -1, 0, 100
-               0x00, 0x1f, 0xff, 0x1f});      // sides less one: 0, 31, 4095
+               0x00, 0x1f, 0xff, 0x1f});      // sides minus one: 0, 31, 4095
 }
 
 TEST_CASE("descriptor bytes of a filled sphere are pinned", "[edits][golden]") {
@@ -49,7 +49,7 @@ TEST_CASE("descriptor bytes of a stroke are pinned", "[edits][golden]") {
   check_bytes(
       {FillStroke{{{0, 64, -64}, {-1, 64, 960}, {0, 63, -64}}, 3}, {MaskKind::only_empty, 0}, 7},
       {0x04, 0x01, 0x07,          // stroke, only_empty, material 7
-       0x03, 0x01,                // radius 3, points less two
+       0x03, 0x01,                // radius 3, points minus two
        0x00, 0x80, 0x01, 0x7f,    // 0, 64, -64
        0x01, 0x00, 0x80, 0x10,    // -1, 0, +1024
        0x02, 0x01, 0xff, 0x0f});  // +1, -1, -1024
@@ -66,7 +66,7 @@ TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
               {0x06, 0x01, 0x00,        // paste, only_empty, no material of its own
                0x00, 0x80, 0x01, 0x7f,  // 0, 64, -64
                0x2c,                    // z, y, x of the clipboard along x, y, z; backwards along z
-               0x00, 0x02, 0x00, 0x01,  // order x, y, z; sides less one
+               0x00, 0x02, 0x00, 0x01,  // order x, y, z; sides minus one
                0x01, 0x00, 0x06,        // palette of 2: 0, then 0 + 1 + 6
                0x05, 0x02, 0x00,
                0x01});  // 2 of number 2; 2 of 0 (0 of 0, 1); 1 of 1 (0 of 1, 2); 1 of 2 (1 of 0, 2)

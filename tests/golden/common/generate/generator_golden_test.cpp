@@ -1,5 +1,5 @@
-// Pinned worlds: equal pins give equal voxels on every compiler, build type and machine, for ever. A change
-// here is a new generator version, never a new number in this file.
+// Pinned worlds: equal pins give equal voxels on every compiler, build type and machine. A change
+// of the output is a new generator version, never a new number in this file.
 #include <catch2/catch.hpp>
 
 #include "common/generate/generator.hpp"
@@ -14,7 +14,7 @@ Digest digest_at(const GeneratorPin& pin, VoxelPos origin, Extent extent) {
   return digest_of((*made)->generate(origin, extent));
 }
 
-/// Everything between y = -64 and 96 over 8 x 8 chunks of edge 32, as one world digest.
+/// Returns one world digest over y = -64 .. 96 of 8 x 8 chunks of edge 32.
 Digest world_digest(const GeneratorPin& pin) {
   const auto made = make_generator(pin, default_material_table());
   REQUIRE(made.has_value());

@@ -1,5 +1,5 @@
-// Quads are promised in their order, the same from every compiler and instruction set: one digest over the
-// meshes of the scenarios, and one over those of the seeded worlds.
+// The order of quads is guaranteed and the same for every compiler and instruction set. One digest
+// covers the meshes of the scenarios, another those of the seeded worlds.
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kEdge = 32;
 
-/// Of quads and where layers begin, in order.
+/// Digest of quads and starts of layers, in order.
 class QuadDigest {
  public:
   void add(const MeshScene& scene, const VisibilityTable& visibility) {

@@ -1,4 +1,4 @@
-// The bytes of .rlog version 1, as docs/edit-log.md spells them. A change here is a new version.
+// The bytes of .rlog version 1, as docs/edit-log.md specifies them. A change here is a new version.
 #include <catch2/catch.hpp>
 
 #include "tests/support/hex.hpp"
@@ -104,7 +104,8 @@ const Bytes& golden_plain() {
   return kBytes;
 }
 
-/// 64 voxels of one line, packed by zstd 1.5 at level 3. Another zstd may pack otherwise, and must unpack this.
+/// 64 voxels of one line, compressed by zstd 1.5 at level 3. Another zstd may compress differently,
+/// but must decompress these bytes.
 const Bytes& golden_packed() {
   static const Bytes kBytes = from_hex(
       "89 52 4c 4f 47 0d 0a 1a 01 00 00 00 01 00 00 00 57 00 00 00 57 00 00 00 "

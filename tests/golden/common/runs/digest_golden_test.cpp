@@ -1,5 +1,5 @@
-// Digests of fixed voxels, pinned. They are compared between holders, stored and logged: when one of these
-// values moves, so does every world's digest, and the change belongs in the changelog.
+// Pinned digests of fixed voxels. Digests are compared, stored and logged. If one of these values
+// changes, every world's digest changes, and the changelog must say so.
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"

@@ -1,4 +1,5 @@
-// The run list's memory is the body of the `raw` wire encoding on a little-endian machine: pinned here.
+// The memory of a run list is the body of the `raw` wire encoding on a little-endian machine. These
+// tests pin it.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>

@@ -447,4 +447,71 @@ TEST_CASE("the last name of a player is stored, with or without an edit", "[inte
 }
 
 }  // namespace
+
+TEST_CASE("a command ends a session that did not offer the feature", "[integration]") {
+  const TempFolder folder;
+  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
+  RawClient plain(server->port());
+  plain.features = kFeatureReceiveAck;
+  REQUIRE(plain.join(1).has_value());
+  plain.send(CommandRequest{1, "help"});
+  std::vector<Message> before;
+  const auto goodbye = plain.next_of<Goodbye>(&before);
+  REQUIRE(goodbye.has_value());
+  CHECK(goodbye->reason == GoodbyeReason::unexpected_message);
+  for (const Message& message : before) CHECK_FALSE(std::holds_alternative<CommandOutput>(message));
+
+  RawClient offering(server->port());
+  offering.features = kFeatureCommands;
+  REQUIRE(offering.join(1).has_value());
+  offering.send(CommandRequest{1, "help"});
+  const auto output = offering.next_of<CommandOutput>();
+  REQUIRE(output.has_value());
+  CHECK(output->id == 1);
+}
+
+TEST_CASE("an invalid descriptor is rejected as bad_edit and the session goes on",
+          "[integration]") {
+  const TempFolder folder;
+  const auto server = start_server(quiet_config(folder / "world"), flat_creation());
+  // A valid message whose descriptor has an unknown kind in its first byte.
+  const EditRequest valid = edit(1, {3, 70, 3}, 1);
+  const Bytes descriptor = encode(valid.edit);
+  Bytes bytes = *encode_message(valid).bytes;
+  const auto at = std::search(bytes.begin(), bytes.end(), descriptor.begin(), descriptor.end());
+  REQUIRE(at != bytes.end());
+  *at = 0xff;
+  const EncodedMessage invalid{FrameClass::edits, std::make_shared<const Bytes>(bytes)};
+
+  RawClient client(server->port());
+  REQUIRE(client.join(1).has_value());
+  client.send(View{{0, 4, 0}, 1, 1});
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    client.send(invalid);
+    const auto reject = client.next_of<Reject>();
+    REQUIRE(reject.has_value());
+    CHECK(reject->client_seq == 1);
+    CHECK(reject->reason == RejectReason::bad_edit);
+    CHECK(reject->detail.find("at byte 0") != std::string::npos);
+    CHECK(reject->seq == 0);
+  }
+  client.send(edit(2, {3, 70, 3}, 1));
+  const auto commit = client.next_of<Commit>();
+  REQUIRE(commit.has_value());
+  CHECK(commit->first == 1);
+  CHECK(commit->edits.at(0).op.seq == 2);
+
+  // The same client comes back and offers the edit again.
+  RawClient again(server->port());
+  const auto accepted = again.join(1);
+  REQUIRE(accepted.has_value());
+  CHECK(accepted->resolved == 2);
+  again.send(invalid);
+  const auto reject = again.next_of<Reject>();
+  REQUIRE(reject.has_value());
+  CHECK(reject->reason == RejectReason::bad_edit);
+  again.send(Ping{7});
+  CHECK(again.next_of<Pong>().has_value());
+}
+
 }  // namespace runstone::test

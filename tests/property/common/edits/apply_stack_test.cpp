@@ -19,7 +19,7 @@ constexpr ApplyStrategy kPaintPieces = {ChangeSearch::paint, PatchWrite::pieces}
 constexpr ApplyStrategy kWalkWhole = {ChangeSearch::walk, PatchWrite::whole};
 constexpr ApplyStrategy kWalkPieces = {ChangeSearch::walk, PatchWrite::pieces};
 
-// A place for the chunk: around the origin, on its grid or off it, or at a corner of the world.
+// Returns a place for the chunk: near the origin, on its grid or not, or at a corner of the world.
 VoxelPos random_origin(SplitMix64& rng, Extent extent) {
   switch (rng.below(4)) {
     case 0:
@@ -29,7 +29,7 @@ VoxelPos random_origin(SplitMix64& rng, Extent extent) {
               -2 * static_cast<std::int32_t>(extent.z)};
     case 2:
       return {rng.between(-1000, 1000), rng.between(-1000, 1000), rng.between(-1000, 1000)};
-    default:  // 128 off the corner, so that edits near the chunk stay inside the world
+    default:  // 128 away from the corner, so that edits near the chunk stay inside the world
       return {kWorldLimit - 256, -kWorldLimit + 128, kWorldLimit - 256};
   }
 }
@@ -63,7 +63,8 @@ bool same(const ApplyResult& a, const ApplyResult& b) {
          a.voxels_changed == b.voxels_changed;
 }
 
-/// Applies the edits to the runs and to the oracle. Names the first fact in which they differ; null: none.
+/// Applies the edits to the runs and to the oracle. Returns the first difference, or null if there
+/// is none.
 const char* difference(RunChunk& chunk, Digest& digest, DenseChunk& oracle, VoxelPos origin,
                        std::span<const EditDescriptor> edits, ApplyScratch& scratch,
                        OracleFault fault = OracleFault::none) {
@@ -174,7 +175,7 @@ TEST_CASE("a stack deeper than a word of the active set equals its edits one aft
   }
 }
 
-TEST_CASE("a paste lies as its orientation says, in each axis order of clipboard and chunk",
+TEST_CASE("a paste follows its orientation in each axis order of clipboard and chunk",
           "[edits][property]") {
   SplitMix64 rng{6 + Catch::rngSeed()};
   ApplyScratch scratch;
@@ -225,7 +226,7 @@ TEST_CASE("an edit that reaches over many chunks changes each as the oracle says
 }
 
 TEST_CASE("a broken edit oracle is caught", "[edits][property]") {
-  // The same random stacks against oracles that err on purpose, each in its own way.
+  // The same random stacks with oracles that are wrong on purpose, each in its own way.
   const auto caught_by = [](OracleFault fault) {
     SplitMix64 rng{5};
     ApplyScratch scratch;

@@ -7,11 +7,11 @@
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
-// Capsules at the ends of what a stroke may say, where a product that does not fit would show first.
+// Capsules at the limits of a stroke, where an overflowing product would show first.
 namespace runstone::test {
 namespace {
 
-// A point anywhere in the world from which a stroke of any step and radius stays inside.
+// Returns a point anywhere in the world from which a stroke of any step and radius stays inside.
 VoxelPos far_point(SplitMix64& rng) {
   constexpr std::int32_t kReach = kWorldLimit - kStrokeStepMax - kEditRadiusMax - 1;
   const auto c = [&] {
@@ -60,7 +60,7 @@ TEST_CASE("rows of the longest and widest strokes equal the oracle in any order"
     if (a == b) continue;
     stroke.points = {a, b};
     const EditDescriptor edit{stroke, {}, 1};
-    // A box about the rim: from a point of the segment, a radius away in some direction.
+    // A box near the surface: from a point of the segment, one radius away in some direction.
     const std::int32_t share = rng.between(0, 16), r = stroke.radius;
     const auto beside = [&](std::int32_t from, std::int32_t step) {
       const std::int32_t out =
@@ -82,8 +82,7 @@ TEST_CASE("rows of the longest and widest strokes equal the oracle in any order"
   CHECK(rim > 200);
 }
 
-TEST_CASE("a stroke on one edge of the world's largest numbers is cut where the world is",
-          "[edits]") {
+TEST_CASE("a stroke at the largest coordinates is cut at the edge of the world", "[edits]") {
   constexpr std::int32_t kEnd = kWorldLimit - 1 - kEditRadiusMax;
   const FillStroke stroke{{{kEnd, kEnd, kEnd}, {kEnd - 1024, kEnd - 1024, kEnd - 1024}},
                           kEditRadiusMax};

@@ -17,7 +17,7 @@ TEST_CASE("voxel counts and bounding boxes equal a count of single voxels", "[ed
       ball->radius = static_cast<std::uint16_t>(round % 24);
     CAPTURE(Catch::rngSeed(), round, edit);
     const auto voxels = oracle_voxels(edit, {}, 60);
-    if (std::holds_alternative<FillStroke>(edit.shape)) {  // counted from above
+    if (std::holds_alternative<FillStroke>(edit.shape)) {  // an upper bound
       REQUIRE(counted_voxels(edit) >= voxels.size());
     } else {
       REQUIRE(counted_voxels(edit) == voxels.size());
@@ -40,7 +40,7 @@ TEST_CASE("an edit is within height limits when each of its voxels is", "[edits]
     EditDescriptor edit = random_edit_near(rng, {-4, -4, -4}, Extent::cube(8));
     if (auto* ball = std::get_if<FillSphere>(&edit.shape))
       ball->radius = static_cast<std::uint16_t>(rng.below(9));
-    const VoxelBox box = bounding_box(edit);  // limits close to its ends, where it matters
+    const VoxelBox box = bounding_box(edit);  // limits close to the ends of the box
     HeightLimits limits{box.min.y + rng.between(-2, 1), box.max.y + rng.between(-1, 2)};
     if (limits.y_max <= limits.y_min) limits.y_max = limits.y_min + 1;
     CAPTURE(Catch::rngSeed(), round, edit, limits.y_min, limits.y_max);
@@ -65,7 +65,7 @@ TEST_CASE("touched chunks are the chunks of the single voxels", "[edits][propert
       ball->radius = static_cast<std::uint16_t>(rng.below(40));
     CAPTURE(Catch::rngSeed(), round, edit);
     for (const std::int32_t edge : {16, 32}) {
-      std::set<ChunkCoord> expected;  // ascends as the protocol does
+      std::set<ChunkCoord> expected;  // ascends like the protocol's list
       for (const VoxelPos p : oracle_voxels(edit, {}, 60)) {
         const auto chunk = [edge](std::int32_t c) { return (c + 64 * edge) / edge - 64; };
         expected.insert({chunk(p.x), chunk(p.y), chunk(p.z)});
@@ -84,14 +84,14 @@ TEST_CASE("a stroke's count stays above the voxels of each segment", "[edits][pr
     stroke.radius = static_cast<std::uint16_t>(rng.between(1, 12));
     const std::int32_t side = rng.below(2) == 0 ? 5 : 40;
     const VoxelPos to{rng.between(-side, side), rng.between(-side, side), rng.between(1, side)};
-    // Diagonals in space have the widest sections.
+    // Space diagonals have the widest sections.
     stroke.points = {{0, 0, 0}, round % 3 == 0 ? VoxelPos{to.z, to.z, -to.z} : to};
     const EditDescriptor edit{stroke, {}, 1};
     CAPTURE(Catch::rngSeed(), round, edit);
     const VoxelBox box = bounding_box(edit);
     const VoxelPos& low = box.min;
     std::uint64_t voxels = 0;
-    std::vector<IndexSpan> spans;  // which are tested against single voxels below
+    std::vector<IndexSpan> spans;  // tested against single voxels below
     for (VoxelPos at = low; at.x < box.max.x; at.x += 64) {
       for (at.y = low.y; at.y < box.max.y; at.y += 64) {
         for (at.z = low.z; at.z < box.max.z; at.z += 64) {

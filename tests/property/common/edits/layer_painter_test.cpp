@@ -9,8 +9,9 @@
 #include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
-// The layer painter against the dense oracle: at every chunk edge and axis order, with lines that fill vectors and
-// lines that do not, on each instruction set, and where capsules leave what doubles hold exactly.
+// Compares the layer painter with the dense oracle: at every chunk edge and axis order, with lines
+// that fill vectors and lines that do not, on each instruction set, and with capsules whose numbers
+// exceed the exact range of doubles.
 namespace runstone::test {
 namespace {
 
@@ -42,13 +43,13 @@ std::vector<EditDescriptor> stack_near(SplitMix64& rng, Extent extent, std::size
   return edits;
 }
 
-// A stroke that passes the chunk somewhere on its way, as long and as wide as asked for.
+// Returns a stroke that passes through the chunk, of the given length and width.
 EditDescriptor stroke_through(SplitMix64& rng, Extent extent, std::int32_t step,
                               std::int32_t radius) {
   const auto far = [&] { return rng.below(4) == 0 ? 0 : rng.between(-step, step); };
   std::array<std::int32_t, 3> d = {far(), far(), far()};
   if (d == std::array<std::int32_t, 3>{}) d[rng.below(3)] = step;
-  // A radius away in some direction, so that it is the rim that lies in the chunk.
+  // One radius away in some direction, so that the surface lies in the chunk.
   const auto from = [&](std::int32_t side, std::int32_t along) {
     const std::int32_t out =
         rng.below(3) == 0 ? (rng.below(2) == 0 ? -radius : radius) : rng.between(-4, 4);

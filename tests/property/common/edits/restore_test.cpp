@@ -11,7 +11,7 @@
 namespace runstone::test {
 namespace {
 
-/// Keeps of every voxel all that was ever written to it, and by whom.
+/// Keeps, for every voxel, all materials that were written to it, and their writers.
 class HistoryOracle {
  public:
   HistoryOracle(DenseChunk start, VoxelPos origin)
@@ -29,7 +29,7 @@ class HistoryOracle {
   }
 
   const DenseChunk& now() const { return now_; }
-  /// Goes back from the last writer of each voxel while it is selected.
+  /// Goes back from the last writer of each voxel while that writer is selected.
   DenseChunk restored(bool forgets_order = false) {
     DenseChunk out = start_;
     for_each([&](int x, int y, int z, std::vector<Writer>& writers) {
@@ -62,7 +62,7 @@ class HistoryOracle {
   std::vector<std::vector<Writer>> writers_;
 };
 
-/// Differences voxel by voxel, against two dense chunks.
+/// Compares the listed differences with two dense chunks, voxel by voxel.
 bool tells_the_differences(const std::vector<Difference>& listed, const DenseChunk& now,
                            const DenseChunk& restored, AxisOrder order) {
   std::size_t next = 0;
@@ -81,7 +81,7 @@ bool tells_the_differences(const std::vector<Difference>& listed, const DenseChu
 
 }  // namespace
 
-TEST_CASE("restoring equals going back through each voxel's own history",
+TEST_CASE("restoring equals going back through the history of each voxel",
           "[edits][restore][property]") {
   SplitMix64 rng{41 + Catch::rngSeed()};
   ApplyScratch scratch;
@@ -119,10 +119,10 @@ TEST_CASE("restoring equals going back through each voxel's own history",
     told_apart += oracle.restored(true) == restored ? 0 : 1;
   }
   CHECK(with_differences > 100);
-  CHECK(told_apart > 100);  // an oracle that treats others' later work wrongly would be noticed
+  CHECK(told_apart > 100);  // a wrong treatment of later edits by others is detected
 }
 
-TEST_CASE("changes written into another chunk are those stretches and nothing else",
+TEST_CASE("changes written into another chunk change exactly those stretches",
           "[edits][property]") {
   SplitMix64 rng{42 + Catch::rngSeed()};
   ApplyScratch scratch;

@@ -34,7 +34,7 @@ RunChunk assemble(const Blocks& blocks, std::int32_t edge, ChunkCoord at) {
   });
 }
 
-/// The same chunk copied voxel by voxel.
+/// Returns the same chunk, copied voxel by voxel.
 DenseChunk assemble_dense(const Blocks& blocks, std::int32_t edge, ChunkCoord at) {
   DenseChunk out(Extent::cube(static_cast<unsigned>(edge)));
   for (const auto& [block, voxels] : blocks) {
@@ -53,8 +53,7 @@ DenseChunk assemble_dense(const Blocks& blocks, std::int32_t edge, ChunkCoord at
 
 }  // namespace
 
-TEST_CASE("blocks put together run by run equal blocks copied voxel by voxel",
-          "[formats][property]") {
+TEST_CASE("blocks assembled run by run equal blocks copied voxel by voxel", "[formats][property]") {
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 60; ++round) {
     const std::int32_t edge = round == 0 ? 128 : 16 << random.below(3);
@@ -68,7 +67,7 @@ TEST_CASE("blocks put together run by run equal blocks copied voxel by voxel",
   }
 }
 
-TEST_CASE("the voxel copy tells one wrong block", "[formats][property]") {
+TEST_CASE("the voxel copy detects one wrong block", "[formats][property]") {
   SplitMix64 random(3);
   const ChunkCoord at{1, -2, 3};
   Blocks blocks = random_blocks(random, 32, at);

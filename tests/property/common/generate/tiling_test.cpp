@@ -1,4 +1,4 @@
-// A generated world is one world: a voxel does not depend on the chunk it is asked in.
+// A voxel of a generated world does not depend on the chunk that contains it.
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"

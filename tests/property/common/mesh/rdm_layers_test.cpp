@@ -1,4 +1,4 @@
-// Remeshing dirty layers against a full mesh: equal quad for quad, in the same order.
+// Compares remeshing of dirty layers with a full mesh: equal quads in the same order.
 #include <catch2/catch.hpp>
 
 #include "tests/support/mesh_scene.hpp"
@@ -12,7 +12,7 @@ void require_equal(const QuadLayers& a, const QuadLayers& b) {
   REQUIRE(a.first == b.first);
 }
 
-/// Changes some voxels: one, or a stretch of the flattened chunk.
+/// Changes one voxel or a stretch of the flattened chunk.
 DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   const std::uint32_t first = rng.below(chunk.volume());
   const std::uint32_t longest = std::min(chunk.volume() - first, rng.below(3) == 0 ? 200u : 1u);
@@ -20,7 +20,7 @@ DirtyLayers change(SplitMix64& rng, RunChunk& chunk) {
   return fill_and_mark(chunk, first, count, static_cast<Material>(rng.below(kMeshMaterialCount)));
 }
 
-// Returns how many steps did with layers only.
+// Returns the number of steps that meshed only layers.
 int edit_and_compare(SplitMix64& rng, MeshScene scene, int steps) {
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -55,7 +55,7 @@ TEST_CASE("remeshed layers equal a full mesh, quad for quad, while chunk and nei
   int by_layers = 0;
   for (int round = 0; round < kRounds; ++round)
     by_layers += edit_and_compare(rng, random_scene(rng, 33), kSteps);
-  CHECK(by_layers > kRounds * kSteps / 4);  // both ways are taken often
+  CHECK(by_layers > kRounds * kSteps / 4);  // both paths are taken often
   CHECK(by_layers < kRounds * kSteps * 19 / 20);
 }
 

@@ -1,5 +1,5 @@
-// RDM against the face oracle on random scenes. Mostly small extents, so that many scenes fit into a test
-// run.
+// Compares RDM with the face oracle on random scenes. Most extents are small, so that a test run
+// covers many scenes.
 #include "common/mesh/rdm/rdm_mesher.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace runstone::test {
 namespace {
 
-// The same voxels in another axis order, voxel by voxel.
+// Returns the same voxels in another axis order, voxel by voxel.
 RunChunk turned(const RunChunk& chunk, AxisOrder order) {
   RunChunk out = uniform_chunk(chunk.extent, kEmpty, order);
   const DenseChunk dense = DenseChunk::of(chunk);
@@ -24,8 +24,8 @@ RunChunk turned(const RunChunk& chunk, AxisOrder order) {
   return out;
 }
 
-/// Scene number i of ten thousand: most are small, one in twenty has sides up to 64, one in a hundred is flat
-/// with sides up to 128.
+/// Returns scene i of ten thousand. Most are small; one in twenty has sides up to 64; one in a
+/// hundred is flat with sides up to 128.
 MeshScene scene_of_many(SplitMix64& rng, int i) {
   if (i % 100 != 50) return random_scene(rng, i % 20 == 0 ? 64 : i % 20 == 10 ? 20 : 10);
   const auto longest = static_cast<std::uint8_t>(rng.between(65, 128));
@@ -39,7 +39,7 @@ MeshScene scene_of_many(SplitMix64& rng, int i) {
 
 TEST_CASE("random scenes mesh to the exposed faces, each once", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 1);
-  RdmScratch scratch;  // one for all: what a scene leaves behind would show in the next
+  RdmScratch scratch;  // one for all: contents left by a scene would show in the next
   ChunkMesh mesh;
   std::set<AxisOrder> orders;
   std::size_t transparent_quads = 0;
@@ -71,7 +71,7 @@ TEST_CASE("the largest and the flattest extents mesh to the exposed faces", "[me
   }
 }
 
-TEST_CASE("meshes stay right while a chunk is edited by fills", "[mesh][property]") {
+TEST_CASE("meshes stay correct while a chunk is edited by fills", "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 3);
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -126,7 +126,7 @@ TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces",
   RdmScratch scratch;
   ChunkMesh mesh;
   for (int round = 0; round < 40; ++round) {
-    // Few materials in between: what the forms leave behind would show.
+    // Every fourth round has few materials: contents left by the other index type would show.
     const unsigned count = round % 4 == 3 ? 5 : kManyMaterialCount;
     const Extent extent = round % 10 == 0 ? Extent{65, 9, 12} : Extent{12, 9, 11};
     const MeshScene scene = scene_of_many_materials(rng, extent, count);
@@ -137,8 +137,9 @@ TEST_CASE("chunks of more materials than fit a byte mesh to the exposed faces",
   }
 }
 
-TEST_CASE("kept borders of neighbours give the same quads as their runs, and are made on the way",
-          "[mesh][property]") {
+TEST_CASE(
+    "kept borders of neighbours give the same quads as their runs, and the sweep makes equal ones",
+    "[mesh][property]") {
   SplitMix64 rng(Catch::rngSeed() + 8);
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -165,9 +166,9 @@ TEST_CASE("kept borders of neighbours give the same quads as their runs, and are
 
 TEST_CASE("quads that lie side by side with one edge in common along the strip are one quad",
           "[mesh][property]") {
-  // Strips are maximal: no two quads of one layer, rows and material touch end to end along the strip axis.
-  // Which axis that is depends on the order, so at least one of the two must be free of such pairs in every
-  // direction.
+  // Strips are maximal: no two quads of one layer, rows and material touch end to end along the
+  // strip axis. The strip axis depends on the order. So at least one of the two axes must be free
+  // of such pairs in every direction.
   SplitMix64 rng(Catch::rngSeed() + 6);
   for (int round = 0; round < 200; ++round) {
     const MeshScene scene = random_scene(rng, 14);

@@ -1,5 +1,5 @@
-// The vector paths of the layer sweep against the plain one: every instruction set this machine has must give
-// the same quads in the same order.
+// Compares the vector paths of the layer sweep with the plain path. Every instruction set of this
+// machine must give the same quads in the same order.
 #include <hwy/targets.h>
 
 #include <algorithm>

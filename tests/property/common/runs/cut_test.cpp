@@ -9,7 +9,7 @@
 
 namespace runstone::test {
 
-TEST_CASE("a cut has the voxels of its cuboid, mirrored as asked, in canonical runs",
+TEST_CASE("a cut has the voxels of its cuboid, mirrored on request, in canonical runs",
           "[runs][property]") {
   SplitMix64 rng{61 + Catch::rngSeed()};
   int whole_lines = 0;

@@ -16,7 +16,8 @@ struct Fill {
   Material material;
 };
 
-// Clustered at run edges, with materials of the neighbourhood, so that runs really split, grow and merge.
+// Returns a fill near run ends, with materials of neighbouring runs, so that runs split, grow and
+// merge.
 Fill random_fill_near_edges(SplitMix64& rng, const RunChunk& chunk) {
   const std::uint32_t volume = chunk.volume();
   const auto near_edge = [&] {
@@ -35,7 +36,7 @@ Fill random_fill_near_edges(SplitMix64& rng, const RunChunk& chunk) {
     case 2:
       count = 1 + rng.below(200);
       break;
-    case 3: {  // up to another edge
+    case 3: {  // up to another run end
       const std::uint32_t other = near_edge();
       count = std::max(first, other) - std::min(first, other) + 1;
       first = std::min(first, other);
@@ -59,7 +60,8 @@ Fill random_fill_near_edges(SplitMix64& rng, const RunChunk& chunk) {
   return {first, count, material};
 }
 
-// Digest of what is there now, taken from spans, so that a digest can follow an edit.
+// Returns the digest of the present voxels, computed from spans, so that a digest can follow an
+// edit.
 Digest digest_between(const RunChunk& chunk, VoxelIndex first, VoxelIndex last) {
   Digest sum;
   for (std::size_t run = find_run(chunk, first); first < last; ++run) {
@@ -87,14 +89,14 @@ int chunk_fills(SplitMix64& rng, RunChunk chunk, int steps) {
     REQUIRE(digest == digest_of(chunk));
     if (!changed) {
       REQUIRE(chunk == before);
-    } else {  // what the area leaves out is the list of before
+    } else {  // runs outside the area are those of the previous list
       REQUIRE(chunk.runs.size() + area.before == before.runs.size() + area.after);
       for (std::size_t i = 0; i < area.first; ++i) REQUIRE(chunk.runs[i] == before.runs[i]);
       for (std::size_t i = area.first + area.after; i < chunk.runs.size(); ++i) {
         REQUIRE(chunk.runs[i] == before.runs[i - area.after + area.before]);
       }
     }
-    // The whole chunk now and then; the runs about the edit each time.
+    // The whole chunk is compared now and then; the runs near the edit are compared each time.
     if (step % 16 == 0 || step + 1 == steps) {
       const DenseChunk now = DenseChunk::of(chunk);
       if (!(now == oracle)) {
@@ -142,14 +144,14 @@ TEST_CASE("fills keep chunks just below and above 65,535 voxels equal to the ora
   }
 }
 
-TEST_CASE("long fill histories stay equal to the oracle as runs pile up", "[runs][property]") {
+TEST_CASE("long fill histories stay equal to the oracle as runs accumulate", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 2};
   CAPTURE(Catch::rngSeed());
   for (const AxisOrder order : kAxisOrders)
     chunk_fills(rng, uniform_chunk({9, 10, 11}, 0, order), 800);
 }
 
-// An oracle that is wrong at the end of every fill, by one voxel, or forgets one material.
+// An oracle that is wrong by one voxel at the end of every fill, or ignores one material.
 TEST_CASE("an oracle broken on purpose is caught", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 3};
   enum class Fault { none, one_voxel_short, forgets_material_2, wrong_order };
@@ -164,7 +166,7 @@ TEST_CASE("an oracle broken on purpose is caught", "[runs][property]") {
       if (fault != Fault::forgets_material_2 || f.material != 2)
         oracle.fill(order, f.first, count, f.material);
       const bool equal = DenseChunk::of(chunk) == oracle;
-      REQUIRE((digest_of(chunk) == oracle.digest()) == equal);  // two judges, one verdict
+      REQUIRE((digest_of(chunk) == oracle.digest()) == equal);  // both comparisons agree
       if (!equal) return true;
     }
     return false;

@@ -46,7 +46,7 @@ TEST_CASE("changing the axis order keeps every voxel, the digest and the counted
   }
 }
 
-TEST_CASE("every shape turns from every order into every order", "[runs][property]") {
+TEST_CASE("every extent reorders from every order into every order", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 1};
   CAPTURE(Catch::rngSeed());
   for (int shape = 0; shape < test::kShapeCount; ++shape) {
@@ -125,7 +125,7 @@ TEST_CASE("a span's digest is the sum over its voxels, wherever it begins and en
   CHECK(digest_of_span(largest, largest.volume(), largest.volume(), 5) == Digest{});
 }
 
-TEST_CASE("random chunks are valid and reach what they promise", "[runs][property]") {
+TEST_CASE("random chunks are valid and cover their promised range", "[runs][property]") {
   SplitMix64 rng{Catch::rngSeed() + 5};
   CAPTURE(Catch::rngSeed());
   bool orders[kAxisOrderCount] = {};

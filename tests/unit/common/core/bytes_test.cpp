@@ -79,11 +79,11 @@ TEST_CASE("varints round-trip at every width and every truncation of them fails"
   }
 }
 
-TEST_CASE("only the shortest spelling of a varint is accepted", "[core][bytes]") {
+TEST_CASE("only the shortest encoding of a varint is accepted", "[core][bytes]") {
   for (const std::uint64_t v : kVarints) {
     CAPTURE(v);
     Bytes longer = varint_bytes(v);
-    if (longer.size() == 10) continue;  // one byte more would pass 64 bits
+    if (longer.size() == 10) continue;  // one byte more would exceed 64 bits
     longer.back() |= 0x80;
     longer.push_back(0x00);
     CHECK(varint_error(longer) == ErrorCode::not_canonical);
@@ -135,7 +135,7 @@ TEST_CASE("zigzag orders small magnitudes first and inverts at the limits", "[co
   }
 }
 
-TEST_CASE("bounded varints accept their bounds and reject what lies behind them", "[core][bytes]") {
+TEST_CASE("bounded varints accept their bounds and reject values beyond them", "[core][bytes]") {
   const Bytes nine = varint_bytes(9);
   CHECK(ByteReader(nine).varint_max(9, "n") == 9);
   ByteReader over(nine);
@@ -146,7 +146,7 @@ TEST_CASE("bounded varints accept their bounds and reject what lies behind them"
   ByteWriter(minus).svarint(-5);
   CHECK(ByteReader(minus).svarint_in(-5, 5, "n") == -5);
   ByteReader below(minus);
-  CHECK(below.svarint_in(-4, 4, "n") == -4);  // a value the caller may use without harm
+  CHECK(below.svarint_in(-4, 4, "n") == -4);  // a value that the caller can use safely
   CHECK_FALSE(below.ok());
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("digests add and subtract without order", "[core][digest]") {
   CHECK(a - a == Digest{});
 }
 
-TEST_CASE("digests tell axes and materials apart", "[core][digest]") {
+TEST_CASE("digests differ for different axes and materials", "[core][digest]") {
   CHECK(digest_of_box(1, {1, 0, 0}, {2, 1, 1}) != digest_of_box(1, {0, 1, 0}, {1, 2, 1}));
   CHECK(digest_of_box(1, {0, 1, 0}, {1, 2, 1}) != digest_of_box(1, {0, 0, 1}, {1, 1, 2}));
   CHECK(digest_of_box(1, {0, 0, 0}, {1, 1, 1}) != digest_of_box(2, {0, 0, 0}, {1, 1, 1}));

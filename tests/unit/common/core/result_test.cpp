@@ -37,13 +37,13 @@ TEST_CASE("a result holds its error with code, text and offset", "[core][result]
   CHECK(r.error().offset == 7);
 }
 
-TEST_CASE("a result of nothing says well or why not", "[core][result]") {
+TEST_CASE("a result without a value holds success or an error", "[core][result]") {
   CHECK(even(2).has_value());
   REQUIRE_FALSE(even(1).has_value());
   CHECK(even(1).error().code == ErrorCode::not_canonical);
 }
 
-TEST_CASE("a result gives its value away by move", "[core][result]") {
+TEST_CASE("a result moves its value out", "[core][result]") {
   Result<std::unique_ptr<int>> r = std::make_unique<int>(5);
   const std::unique_ptr<int> out = std::move(r).value();
   REQUIRE(out != nullptr);

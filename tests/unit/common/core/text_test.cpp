@@ -39,7 +39,8 @@ TEST_CASE("text from outside is well-formed UTF-8 without control characters", "
 }
 
 TEST_CASE("text is cut between characters", "[core]") {
-  const std::string_view text = "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // of 1, 2, 3 and 4 bytes
+  const std::string_view text =
+      "a\xc3\xa9\xe2\x82\xac\xf0\x9f\xa7\xb1";  // characters of 1, 2, 3 and 4 bytes
   const std::size_t kept[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
   for (std::size_t most = 0; most < 12; ++most)
     CHECK(cut_utf8(text, most) == text.substr(0, kept[most]));

@@ -4,7 +4,7 @@
 
 namespace runstone {
 
-TEST_CASE("moments are written and read by the calendar, in UTC", "[core]") {
+TEST_CASE("times are written and read by the calendar, in UTC", "[core]") {
   CHECK(utc_text(0) == "1970-01-01T00:00:00Z");
   CHECK(utc_text(1'000'000'000'999'999) == "2001-09-09T01:46:40Z");
   CHECK(utc_text(1'795'000'000'000'000) == "2026-11-18T11:06:40Z");
@@ -20,14 +20,14 @@ TEST_CASE("moments are written and read by the calendar, in UTC", "[core]") {
   CHECK(parse_utc("9999-12-31T23:59:59.999999Z") == 253'402'300'799'999'999);
 }
 
-TEST_CASE("every second of a day comes back, and days over centuries", "[core]") {
+TEST_CASE("every second of a day and days over centuries round trip", "[core]") {
   for (TimeUs us = 0; us < 86'400'000'000; us += 7'000'000) REQUIRE(parse_utc(utc_text(us)) == us);
   for (TimeUs day = 0; day < 200'000; day += 13) {
     REQUIRE(parse_utc(utc_text(day * 86'400'000'000)) == day * 86'400'000'000);
   }
 }
 
-TEST_CASE("what is no moment and no duration is refused", "[core]") {
+TEST_CASE("text that is no time and no duration is rejected", "[core]") {
   for (const char* text : {"",
                            "2001",
                            "2001-9-09",

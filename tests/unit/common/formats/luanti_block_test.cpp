@@ -12,7 +12,7 @@ using namespace runstone::test;
 
 namespace {
 
-/// Three materials in simple places, so that a wrong axis or byte order shows.
+/// Three materials at simple places, so that a wrong axis or byte order shows.
 LuantiBlockFields sample() {
   LuantiBlockFields fields;
   fields.names = {{7, "air"}, {300, "default:stone"}, {2, "default:dirt"}};
@@ -44,7 +44,7 @@ void check_sound(const LuantiBlock& block) {
 
 }  // namespace
 
-TEST_CASE("a block's nodes come out where they are", "[formats]") {
+TEST_CASE("a block's nodes are decoded at their places", "[formats]") {
   const auto block = decode_luanti_block(luanti_row(sample()));
   REQUIRE(block.has_value());
   check_sound(*block);
@@ -59,7 +59,7 @@ TEST_CASE("a block's nodes come out where they are", "[formats]") {
   CHECK(name_at(*block, {15, 15, 15}) == "air");
 }
 
-TEST_CASE("a block that the game wrote comes out as it is known to be", "[formats][golden]") {
+TEST_CASE("a block that the game wrote decodes to its known contents", "[formats][golden]") {
   std::ifstream in(
       std::string(RUNSTONE_SOURCE_DIR) + "/tests/fuzz/corpus/luanti_block_fuzz/game_written",
       std::ios::binary);
@@ -77,7 +77,7 @@ TEST_CASE("a block that the game wrote comes out as it is known to be", "[format
   CHECK(to_hex(digest_of(block->voxels)) == "0481e14fc178484e13c9df2eeae9a9dd");
 }
 
-TEST_CASE("random blocks come out node by node", "[formats]") {
+TEST_CASE("random blocks decode node by node", "[formats]") {
   SplitMix64 random(Catch::rngSeed());
   for (int round = 0; round < 30; ++round) {
     LuantiBlockFields fields;
@@ -108,7 +108,7 @@ TEST_CASE("random blocks come out node by node", "[formats]") {
   }
 }
 
-TEST_CASE("ignore nodes are not there", "[formats]") {
+TEST_CASE("ignore nodes become material 0", "[formats]") {
   LuantiBlockFields fields = sample();
   fields.names[2].second = "ignore";
   const auto block = decode_luanti_block(luanti_row(fields));
@@ -117,7 +117,7 @@ TEST_CASE("ignore nodes are not there", "[formats]") {
   CHECK(name_at(*block, {0, 0, 0}) == "default:stone");
 }
 
-TEST_CASE("two ids of one name are both known", "[formats]") {
+TEST_CASE("two ids with one name are both decoded", "[formats]") {
   LuantiBlockFields fields = sample();
   fields.names[2].second = "default:stone";
   const auto block = decode_luanti_block(luanti_row(fields));
@@ -125,7 +125,7 @@ TEST_CASE("two ids of one name are both known", "[formats]") {
   CHECK(name_at(*block, {1, 0, 0}) == "default:stone");
 }
 
-TEST_CASE("every truncation of a block is refused", "[formats]") {
+TEST_CASE("every truncation of a block is rejected", "[formats]") {
   const Bytes row = luanti_row(sample());
   for (std::size_t size = 0; size < row.size(); ++size) {
     CAPTURE(size, row.size());
@@ -135,7 +135,8 @@ TEST_CASE("every truncation of a block is refused", "[formats]") {
   }
 }
 
-TEST_CASE("every truncation inside the stream is refused up to the end of the nodes", "[formats]") {
+TEST_CASE("every truncation inside the stream is rejected up to the end of the nodes",
+          "[formats]") {
   const Bytes plain = luanti_plain(sample());
   const std::size_t needed = plain.size() - sample().rest.size();
   for (std::size_t size = 0; size < plain.size(); size += size < 64 ? 1 : 61) {
@@ -147,13 +148,13 @@ TEST_CASE("every truncation inside the stream is refused up to the end of the no
   }
 }
 
-TEST_CASE("a byte after the stream is refused", "[formats]") {
+TEST_CASE("a byte after the stream is rejected", "[formats]") {
   Bytes row = luanti_row(sample());
   row.push_back(0);
   CHECK(code_of(row) == ErrorCode::trailing_bytes);
 }
 
-TEST_CASE("other versions of the format are refused by name", "[formats]") {
+TEST_CASE("other versions of the format are rejected by name", "[formats]") {
   for (int version = 0; version < 256; ++version) {
     if (version == 29) continue;
     CHECK(code_of(luanti_row(luanti_plain(sample()), static_cast<std::uint8_t>(version))) ==
@@ -164,7 +165,7 @@ TEST_CASE("other versions of the format are refused by name", "[formats]") {
   CHECK(code_of(luanti_row(fields)) == ErrorCode::bad_version);
 }
 
-TEST_CASE("fields out of their range are refused", "[formats]") {
+TEST_CASE("fields out of their range are rejected", "[formats]") {
   LuantiBlockFields fields = sample();
   SECTION("content width") { fields.content_width = 1; }
   SECTION("parameter width") { fields.params_width = 1; }
@@ -173,14 +174,14 @@ TEST_CASE("fields out of their range are refused", "[formats]") {
   CHECK(code_of(luanti_row(fields)) == ErrorCode::bad_value);
 }
 
-TEST_CASE("a name table that nodes could not use up is refused", "[formats]") {
+TEST_CASE("a name table with more names than nodes is rejected", "[formats]") {
   LuantiBlockFields fields = sample();
   fields.names.clear();
   for (std::uint16_t i = 0; i < 4097; ++i) fields.names.emplace_back(i, "n");
   CHECK(code_of(luanti_row(fields)) == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("a stream that grows without bound is refused", "[formats]") {
+TEST_CASE("a stream that exceeds the bound is rejected", "[formats]") {
   LuantiBlockFields fields = sample();
   fields.rest.assign(kLuantiBlockBytesMax, 0);
   const Bytes bomb = luanti_row(fields);
@@ -190,20 +191,20 @@ TEST_CASE("a stream that grows without bound is refused", "[formats]") {
   CHECK(decode_luanti_block(luanti_row(fields)).has_value());
 }
 
-TEST_CASE("flipped bytes give an error or a sound block", "[formats]") {
+TEST_CASE("flipped bytes give an error or a valid block", "[formats]") {
   const Bytes row = luanti_row(sample());
-  int refused = 0;
+  int rejected = 0;
   for (std::size_t i = 0; i < row.size(); ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       Bytes flipped = row;
       flipped[i] = static_cast<std::uint8_t>(flipped[i] ^ (1 << bit));
       const auto block = decode_luanti_block(flipped);
       if (block) check_sound(*block);
-      refused += static_cast<int>(!block);
+      rejected += static_cast<int>(!block);
     }
   }
-  CHECK(refused > 0);
-  // Inside the stream too, where no checksum of the outer format can help.
+  CHECK(rejected > 0);
+  // Bits inside the stream are flipped too, where no checksum of the outer format helps.
   const Bytes plain = luanti_plain(sample());
   for (std::size_t i = 0; i < 64; ++i) {
     Bytes flipped = plain;

@@ -13,14 +13,14 @@ Visibility visibility_of(std::string_view name, bool keep_all = false) {
 
 }  // namespace
 
-TEST_CASE("air and what is not generated are air", "[formats]") {
+TEST_CASE("air and nodes that are not generated are air", "[formats]") {
   for (const bool keep_all : {false, true}) {
     CHECK(material_of_luanti_node("air", keep_all) == MaterialTable()[kEmpty]);
     CHECK(material_of_luanti_node("ignore", keep_all) == MaterialTable()[kEmpty]);
   }
 }
 
-TEST_CASE("ground is opaque, water and glass are seen through, plants are left out", "[formats]") {
+TEST_CASE("ground is opaque, water and glass are transparent, plants are empty", "[formats]") {
   CHECK(visibility_of("default:stone") == Visibility::opaque);
   CHECK(visibility_of("default:acacia_leaves") == Visibility::opaque);
   CHECK(visibility_of("default:sand_with_kelp") == Visibility::opaque);
@@ -35,7 +35,7 @@ TEST_CASE("ground is opaque, water and glass are seen through, plants are left o
   CHECK(visibility_of("othermod:marble") == Visibility::opaque);
 }
 
-TEST_CASE("stairs and walls look as what they are made of", "[formats]") {
+TEST_CASE("stairs and walls have the colour of their material", "[formats]") {
   const auto colour = [](std::string_view name) {
     return material_of_luanti_node(name, false).colour;
   };
@@ -45,7 +45,7 @@ TEST_CASE("stairs and walls look as what they are made of", "[formats]") {
   CHECK(colour("walls:mossycobble") == colour("default:mossycobble"));
 }
 
-TEST_CASE("unknown names get a colour of their kind, and their own shade of it", "[formats]") {
+TEST_CASE("unknown names get a shade of the colour of their kind", "[formats]") {
   const auto a = material_of_luanti_node("mod:oak_leaves", false),
              b = material_of_luanti_node("mod:fir_leaves", false);
   CHECK(a.colour != b.colour);
@@ -53,13 +53,13 @@ TEST_CASE("unknown names get a colour of their kind, and their own shade of it",
     CHECK(leaves.colour[1] > leaves.colour[0]);
     CHECK(leaves.colour[1] > leaves.colour[2]);
   }
-  // Pinned: colours end up in worlds, so they must not depend on compiler or run.
+  // Pinned: colours are stored in worlds, so they must not depend on compiler or run.
   const auto colour = material_of_luanti_node("mod:xyzzy", false).colour;
   const std::array<int, 4> pinned{colour[0], colour[1], colour[2], colour[3]};
   CHECK(pinned == std::array<int, 4>{140, 201, 113, 255});
 }
 
-TEST_CASE("every name becomes a row that a table takes", "[formats]") {
+TEST_CASE("every name becomes a row that a table accepts", "[formats]") {
   SplitMix64 random(Catch::rngSeed());
   MaterialTable table;
   for (int i = 0; i < 500; ++i) {

@@ -64,7 +64,7 @@ TEST_CASE("painting a column does what painting an array does", "[generate]") {
       CAPTURE(round, step, from, to, material);
       REQUIRE(agrees(column, plain));
     }
-    // Emitted over a window, with empty voxels where it leaves the bounds.
+    // Emits a window, with empty voxels outside the bounds.
     const int at = random.between(-40, 40);
     RunBuilder out(Extent{8, 16, 8}, AxisOrder::yxz);
     for (int line = 0; line < 64; ++line) column.emit(at, 16, out);
@@ -75,7 +75,7 @@ TEST_CASE("painting a column does what painting an array does", "[generate]") {
   }
 }
 
-TEST_CASE("the array tells a wrong column", "[generate]") {
+TEST_CASE("the array detects a wrong column", "[generate]") {
   Column column;
   column.reset(PlainColumn::kMin, PlainColumn::kMax);
   PlainColumn plain;

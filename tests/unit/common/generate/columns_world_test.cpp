@@ -57,7 +57,7 @@ TEST_CASE("the thesis' noise scenario has its opaque voxels and its runs, chunk 
     fields >> x >> y >> z >> opaque >> empty >> runs;
     REQUIRE(fields.good());
     CAPTURE(x, y, z);
-    // The thesis' z is up; its index order y, z, x is ours with the axes' names changed: z, y, x.
+    // The thesis' z is up. Its index order y, z, x is z, y, x here.
     const RunChunk chunk = (*world)->generate({x * 32, z * 32, y * 32}, Extent::cube(32));
     REQUIRE(validate(chunk).has_value());
     CHECK(opaque_voxels(chunk) == opaque);
@@ -89,7 +89,7 @@ TEST_CASE("a column world is empty outside of its columns", "[generate]") {
   CHECK((*world)->generate({0, 0, 0}, Extent::cube(8)).is_uniform());
 }
 
-TEST_CASE("a column world does not care for the order of its lines", "[generate]") {
+TEST_CASE("a column world does not depend on the order of its lines", "[generate]") {
   const auto a = ColumnsWorld::parse(std::string(kHeader) + "0,0,0:2\n1,0,1:2\n0,1,2:2\n1,1,3:2\n");
   const auto b = ColumnsWorld::parse(std::string(kHeader) + "1,1,3:2\n0,1,2:2\n1,0,1:2\n0,0,0:2");
   REQUIRE((a.has_value() && b.has_value()));
@@ -97,7 +97,7 @@ TEST_CASE("a column world does not care for the order of its lines", "[generate]
         (*b)->generate({-3, -32, -3}, Extent::cube(8)));
 }
 
-TEST_CASE("a broken column file is refused at its line", "[generate]") {
+TEST_CASE("a bad column file is rejected with its line", "[generate]") {
   CHECK(ColumnsWorld::parse("").error().code == ErrorCode::truncated);
   CHECK(ColumnsWorld::parse(kHeader).error().code == ErrorCode::truncated);
   CHECK(ColumnsWorld::parse("x,y,runs\n0,0,0:1\n").error().code == ErrorCode::bad_version);
@@ -112,7 +112,7 @@ TEST_CASE("a broken column file is refused at its line", "[generate]") {
   CHECK(error_of("0,0,1:4097\n").code == ErrorCode::limit_exceeded);
   CHECK(error_of("0,0,1:4096|1:1\n").code == ErrorCode::limit_exceeded);
   CHECK(error_of("0,0,1:2\n1,0,1:3\n").code == ErrorCode::bad_value);  // heights differ
-  CHECK(error_of("0,0,1:2\n0,0,1:2\n").code == ErrorCode::bad_value);  // twice the same place
+  CHECK(error_of("0,0,1:2\n0,0,1:2\n").code == ErrorCode::bad_value);  // the same place twice
   CHECK(error_of("0,0,1:2\n2,0,1:2\n").code == ErrorCode::bad_value);  // a gap
   CHECK(error_of("0,0,1:2\n1,0,1:2\n1,1,1:2\n").code ==
         ErrorCode::bad_value);  // a corner is missing

@@ -16,7 +16,7 @@ ErrorCode code_of(const GeneratorPin& pin, const MaterialTable& table = default_
 
 }  // namespace
 
-TEST_CASE("a build refuses pins that it lacks", "[generate]") {
+TEST_CASE("a build rejects pins of generators that it lacks", "[generate]") {
   CHECK(code_of({"", 1, 0, ""}) == ErrorCode::not_found);
   CHECK(code_of({"caves", 1, 0, ""}) == ErrorCode::not_found);
   for (const char* name : {"empty", "flat", "terrain"}) {
@@ -27,7 +27,7 @@ TEST_CASE("a build refuses pins that it lacks", "[generate]") {
   }
 }
 
-TEST_CASE("a build refuses parameters that it cannot follow", "[generate]") {
+TEST_CASE("a build rejects parameters that it cannot use", "[generate]") {
   CHECK(code_of({"flat", 1, 0, "height = \"7\""}) == ErrorCode::bad_value);
   CHECK(code_of({"flat", 1, 0, "surface = 7"}) == ErrorCode::bad_value);
   CHECK(code_of({"flat", 1, 0, "height = 100001"}) == ErrorCode::bad_value);

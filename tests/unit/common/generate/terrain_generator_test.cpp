@@ -1,4 +1,5 @@
-// The terrain against its definition, voxel by voxel: one condition per rule, evaluated at single places.
+// Compares the terrain with its definition, voxel by voxel: one condition per rule, evaluated at
+// single places.
 #include "common/generate/terrain_generator.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,14 +13,15 @@ namespace {
 
 constexpr std::uint64_t kSeed = 7;
 
-/// Height of a rule's surface; the noise itself is tested elsewhere.
+/// Returns the height of a rule's surface. Other tests cover the noise itself.
 double height(const SurfaceRule& rule, std::int32_t x, std::int32_t z) {
   const ValueNoise noise(mix64(mix64(kSeed) + static_cast<std::uint64_t>(std::int64_t{rule.seed})),
                          rule.frequency);
   return rule.distance + rule.elevation * noise.at(x, z);
 }
 
-/// The last material whose rule holds at a place: what the thesis' generator asks of every voxel.
+/// Returns the last material whose rule holds at a place, as the thesis' generator computes it for
+/// every voxel.
 Material ruled(const MaterialTable& table, std::int32_t y_min, VoxelPos at) {
   Material out = kEmpty;
   if (at.y < y_min) return out;
@@ -57,7 +59,7 @@ struct Oracle {
   }
 };
 
-/// Compares a few columns over the whole height; returns the number of voxels that differ.
+/// Compares a few columns over the whole height. Returns the number of voxels that differ.
 int differences(const Generator& generator, const Oracle& oracle, SplitMix64& random, int columns) {
   int wrong = 0;
   for (int i = 0; i < columns; ++i) {
@@ -79,7 +81,7 @@ int differences(const Generator& generator, const Oracle& oracle, SplitMix64& ra
 
 }  // namespace
 
-TEST_CASE("terrain is what its rules say, voxel by voxel", "[generate]") {
+TEST_CASE("terrain follows its rules, voxel by voxel", "[generate]") {
   SplitMix64 random(Catch::rngSeed());
   const MaterialTable& table = default_material_table();
   TerrainParameters parameters;
@@ -93,7 +95,7 @@ TEST_CASE("terrain is what its rules say, voxel by voxel", "[generate]") {
   CHECK(differences(**made, {table, parameters}, random, 12) == 0);
 }
 
-TEST_CASE("terrain with steep and hollow rules is what they say", "[generate]") {
+TEST_CASE("terrain follows steep and hollow rules", "[generate]") {
   // Overhangs: a slab between two surfaces, with air and another material below.
   MaterialTable table;
   REQUIRE(table.add({"low",
@@ -110,7 +112,7 @@ TEST_CASE("terrain with steep and hollow rules is what they say", "[generate]") 
   REQUIRE(made.has_value());
   CHECK(differences(**made, {table, parameters}, random, 12) == 0);
 
-  // And with the rule order turned round, where the solid ground is the last to be painted.
+  // The same with the rules in reverse order, where the solid ground is painted last.
   MaterialTable turned;
   REQUIRE(turned.add(table[2]));
   REQUIRE(turned.add(table[1]));
@@ -119,7 +121,7 @@ TEST_CASE("terrain with steep and hollow rules is what they say", "[generate]") 
   CHECK(differences(**other, {turned, parameters}, random, 12) == 0);
 }
 
-TEST_CASE("the voxel oracle tells terrain with another parameter", "[generate]") {
+TEST_CASE("the voxel oracle detects terrain with another parameter", "[generate]") {
   SplitMix64 random(1);
   const MaterialTable& table = default_material_table();
   const auto made = TerrainGenerator::make(kSeed, TerrainParameters{}, table);

@@ -57,8 +57,8 @@ TEST_CASE("noise is smooth: neighbouring columns differ by little at a low frequ
   const ValueNoise noise(3, 0.007);
   std::vector<double> line(128);
   noise.fill(-64, 5, 128, 1, line);
-  // Steepest: the fade's slope is at most 1.875, a cell's rise at most 2; three octaves weigh 4/7 each in
-  // slope.
+  // Bound of the slope: the fade's slope is at most 1.875, and a cell's rise at most 2. Each of the
+  // three octaves has the weight 4/7 in the slope.
   for (std::size_t i = 1; i < line.size(); ++i) {
     CHECK(std::fabs(line[i] - line[i - 1]) <= 0.007 * 1.875 * 2 * 3 * 4 / 7);
   }

@@ -48,7 +48,7 @@ TEST_CASE("a name is 1 to 64 bytes of UTF-8 without control characters", "[mater
   CHECK(accepted("gr\xc3\xbcn"));
   CHECK(accepted("\xe7\x9f\xb3"));
   CHECK(accepted("\xf0\x9f\xaa\xa8"));
-  CHECK_FALSE(accepted("\xc3"));              // cut off
+  CHECK_FALSE(accepted("\xc3"));              // truncated
   CHECK_FALSE(accepted("\xbc"));              // continuation without a lead
   CHECK_FALSE(accepted("\xc0\xaf"));          // overlong
   CHECK_FALSE(accepted("\xe0\x9f\xbf"));      // overlong
@@ -56,7 +56,7 @@ TEST_CASE("a name is 1 to 64 bytes of UTF-8 without control characters", "[mater
   CHECK_FALSE(accepted("\xf4\x90\x80\x80"));  // beyond U+10FFFF
 }
 
-TEST_CASE("a double name is refused and changes nothing", "[materials]") {
+TEST_CASE("a duplicate name is rejected and changes nothing", "[materials]") {
   MaterialTable table;
   REQUIRE(table.add(named("stone")).has_value());
   const MaterialTable before = table;
@@ -65,7 +65,7 @@ TEST_CASE("a double name is refused and changes nothing", "[materials]") {
   CHECK(table == before);
 }
 
-TEST_CASE("an opaque material cannot be see-through", "[materials]") {
+TEST_CASE("an opaque material cannot have a transparent colour", "[materials]") {
   MaterialTable table;
   MaterialInfo info = named("film");
   info.colour[3] = 254;
@@ -104,7 +104,7 @@ TEST_CASE("a table holds 65536 materials and no more", "[materials]") {
 
 TEST_CASE("the built-in table keeps its ids and the thesis' rules", "[materials]") {
   const MaterialTable& table = default_material_table();
-  // Worlds store these ids: a row may be added at the end, never moved.
+  // Worlds store these ids: a row may be appended, never moved.
   const char* names[] = {"air",         "grass",     "sand",        "dirt",        "stone",
                          "water",       "snow",      "gravel",      "clay",        "glass",
                          "planks",      "log",       "leaves",      "brick",       "cobble",

@@ -15,7 +15,7 @@ TextError error_of(const std::string& toml) {
   return table.error();
 }
 
-/// The error of a table whose second row, on lines 4 and following, is `row`.
+/// Returns the error of a table whose second row, from line 4 on, is `row`.
 TextError row_error(const std::string& row) { return error_of(kAir + ("[[material]]\n" + row)); }
 
 MaterialTable random_table(SplitMix64& random) {
@@ -70,7 +70,7 @@ visibility = "transparent"
   CHECK((*table)[2].colour == std::array<std::uint8_t, 4>{1, 2, 3, 4});
 }
 
-TEST_CASE("a table survives the way through text", "[materials]") {
+TEST_CASE("a table round trips through text", "[materials]") {
   const auto back = parse_material_table(to_toml(default_material_table()), "default");
   REQUIRE(back.has_value());
   CHECK(*back == default_material_table());
@@ -87,7 +87,7 @@ TEST_CASE("a table survives the way through text", "[materials]") {
   }
 }
 
-TEST_CASE("an error says file, line and key", "[materials]") {
+TEST_CASE("an error names file, line and key", "[materials]") {
   const TextError error = row_error("name = \"rock\"\ncolour = \"red\"\n");
   CHECK(error.file == "m.toml");
   CHECK(error.line == 6);
@@ -96,7 +96,7 @@ TEST_CASE("an error says file, line and key", "[materials]") {
   CHECK(TextError{"f", 0, "", "gone"}.message() == "f: gone");
 }
 
-TEST_CASE("every mistake in a row is found at its key", "[materials]") {
+TEST_CASE("every mistake in a row is reported at its key", "[materials]") {
   struct Case {
     const char* row;
     std::uint32_t line;
@@ -145,7 +145,7 @@ TEST_CASE("every mistake in a row is found at its key", "[materials]") {
   }
 }
 
-TEST_CASE("a file that is no table of materials is refused", "[materials]") {
+TEST_CASE("a file that is no table of materials is rejected", "[materials]") {
   CHECK(error_of("").key == "material");
   CHECK(error_of("material = []").key == "material");
   CHECK(error_of("material = 3").line == 1);

@@ -49,7 +49,7 @@ TEST_CASE("the width of a quad runs along u and the height along v, cyclically a
   CHECK(v_axis_of(Axis::z) == Axis::y);
 }
 
-TEST_CASE("corners of a quad stand where its voxels end", "[mesh]") {
+TEST_CASE("corners of a quad are at the ends of its voxels", "[mesh]") {
   const std::array<Corner, 4> top =
       quad_corners(pack({2, 7, 4, 3, 5, Direction::pos_y, 1}));  // u is z, v is x
   CHECK(top == std::array<Corner, 4>{{{2, 8, 4}, {2, 8, 7}, {7, 8, 7}, {7, 8, 4}}});

@@ -1,5 +1,5 @@
-// .rlog files written and read again, cut at every byte, flipped in every bit, their blocks reordered, and
-// wrong behind right checksums.
+// Reads .rlog files that were written, truncated at every byte, flipped in every bit, reordered by
+// block, or made wrong with correct checksums.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -65,9 +65,9 @@ TEST_CASE("extreme numbers pass through an .rlog", "[rlog]") {
   CHECK(read.records == records);
 }
 
-TEST_CASE("a log that does not go on as it should is not written", "[rlog]") {
+TEST_CASE("edits that do not continue the log are not written", "[rlog]") {
   const auto good = records_of(1, 1, 3);
-  const auto refused = [&](const std::function<void(EditRecord&)>& change) {
+  const auto rejected = [&](const std::function<void(EditRecord&)>& change) {
     RlogWriter writer([](ByteView) { return true; });
     REQUIRE(writer.begin(sample_rlog_world(), {}).has_value());
     REQUIRE(writer.add(good[0]).has_value());
@@ -78,19 +78,19 @@ TEST_CASE("a log that does not go on as it should is not written", "[rlog]") {
     CHECK(added.error().seq == next.version.seq);
     return std::string(added.error().error.what);
   };
-  CHECK(refused([](EditRecord& r) { r.version.seq = 3; }) == "does not continue the log");
-  CHECK(refused([](EditRecord& r) { r.version.epoch = 1; }) == "epoch falls");
-  CHECK(refused([&](EditRecord& r) { r.time_us = good[0].time_us - 1; }) == "time falls");
-  CHECK(refused([](EditRecord& r) { r.log = 1; }) == "belongs to another log");
-  CHECK(refused([](EditRecord& r) { r.subject = 2; }) == "subject is not an earlier edit");
+  CHECK(rejected([](EditRecord& r) { r.version.seq = 3; }) == "does not continue the log");
+  CHECK(rejected([](EditRecord& r) { r.version.epoch = 1; }) == "epoch falls");
+  CHECK(rejected([&](EditRecord& r) { r.time_us = good[0].time_us - 1; }) == "time falls");
+  CHECK(rejected([](EditRecord& r) { r.log = 1; }) == "belongs to another log");
+  CHECK(rejected([](EditRecord& r) { r.subject = 2; }) == "subject is not an earlier edit");
   RlogWriter full([](ByteView) { return false; });
   CHECK(full.begin(sample_rlog_world(), {}).error().error.code == ErrorCode::io_failed);
 }
 
-TEST_CASE("reading begins at a sequence or a time without unpacking what lies before", "[rlog]") {
+TEST_CASE("reading begins at a sequence or a time without unpacking earlier blocks", "[rlog]") {
   const auto records = records_of(2, 1, 100);
   Bytes file = rlog_of(sample_rlog_world(), sample_rlog_players(), records, kSmallBlocks);
-  // The first block of edits is broken inside: whoever reads it fails, whoever hops over it does not.
+  // The first block of edits is damaged inside. Reading it fails; skipping it does not.
   const std::size_t third = blocks_of(file)[2];
   file[third + kRlogHeaderBytes] ^= 1;
   CHECK(read_rlog(file).error.has_value());
@@ -107,7 +107,8 @@ TEST_CASE("reading begins at a sequence or a time without unpacking what lies be
   CHECK_FALSE(read_rlog(file, {101}).error.has_value());
 }
 
-TEST_CASE("a cut .rlog gives the edits of its whole blocks and names the cut", "[rlog]") {
+TEST_CASE("a truncated .rlog gives the edits of its complete blocks and names the place",
+          "[rlog]") {
   const auto records = records_of(3, 1, 60);
   const Bytes file = rlog_of(sample_rlog_world(), sample_rlog_players(), records, kSmallBlocks);
   const auto begins = blocks_of(file);
@@ -128,7 +129,7 @@ TEST_CASE("a cut .rlog gives the edits of its whole blocks and names the cut", "
   }
 }
 
-TEST_CASE("no flipped bit of an .rlog passes, and everything before it stands", "[rlog]") {
+TEST_CASE("every flipped bit of an .rlog is detected, and all edits before it are read", "[rlog]") {
   const auto records = records_of(4, 1, 40);
   const Bytes file = rlog_of(sample_rlog_world(), sample_rlog_players(), records, kSmallBlocks);
   const auto begins = blocks_of(file);
@@ -147,8 +148,7 @@ TEST_CASE("no flipped bit of an .rlog passes, and everything before it stands", 
   }
 }
 
-TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from another file",
-          "[rlog]") {
+TEST_CASE("moved, missing, duplicated and foreign blocks of an .rlog are detected", "[rlog]") {
   const auto records = records_of(5, 1, 64);
   const Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
   const Bytes other = rlog_of(sample_rlog_world(), {}, records_of(6, 1, 64), {0, 16});
@@ -172,7 +172,7 @@ TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from a
   REQUIRE_FALSE(read_rlog(joined({0, 1, 2, 3, 4, 5})).error.has_value());
   const auto stands = [&](Bytes bytes, std::size_t edits) {
     for (const bool mended : {false, true}) {
-      if (mended) mend_rlog(bytes);  // what a forger would do; sequences still tell
+      if (mended) mend_rlog(bytes);  // checksums as a forger would set them; sequences still differ
       const RlogContents read = read_rlog(bytes);
       CAPTURE(mended);
       REQUIRE(read.error.has_value());
@@ -191,7 +191,7 @@ TEST_CASE("blocks of an .rlog cannot be moved, left out, doubled or taken from a
 }
 
 TEST_CASE(
-    "a bad record behind right checksums is named, and the edits before it in its block stand",
+    "a bad record with correct checksums is named, and the edits before it in its block are read",
     "[rlog]") {
   const auto records = records_of(7, 1, 20);
   const Bytes file = rlog_of(sample_rlog_world(), {}, records, {0, 16});
@@ -203,18 +203,18 @@ TEST_CASE(
     const RlogContents read = read_rlog(changed);
     CAPTURE(at);
     for (const EditRecord& record : read.records) REQUIRE(validate(record.edit).has_value());
-    if (!read.error) continue;  // another log, and a sound one
+    if (!read.error) continue;  // another valid log
     REQUIRE(read.error->seq == read.records.size() + 1);
     const std::size_t named = read.error->position == blocks_of(file)[1] ? 1 : 2;
     REQUIRE(read.error->position == blocks_of(file)[named]);
-    // After its last record a block may still hold too much; then its successor is not looked at.
+    // A block may hold too much after its last record. Then the next block is not read.
     REQUIRE((named == 1 ? read.records.size() <= 16 : read.records.size() >= 16));
     if (!read.records.empty() && read.records.size() < 16) ++partial;
   }
   CHECK(partial > 20);
 }
 
-TEST_CASE("an .rlog error says which edit and which byte", "[rlog]") {
+TEST_CASE("an .rlog error names the edit and the byte", "[rlog]") {
   CHECK(RlogError{{ErrorCode::bad_checksum, "checksum of the block is wrong", 0}, 9121, 123456}
             .message() == "edit 9121 at byte 123456: checksum of the block is wrong");
   const Bytes newer = [] {
@@ -236,7 +236,7 @@ TEST_CASE("a single-voxel edit of a builders' evening costs at most 16 bytes of 
     const double bytes = static_cast<double>(file.size()) / static_cast<double>(records.size());
     UNSCOPED_INFO("level " << level << ": " << bytes << " bytes an edit");
     CHECK(bytes < 16);
-    CHECK(bytes > 3);  // microseconds alone have more to say than that
+    CHECK(bytes > 3);  // the microseconds alone take more
   }
 }
 

@@ -29,7 +29,7 @@ TEST_CASE("an order is named fastest axis first", "[runs][axis_order]") {
   CHECK(index_of({0, 1, 0}, extent, AxisOrder::zxy) == 256);
 }
 
-TEST_CASE("an ordered position goes back to the local one", "[runs][axis_order]") {
+TEST_CASE("an ordered position converts back to the local one", "[runs][axis_order]") {
   for (const AxisOrder order : kAxisOrders) {
     const LocalPos p{3, 5, 7};
     CHECK(from_ordered(to_ordered(p, order), order) == p);

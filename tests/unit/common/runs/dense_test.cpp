@@ -35,7 +35,7 @@ TEST_CASE("work on runs expands nothing", "[runs][dense]") {
   CHECK(dense_expansions() == before);
 }
 
-TEST_CASE("a dense buffer and its runs turn into each other", "[runs][dense]") {
+TEST_CASE("a dense buffer and its runs convert into each other", "[runs][dense]") {
   SplitMix64 rng(2);
   for (int i = 0; i < 60; ++i) {
     const RunChunk chunk = test::random_chunk(rng, 20, 5);

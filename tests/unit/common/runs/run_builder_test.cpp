@@ -7,7 +7,7 @@ using namespace runstone;
 TEST_CASE("stretches of one material become one run", "[runs][builder]") {
   RunBuilder builder(Extent::cube(8), AxisOrder::yzx);
   builder.append(10, 1);
-  builder.append(0, 2);  // nothing, so it must not part its neighbours
+  builder.append(0, 2);  // appends nothing and must not separate its neighbours
   builder.append(5, 1);
   CHECK(builder.filled() == 15);
   builder.append_to(20, 3);
@@ -41,7 +41,7 @@ TEST_CASE("a finished builder starts over", "[runs][builder]") {
   CHECK(second == uniform_chunk(Extent::cube(8), 5));
 }
 
-TEST_CASE("the builder takes the form that the volume asks for", "[runs][builder]") {
+TEST_CASE("the builder uses the form that the volume requires", "[runs][builder]") {
   CHECK(uniform_chunk({71, 71, 13}, 1).runs.is_narrow());        // 65,533 voxels
   CHECK_FALSE(uniform_chunk({32, 32, 64}, 1).runs.is_narrow());  // 65,536 voxels
   CHECK(validate(uniform_chunk({71, 71, 13}, 1)).has_value());

@@ -46,7 +46,7 @@ TEST_CASE("a fill splits the run it lands in", "[runs][fill]") {
   }
 }
 
-TEST_CASE("a fill melts into neighbours of its material", "[runs][fill]") {
+TEST_CASE("a fill merges with neighbours of its material", "[runs][fill]") {
   RunChunk chunk = chunk_of_runs(kSmall, {{10, 1}, {20, 2}, {30, 1}, {512, 3}});
   EditArea area;
   CHECK(fill(chunk, 10, 10, 1, &area));
@@ -76,7 +76,8 @@ TEST_CASE("a fill over many runs leaves one", "[runs][fill]") {
   CHECK(chunk == uniform_chunk(kSmall, 4));
 }
 
-TEST_CASE("a fill that changes no voxel says so and leaves chunk and area alone", "[runs][fill]") {
+TEST_CASE("a fill that changes no voxel returns false and leaves chunk and area unchanged",
+          "[runs][fill]") {
   RunChunk chunk = chunk_of_runs(kSmall, {{10, 1}, {20, 2}, {512, 1}});
   const RunChunk before = chunk;
   EditArea area{7, 7, 7};

@@ -9,7 +9,7 @@ using namespace runstone;
 
 namespace {
 
-// The first run that ends behind the voxel, by plain search.
+// Returns the first run that ends behind the voxel, by linear search.
 std::size_t run_of(const RunList& runs, std::uint32_t voxel) {
   std::size_t i = 0;
   while (runs.end(i) <= voxel) ++i;
@@ -62,7 +62,7 @@ TEST_CASE("seeks of every distance from every kind of start land as a plain sear
       for (std::uint32_t voxel = 0; voxel < chunk.volume();) {
         cursor.seek(voxel);
         REQUIRE(cursor.run() == run_of(chunk.runs, voxel));
-        cursor.seek(voxel);  // a seek to where it stands stays
+        cursor.seek(voxel);  // a seek to the current voxel stays
         REQUIRE(cursor.run() == run_of(chunk.runs, voxel));
         voxel += 1 + rng.below(1u << rng.below(14));
       }

@@ -205,4 +205,50 @@ TEST_CASE("a restarted world continues its log: versions, previous sequences and
 }
 
 }  // namespace
+
+TEST_CASE("a command in a session without the feature ends it, and the server does not execute it",
+          "[world]") {
+  Bench bench;
+  bench.join(1, 1);  // offers no feature
+  bench.server.received(1, CommandRequest{7, "undo"}, bench.now());
+  CHECK(bench.environment.commands.empty());
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::unexpected_message);
+
+  bench.server.connected(2, bench.now());
+  Hello hello = bench.hello(2);
+  hello.features = kFeatureCommands;
+  bench.server.received(2, hello, bench.now());
+  const Welcome welcome = bench.environment.messages<Welcome>(2, 0).at(0);
+  bench.server.received(2, bench.proof(2, hello, welcome), bench.now());
+  bench.server.received(2, CommandRequest{7, "undo"}, bench.now());
+  CHECK(bench.environment.commands == std::vector<std::string>{"undo"});
+  CHECK(bench.environment.closed.size() == 1);
+}
+
+TEST_CASE("an invalid descriptor is rejected as bad_edit, costs one token and is resolved",
+          "[world]") {
+  WorldConfig c = config();
+  c.edits_per_second = 1;
+  c.edit_burst = 2;
+  Bench bench(c);
+  bench.join(1, 1);
+  const auto offer = [&](ClientSequence seq) {
+    bench.server.received(
+        1, EditRequest{seq, 0, {}, Error{ErrorCode::unknown_kind, "unknown edit kind", 3}},
+        bench.now());
+    return bench.environment.messages<Reject>(1, kEdge).back();
+  };
+  const Reject first = offer(1);
+  CHECK(first.client_seq == 1);
+  CHECK(first.reason == RejectReason::bad_edit);
+  CHECK(first.detail == "unknown edit kind (at byte 3)");
+  CHECK(offer(1) == first);  // costs nothing: the operation is resolved
+  CHECK(offer(2).reason == RejectReason::bad_edit);
+  CHECK(offer(3) == Reject{3, RejectReason::rate_limited, "", 0});
+  CHECK_FALSE(bench.server.has_queued());
+  CHECK(bench.server.resolved(1, 1) == 3);
+  CHECK(bench.server.session_count() == 1);
+}
+
 }  // namespace runstone

@@ -1,6 +1,6 @@
-// Every number the thesis' data has of its 37 scenarios, against the reference meshers. The tables in
-// tests/data/thesis say what to expect; scenario_defects.csv names the cells that cannot hold, and why, and
-// each of those is shown not to hold.
+// Compares the reference meshers with every number in the thesis' data about its 37 scenarios. The
+// tables in tests/data/thesis hold the expected numbers. scenario_defects.csv names the cells that
+// cannot be reproduced, with the reason, and the tests check that these differ.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <iostream>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr unsigned kEdge = 32;
 
-/// Counts what it checks, so that the summary says how many of the thesis' numbers were met.
+/// Counts its checks, so that the summary gives the number of reproduced values.
 class Ledger {
  public:
   explicit Ledger(const char* name) : name_(name) {}
@@ -41,7 +41,7 @@ class Ledger {
   unsigned checked_ = 0, met_ = 0;
 };
 
-/// As the tables write means: two decimals at most, no zeros behind, but one.
+/// Formats a mean as the tables do: at most two decimals, no trailing zeros except one.
 std::string two_decimals(double value) {
   char text[64];
   std::snprintf(text, sizeof text, "%.2f", value);
@@ -49,7 +49,7 @@ std::string two_decimals(double value) {
   if (out.back() == '0') out.pop_back();
   return out;
 }
-/// As they write means of counts that may be whole.
+/// Formats a mean of counts, which may be an integer, as the tables do.
 std::string mean_text(double value) {
   std::string out = two_decimals(value);
   return out.ends_with(".0") ? out.substr(0, out.size() - 2) : out;
@@ -62,7 +62,8 @@ unsigned number_of(const ThesisRow& row) {
 /// Means over the 27 chunks of a world.
 struct WorldMeans {
   double vp = 0, grid = 0,
-         rle = 0;  // vertices; the first two over chunks that have any, as the thesis logged them
+         // Vertices. The first two are means over chunks that have any, as the thesis logged them.
+      rle = 0;
   double opaque = 0, runs = 0, bytes_logged = 0, culled_alone = 0, grid_alone = 0;
 };
 
@@ -79,7 +80,7 @@ WorldMeans means_of(unsigned number) {
         const ScenarioNumbers numbers = numbers_of(scene);
         const ScenarioNumbers alone = numbers_of({scene.chunk, {}});
         const std::size_t vp = vertices_from_octree(octree, {x, y, z}, kEdge);
-        CHECK(vp == numbers.vertices_culled);  // two ways to the same border
+        CHECK(vp == numbers.vertices_culled);  // two computations of the same border
         sum.vp += static_cast<double>(vp);
         sum.grid += static_cast<double>(numbers.vertices_grid);
         sum.rle += static_cast<double>(numbers.vertices_rle);
@@ -112,7 +113,7 @@ std::map<std::pair<unsigned, std::string>, ThesisRow> defects() {
   return out;
 }
 
-/// What both tables say of a chunk's storage.
+/// Checks the storage numbers that both tables have for a chunk.
 void check_storage(Ledger& ledger, const ThesisRow& row, const MeshScene& scene,
                    const ScenarioNumbers& numbers) {
   ledger.check(row, "opaque_voxels", numbers.opaque_voxels);
@@ -178,7 +179,7 @@ TEST_CASE("every scenario as the thesis' world of 27 chunks has its logged verti
   CHECK(defective == 16);
   CHECK(ledger.checked() == 37 * 3 - 15);
 
-  // Scenario 5 has means where the others have one chunk.
+  // Scenario 5 has means where the other scenarios have one chunk.
   const ThesisRow row = thesis_table("scenarios.csv").at(4);
   const WorldMeans& noise = means.at(5);
   ledger.check(row, "opaque_voxels", mean_text(noise.opaque));
@@ -197,7 +198,8 @@ TEST_CASE("scenario 5 has the thesis' numbers chunk by chunk", "[scenarios][gold
   const reference::MaterialOctree octree = scenario_octree(*world, kEdge);
   for (const ThesisRow& row : thesis_table("scenario5_chunks.csv")) {
     const auto field = [&row](const char* name) { return std::stoi(row.at(name)); };
-    const ChunkCoord at{field("chunk_x"), field("chunk_z"), field("chunk_y")};  // its z is up
+    const ChunkCoord at{field("chunk_x"), field("chunk_z"),
+                        field("chunk_y")};  // the thesis' z is up
     CAPTURE(at.x, at.y, at.z);
     const MeshScene scene = scenario_scene(*world, at, kEdge, false);
     const ScenarioNumbers numbers = numbers_of(scene);
@@ -218,7 +220,7 @@ TEST_CASE("scenario 12 was measured with another scenario's model than it shippe
   };
   const ScenarioNumbers measured = chunk_of(*scenario_model(12, kEdge));
   CHECK(measured.opaque_voxels == chunk_of(*scenario_model(10, kEdge)).opaque_voxels);
-  // The numbers that the table's note has of the shipped asset.
+  // The numbers that the table's note gives for the shipped asset.
   const ScenarioNumbers shipped = chunk_of(ScenarioModel(scenario::Strips{7, 7, 7}, kEdge));
   CHECK(shipped.opaque_voxels == 4096);
   CHECK(shipped.runs == 4096);

@@ -1,4 +1,4 @@
-// The scenarios as worlds that somebody may host: equal pins give equal voxels for ever.
+// The scenarios as worlds that a server can host: equal pins give equal voxels.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -7,7 +7,7 @@
 namespace runstone::test {
 namespace {
 
-/// The model of every scenario at one edge, as one digest.
+/// Returns one digest over the models of all scenarios at one edge.
 std::string digest_at(std::int32_t edge) {
   Digest sum;
   for (std::int32_t number = 1; number <= 37; ++number) {

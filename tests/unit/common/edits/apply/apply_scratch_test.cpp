@@ -17,7 +17,7 @@ TEST_CASE("applying stacks allocates nothing once scratch, result and chunk have
   for (EditDescriptor& edit : edits) {
     do {
       edit = random_edit_near(rng, {}, start.extent);
-    } while (std::holds_alternative<Paste>(edit.shape));  // which takes scratch of its own
+    } while (std::holds_alternative<Paste>(edit.shape));  // a paste allocates
   }
   const auto all = [&](RunChunk& chunk) {
     Digest digest = digest_of(chunk);

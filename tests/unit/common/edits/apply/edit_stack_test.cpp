@@ -5,8 +5,8 @@
 #include "common/runs/run_builder.hpp"
 #include "tests/support/edit_oracle.hpp"
 
-// The cases that figures 7.16 to 7.19 of the thesis draw, on a chunk of 8 x 8 x 8 in order xyz (a line is 8
-// voxels, a layer 64), and what a stack adds to them. `A` .. `C` are materials, `_` is empty.
+// The cases of figures 7.16 to 7.19 of the thesis, on a chunk of 8 x 8 x 8 in order xyz (a line is
+// 8 voxels, a layer 64), and further cases with a stack. `A` .. `C` are materials, `_` is empty.
 namespace runstone::test {
 namespace {
 
@@ -43,7 +43,7 @@ struct Applied {
   ApplyResult result;
 };
 
-// Applies by every strategy the stack allows and insists that all agree.
+// Applies by every strategy that the stack allows and requires equal results.
 Applied apply(const Runs& start, const std::vector<EditDescriptor>& edits) {
   ApplyScratch scratch;
   RunChunk chunk = chunk_of_runs(start);
@@ -93,7 +93,7 @@ TEST_CASE(
   CHECK(result.areas == Areas{{0, 2, 2}});
 }
 
-TEST_CASE("figure 7.18: a change amid a run cuts it in three", "[edits]") {
+TEST_CASE("figure 7.18: a change inside a run splits it into three", "[edits]") {
   const auto [runs, result] = apply({{5, _}, {512, A}}, {at_index(100, B)});
   CHECK(runs == Runs{{5, _}, {100, A}, {101, B}, {512, A}});
   CHECK(result.areas == Areas{{1, 1, 3}});
@@ -139,7 +139,7 @@ TEST_CASE("an edit to the material that is there changes nothing", "[edits]") {
   CHECK(result.voxels_changed == 0);
 }
 
-TEST_CASE("a stack that undoes itself changes nothing", "[edits]") {
+TEST_CASE("a stack whose edits cancel out changes nothing", "[edits]") {
   const Runs start = {{100, A}, {512, B}};
   const auto [runs, result] =
       apply(start, {at_index(5, C), everywhere(A, {MaskKind::only_material, C})});
@@ -148,7 +148,7 @@ TEST_CASE("a stack that undoes itself changes nothing", "[edits]") {
   CHECK(result.areas.empty());
 }
 
-TEST_CASE("masks write where they admit", "[edits]") {
+TEST_CASE("an edit writes only voxels that its mask admits", "[edits]") {
   const Runs start = {{10, _}, {20, A}, {30, B}, {512, _}};
   CHECK(apply(start, {everywhere(C, {MaskKind::only_empty, 0})}).runs ==
         Runs{{10, C}, {20, A}, {30, B}, {512, C}});
@@ -160,7 +160,7 @@ TEST_CASE("masks write where they admit", "[edits]") {
         Runs{{10, _}, {20, A}, {512, _}});
 }
 
-TEST_CASE("a mask sees what the edits below it left", "[edits]") {
+TEST_CASE("a mask tests the result of the edits below it", "[edits]") {
   const Mask empty = {MaskKind::only_empty, 0};
   CHECK(apply({{512, A}}, {everywhere(_), everywhere(B, empty), everywhere(C, empty)}).runs ==
         Runs{{512, B}});
@@ -189,8 +189,9 @@ TEST_CASE("areas count their first run in the new list and join when no kept run
 
 TEST_CASE("dirty layers of a stretch that wraps around a line are those of its two ends",
           "[edits]") {
-  // Voxels 6 .. 9: the end of line 0 and the start of line 1. The walk meets them as one stretch of a run
-  // when the geometry covers both lines whole and the rest is there already.
+  // Voxels 6 .. 9: the end of line 0 and the start of line 1. The walk meets them as one stretch of
+  // a run if the geometry covers both lines completely and the other voxels have the material
+  // already.
   const auto [runs, result] = apply({{6, B}, {10, A}, {512, B}}, {everywhere(B)});
   CHECK(runs == Runs{{512, B}});
   CHECK(result.dirty.layer[0] == std::bitset<kSideMax>(0b11000011));
@@ -232,26 +233,27 @@ TEST_CASE("a chunk at a world position takes edits in world coordinates", "[edit
   CHECK(digest == digest_of(chunk));
 }
 
-TEST_CASE("to replace a material in a box is a box with a mask", "[edits]") {
-  // No kind of its own: A becomes B inside the box and nowhere else; C and empty voxels stay.
+TEST_CASE("a box with a mask replaces a material in the box", "[edits]") {
+  // Replacing needs no kind of its own: A becomes B inside the box and nowhere else. C and empty
+  // voxels stay.
   const EditDescriptor replace = {FillBox{{{2, 0, 0}, {6, 1, 1}}}, {MaskKind::only_material, A}, B};
   CHECK(apply({{3, A}, {4, C}, {5, _}, {8, A}, {512, _}}, {replace}).runs ==
         Runs{{2, A}, {3, B}, {4, C}, {5, _}, {6, B}, {8, A}, {512, _}});
 }
 
 TEST_CASE("a stroke meets the mask once, also where its segments overlap", "[edits]") {
-  // Along the line and back: A becomes B, and what became B is not asked again.
+  // Along the line and back: A becomes B, and B is not changed again.
   const FillStroke there_and_back{{{-2, 0, 0}, {9, 0, 0}, {-2, 0, 0}}, 1};
   const Runs start = {{8, A}, {512, _}};
   const Applied swapped = apply(start, {{there_and_back, {MaskKind::only_material, A}, B}});
   CHECK(swapped.runs == Runs{{8, B}, {512, _}});
   CHECK(swapped.result.voxels_changed == 8);
-  // Only empty voxels: the two lines and the layer beside the first one.
+  // Only empty voxels: the two lines and the layer next to the first one.
   const Applied filled = apply(start, {{there_and_back, {MaskKind::only_empty, _}, C}});
   CHECK(filled.runs == Runs{{8, A}, {16, C}, {64, _}, {80, C}, {512, _}});
 }
 
-TEST_CASE("a reused result forgets the call before", "[edits]") {
+TEST_CASE("a reused result forgets the previous call", "[edits]") {
   ApplyScratch scratch;
   ApplyResult result;
   RunChunk chunk = chunk_of_runs({{512, A}});

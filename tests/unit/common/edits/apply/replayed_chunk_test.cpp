@@ -7,7 +7,7 @@
 
 namespace runstone::test {
 
-TEST_CASE("a chunk that follows the log is the chunk to which the edits were applied one by one",
+TEST_CASE("a replayed chunk equals the chunk to which the edits were applied one by one",
           "[edits]") {
   SplitMix64 rng(20261122);
   const VoxelPos origin{-32, 0, 32};
@@ -20,7 +20,7 @@ TEST_CASE("a chunk that follows the log is the chunk to which the edits were app
     start.digest = digest_of(start.voxels);
     Chunk expected = start;
     ReplayedChunk followed(start, origin);
-    // Not a multiple of what one sweep takes, so that some edits wait when the log ends.
+    // No multiple of the stack's maximum, so that some edits are pending when the log ends.
     const std::uint32_t edits = 2 * kFollowedEditsMax + 1 + rng.below(40);
     for (std::uint32_t seq = 1; seq <= edits; ++seq) {
       const EditDescriptor edit = random_edit_near(rng, origin, extent);
@@ -35,7 +35,7 @@ TEST_CASE("a chunk that follows the log is the chunk to which the edits were app
   }
 }
 
-TEST_CASE("a followed chunk tells once that its voxels changed", "[edits]") {
+TEST_CASE("a replayed chunk reports once that its voxels changed", "[edits]") {
   Chunk start;
   start.voxels = uniform_chunk(Extent::cube(16), kEmpty);
   start.digest = digest_of(start.voxels);

@@ -45,7 +45,7 @@ Bytes bytes_of(const Clipboard& clipboard) {
   return bytes;
 }
 
-// `count` runs of a cell each, then one of untouched cells.
+// Makes `count` runs of one cell each, then one run of untouched cells.
 Result<std::shared_ptr<const Clipboard>> alternating(std::uint32_t count) {
   std::vector<Run> runs;
   for (std::uint32_t i = 0; i < count; ++i)
@@ -60,9 +60,9 @@ Result<std::shared_ptr<const Clipboard>> alternating(std::uint32_t count) {
 TEST_CASE("a clipboard's first broken invariant is named", "[edits]") {
   const Extent line{6, 1, 1};
   CHECK(Clipboard::of({0, 7}, cells_of(line, {{2, 0}, {3, 1}, {6, 2}})).has_value());
-  CHECK(error_of({}, cells_of(line, {{6, 0}})) == ErrorCode::bad_value);          // nothing touched
-  CHECK(error_of({7}, cells_of(line, {{6, 0}})) == ErrorCode::not_canonical);     // likewise
-  CHECK(error_of({0, 7}, cells_of(line, {{6, 1}})) == ErrorCode::not_canonical);  // 7 unused
+  CHECK(error_of({}, cells_of(line, {{6, 0}})) == ErrorCode::bad_value);       // no cell is touched
+  CHECK(error_of({7}, cells_of(line, {{6, 0}})) == ErrorCode::not_canonical);  // no cell is touched
+  CHECK(error_of({0, 7}, cells_of(line, {{6, 1}})) == ErrorCode::not_canonical);  // 7 is unused
   CHECK(error_of({7, 0}, cells_of(line, {{2, 1}, {6, 2}})) == ErrorCode::not_canonical);
   CHECK(error_of({7, 7}, cells_of(line, {{2, 1}, {6, 2}})) == ErrorCode::not_canonical);
   CHECK(error_of({7}, cells_of(line, {{2, 1}, {6, 2}})) == ErrorCode::bad_value);
@@ -74,7 +74,7 @@ TEST_CASE("a clipboard's first broken invariant is named", "[edits]") {
 
 TEST_CASE("a builder takes cells in any axis order and keeps the one with the fewest runs",
           "[edits]") {
-  // Along y untouched, empty, 9 throughout: three runs with y slowest.
+  // Along y: untouched, empty, 9 in all lines. Three runs with y slowest.
   for (const AxisOrder order : kAxisOrders) {
     const Extent extent{5, 3, 4};
     ClipboardBuilder builder(extent, order);
@@ -95,14 +95,15 @@ TEST_CASE("a builder takes cells in any axis order and keeps the one with the fe
   }
 }
 
-TEST_CASE("a builder refuses what touches nothing and what is too long", "[edits]") {
+TEST_CASE("a builder rejects cells without a touched one and clipboards that are too long",
+          "[edits]") {
   ClipboardBuilder nothing({2, 2, 2});
   nothing.append(8, std::nullopt);
   const auto empty = nothing.finish();
   REQUIRE_FALSE(empty.has_value());
   CHECK(empty.error().code == ErrorCode::bad_value);
 
-  // As much as there is, so too long in each axis order.
+  // Random cells in the largest extent: too long in each axis order.
   SplitMix64 rng{42};
   ClipboardBuilder noise({64, 64, 16});
   for (std::uint32_t i = 0; i < 65536; ++i) noise.append(1, static_cast<Material>(rng.below(20)));
@@ -117,8 +118,8 @@ TEST_CASE("a builder refuses what touches nothing and what is too long", "[edits
   CHECK(colours.error().code == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("a clipboard may have as many bytes as the limit says, and none more", "[edits]") {
-  // 7 bytes for order, sides and palette, a byte for each short run, three for the long last one.
+TEST_CASE("a clipboard may have as many bytes as the limit, and no more", "[edits]") {
+  // 7 bytes for order, sides and palette, one byte for each short run, three for the long last one.
   const auto longest = alternating(kClipboardBytesMax - 10);
   REQUIRE(longest.has_value());
   CHECK((*longest)->byte_size() == kClipboardBytesMax);
@@ -151,15 +152,15 @@ TEST_CASE("only the canonical bytes of a clipboard are read", "[edits]") {
   };
   CHECK(read_error(with(0, {6})) == ErrorCode::bad_value);    // axis order
   CHECK(read_error(with(1, {128})) == ErrorCode::bad_value);  // side
-  CHECK(read_error(with(4, {2})) == ErrorCode::truncated);    // a material more than told
-  CHECK(read_error(with(4, {0x80, 0x80, 0x04})) == ErrorCode::bad_value);  // more than there can be
-  CHECK(read_error(with(4, {10})) == ErrorCode::truncated);                // more than bytes left
+  CHECK(read_error(with(4, {2})) == ErrorCode::truncated);    // one material more than announced
+  CHECK(read_error(with(4, {0x80, 0x80, 0x04})) == ErrorCode::bad_value);  // more than possible
+  CHECK(read_error(with(4, {10})) == ErrorCode::truncated);  // more than the remaining bytes
   CHECK(read_error(with(5, {0xff, 0xff, 0x03})) ==
         ErrorCode::bad_value);                               // a material beyond 65,535
   CHECK(read_error(with(10, {3})) == ErrorCode::bad_value);  // a run behind the end
   Bytes unused = {0, 0, 0, 0, 1, 0, 6, 2};                   // one cell of 7, a palette of 0 and 7
   CHECK(read_error(unused) == ErrorCode::not_canonical);
-  CHECK(read_error({0, 0, 0, 0, 0, 7, 0}) == ErrorCode::not_canonical);  // untouched alone
+  CHECK(read_error({0, 0, 0, 0, 0, 7, 0}) == ErrorCode::not_canonical);  // only untouched cells
   for (std::size_t size = 0; size < good.size(); ++size) {
     CHECK(read_error(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))) ==
           ErrorCode::truncated);
@@ -167,8 +168,9 @@ TEST_CASE("only the canonical bytes of a clipboard are read", "[edits]") {
   CHECK(read_error(Bytes(kClipboardBytesMax + 1, 0)) == ErrorCode::limit_exceeded);
 }
 
-TEST_CASE("random clipboards round trip, and flipped bytes are rejected or mean themselves",
-          "[edits]") {
+TEST_CASE(
+    "random clipboards round trip, and flipped bytes are rejected or decode to their own encoding",
+    "[edits]") {
   SplitMix64 rng{41};
   std::size_t survivors = 0;
   for (int round = 0; round < 300; ++round) {

@@ -18,9 +18,8 @@ TEST_CASE("the 48 orientations have the bytes 0 to 47", "[edits]") {
   CHECK_FALSE(Orientation{static_cast<AxisOrder>(6), 0}.valid());
 }
 
-TEST_CASE(
-    "a quarter of a turn brings +z to +x and +x to -z, and four of them bring everything back",
-    "[edits]") {
+TEST_CASE("a quarter turn maps +z to +x and +x to -z, and four of them are the identity",
+          "[edits]") {
   const Orientation turned = Orientation{}.rotated_about_y(1);
   CHECK(turned.along(Axis::x) == Axis::z);
   CHECK(turned.along(Axis::y) == Axis::y);
@@ -43,8 +42,9 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("mirroring twice brings everything back, and turns and mirrors make sixteen orientations",
-          "[edits]") {
+TEST_CASE(
+    "mirroring twice is the identity, and quarter turns and mirrors make sixteen orientations",
+    "[edits]") {
   std::set<int> reached;
   for (int quarters = 0; quarters < 4; ++quarters) {
     const Orientation turned = Orientation{}.rotated_about_y(quarters);

@@ -103,7 +103,7 @@ TEST_CASE(
   CHECK(error_of(paste({kWorldLimit, 0, 0}, Orientation{}.mirrored(Axis::x))) ==
         ErrorCode::bad_value);
   CHECK(error_of(paste({-kWorldLimit - 1, 0, 0})) ==
-        ErrorCode::bad_value);  // though its only cell lies inside
+        ErrorCode::bad_value);  // although its only cell lies inside
   CHECK(error_of(paste({INT32_MAX, 0, 0})) == ErrorCode::bad_value);
   CHECK(error_of(paste({0, 0, 0}, {AxisOrder::xyz, 8})) == ErrorCode::bad_value);
   CHECK(error_of({Paste{}, {}, kEmpty}) == ErrorCode::bad_value);
@@ -140,7 +140,7 @@ TEST_CASE("pastes are equal when their clipboards are, shared or not", "[edits]"
   CHECK(Paste{} == Paste{});
 }
 
-TEST_CASE("a mask material belongs to the only_material mask alone", "[edits]") {
+TEST_CASE("only the only_material mask has a material", "[edits]") {
   EditDescriptor edit = kVoxel;
   edit.mask = {MaskKind::only_material, 9};
   CHECK(validate(edit).has_value());
@@ -150,7 +150,7 @@ TEST_CASE("a mask material belongs to the only_material mask alone", "[edits]") 
   CHECK(error_of(edit) == ErrorCode::bad_value);
 }
 
-TEST_CASE("masks admit what their names say", "[edits]") {
+TEST_CASE("masks admit the voxels that their names describe", "[edits]") {
   const auto admits = [](MaskKind kind, Material material, Material present) {
     return Mask{kind, material}.admits(present);
   };
@@ -182,9 +182,10 @@ TEST_CASE("unknown kinds, long varints and out-of-range fields are rejected", "[
   CHECK(decode_error({4, 0, 4, 1, 0xff, 0x01, 0, 0, 0, 2, 0, 0}) ==
         ErrorCode::bad_value);  // 257 points
   CHECK(decode_error({4, 0, 4, 1, 0, 0, 0, 0, 0x82, 0x10, 0, 0}) ==
-        ErrorCode::bad_value);                                                     // step 1,025
-  CHECK(decode_error({4, 0, 4, 1, 1, 0, 0, 0, 2, 0, 0}) == ErrorCode::truncated);  // a point short
-  // Every field in range, yet the box ends beyond the world.
+        ErrorCode::bad_value);  // step 1,025
+  CHECK(decode_error({4, 0, 4, 1, 1, 0, 0, 0, 2, 0, 0}) ==
+        ErrorCode::truncated);  // one point too few
+  // Every field is in range, but the box ends beyond the world.
   CHECK(decode_error({2, 0, 4, 0xfe, 0xff, 0xff, 0xff, 0x03, 0, 0, 1, 0, 0}) ==
         ErrorCode::bad_value);
 }
@@ -209,7 +210,8 @@ TEST_CASE("descriptors round trip, and every truncation and extra byte is reject
   CHECK(longest <= kDescriptorBytesMax);
 }
 
-TEST_CASE("flipped descriptor bytes are rejected or mean exactly their own bytes", "[edits]") {
+TEST_CASE("flipped descriptor bytes are rejected or decode to a descriptor that encodes to them",
+          "[edits]") {
   SplitMix64 rng{12};
   std::size_t survivors = 0;
   for (int round = 0; round < 400; ++round) {
@@ -224,7 +226,7 @@ TEST_CASE("flipped descriptor bytes are rejected or mean exactly their own bytes
       REQUIRE(encode(*edit) == flipped);
     }
   }
-  CHECK(survivors > 0);  // most fields have other values, so the check above has run
+  CHECK(survivors > 0);  // most fields have other valid values, so the check above ran
 }
 
 TEST_CASE("records round trip, and every truncation and extra byte is rejected", "[edits]") {
@@ -262,7 +264,7 @@ TEST_CASE("flipped record bytes are rejected or decode to a record that encodes 
   CHECK(survivors > 0);
 }
 
-TEST_CASE("the longest stroke fits its bound, which is its kind's", "[edits]") {
+TEST_CASE("the longest stroke fits the bound of its kind", "[edits]") {
   FillStroke stroke{{{-kWorldLimit + 512, kWorldLimit - 513 - 1024, -kWorldLimit + 512}}, 512};
   while (stroke.points.size() < kStrokePointsMax) {
     const VoxelPos& last = stroke.points.back();
@@ -304,7 +306,7 @@ TEST_CASE("a record has room for descriptors of later kinds, up to its own bound
   };
   constexpr std::uint8_t kLater = 7;
   CHECK(with_descriptor_of(65, 1).code == ErrorCode::limit_exceeded);  // the kind's bound
-  // The length passes; the kind is what this build lacks.
+  // The length is allowed; this build does not know the kind.
   CHECK(with_descriptor_of(65, kLater).code == ErrorCode::unknown_kind);
   CHECK(with_descriptor_of(kRecordDescriptorBytesMax, kLater).code == ErrorCode::unknown_kind);
   const Error error = with_descriptor_of(kRecordDescriptorBytesMax + 1, kLater);
@@ -333,8 +335,8 @@ TEST_CASE("a record's numbers stay within 63 bits and its subject before itself"
   record.version.seq = 0;
   CHECK(broken(record, "sequence 0 is the base, not an edit"));
 
-  // In bytes: the version byte, then log, epoch, sequence, author, instance, client sequence, time, cause,
-  // subject.
+  // In bytes: the version byte, then log, epoch, sequence, author, instance, client sequence, time,
+  // cause, subject.
   const auto decoded = [](std::uint64_t seq, std::uint64_t client_seq, std::uint64_t subject) {
     Bytes bytes;
     ByteWriter w(bytes);
@@ -381,7 +383,7 @@ TEST_CASE("a record's version, sequence, cause and box are checked", "[edits]") 
   CHECK(error_with(0, 0) == ErrorCode::bad_version);
   CHECK(error_with(3, 0) == ErrorCode::bad_value);
   CHECK(error_with(15, 6) == ErrorCode::bad_value);
-  CHECK(error_with(16, 1) == ErrorCode::bad_value);  // edit 1 answers itself
+  CHECK(error_with(16, 1) == ErrorCode::bad_value);  // edit 1 refers to itself
   CHECK(error_with(17, 4) == ErrorCode::bad_value);  // box one voxel off
   CHECK(error_with(20, 2) == ErrorCode::bad_value);  // box one voxel longer
   CHECK(error_with(23, 5) == ErrorCode::trailing_bytes);

@@ -30,7 +30,7 @@ TEST_CASE("bounding boxes hold the geometry tightly", "[edits]") {
   CHECK(bounding_box(sphere({10, 20, -30}, 4)) == VoxelBox{{6, 16, -34}, {15, 25, -25}});
 }
 
-TEST_CASE("small geometries have the voxel counts one can count by hand", "[edits]") {
+TEST_CASE("small geometries have the voxel counts that were counted by hand", "[edits]") {
   CHECK(counted_voxels(voxel({5, 5, 5})) == 1);
   CHECK(counted_voxels(box({0, 0, 0}, {2, 3, 4})) == 24);
   CHECK(counted_voxels(box({0, 0, 0}, {4096, 4096, 4096})) == 1ULL << 36);
@@ -55,12 +55,12 @@ TEST_CASE("a stroke is the spheres along its line", "[edits]") {
   CHECK(touches(bar, {{1, 3, 3}, {2, 4, 4}}));
   CHECK(touches(bar, {{1, 2, 3}, {2, 3, 4}}));        // 1 + 1 <= 1 + 1
   CHECK_FALSE(touches(bar, {{1, 2, 2}, {2, 3, 3}}));  // 3 > 1 + 1
-  CHECK(touches(bar, {{2, 2, 2}, {3, 3, 3}}));        // beside the end, not before it
+  CHECK(touches(bar, {{2, 2, 2}, {3, 3, 3}}));        // beside the end, not in front of it
   CHECK_FALSE(touches(bar, {{0, 0, 0}, {8, 2, 8}}));
   CHECK(counted_voxels(bar) == 6 * 9);  // as its box
   CHECK(counted_voxels(stroke({{0, 0, 0}, {9, 9, 9}}, 1)) == 2 * 9 * (9 + 3));
   CHECK(counted_voxels(stroke({{0, 0, 0}, {9, 9, 9}, {0, 0, 0}}, 1)) == 2 * 2 * 9 * (9 + 3));
-  // A bend in a corner chunk of the bounding box, which none of the two segments reaches.
+  // A bend in a corner chunk of the bounding box, which neither segment reaches.
   const EditDescriptor bend = stroke({{8, 8, 8}, {40, 8, 8}, {40, 40, 8}}, 3);
   CHECK(touched_chunks(bend, 16) ==
         std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}});
@@ -117,13 +117,13 @@ TEST_CASE("spans follow the axis order", "[edits]") {
 }
 
 TEST_CASE("a sphere's rows join where one ends a line and the next begins it", "[edits]") {
-  // Radius 8 around a corner-near centre covers whole lines in the middle: they form one span.
+  // Radius 8 around a centre near a corner covers whole lines in the middle: they form one span.
   const Spans spans = spans_of(sphere({4, 4, 4}, 8));
   for (std::size_t i = 1; i < spans.size(); ++i) CHECK(spans[i - 1].last < spans[i].first);
   CHECK(spans_of(sphere({4, 4, 4}, 200)) == Spans{{0, 512}});
 }
 
-TEST_CASE("spans are appended behind what is there and never joined with it", "[edits]") {
+TEST_CASE("spans are appended behind existing ones and never joined with them", "[edits]") {
   Spans spans = {{0, 9}};
   append_spans(voxel({1, 1, 0}), {}, Extent::cube(8), AxisOrder::xyz, spans);
   CHECK(spans == Spans{{0, 9}, {9, 10}});

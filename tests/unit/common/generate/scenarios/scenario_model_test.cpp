@@ -35,12 +35,13 @@ TEST_CASE("a model is made as runs, never through a grid", "[generate][scenarios
   CHECK(dense_expansions() == before);
 }
 
-TEST_CASE("the sums of sines keep clear of zero, so that every maths library makes the same world",
-          "[generate][scenarios]") {
+TEST_CASE(
+    "the sums of sines differ from zero by enough that every maths library makes the same world",
+    "[generate][scenarios]") {
   CHECK(smallest_wave_sum() > 1e-9);
 }
 
-TEST_CASE("scenarios without a formula and edges without a scenario are refused",
+TEST_CASE("scenarios without a formula and edges without a scenario are rejected",
           "[generate][scenarios]") {
   for (const unsigned number : {0u, 5u, 38u, 1000u}) {
     const auto model = scenario_model(number, 32);

@@ -11,9 +11,8 @@ namespace {
 
 constexpr Material kSolid = 7;
 
-TEST_CASE(
-    "a scenario's world repeats its model three times along each axis, whatever box is asked for",
-    "[generate][scenarios]") {
+TEST_CASE("a scenario's world repeats its model three times along each axis, for any box",
+          "[generate][scenarios]") {
   SplitMix64 rng(Catch::rngSeed());
   for (const unsigned number : {1u, 2u, 8u, 9u, 14u, 17u, 20u, 23u, 30u}) {
     for (const unsigned edge : {8u, 32u}) {
@@ -50,7 +49,7 @@ TEST_CASE("a player stands on the highest voxel of a scenario's world", "[genera
   CHECK(ball.surface_y(16, 16) == 32 + 24);
   CHECK(ball.surface_y(-16, 48) == 32 + 24);
   CHECK(ball.surface_y(16, 9) ==
-        32 + 20);  // 7 beside the middle: the last with 3 * 3 + 7 * 7 < 64 above it
+        32 + 20);  // 7 beside the middle: the last voxel with 3 * 3 + 7 * 7 < 64 above it
   CHECK(ball.surface_y(0, 0) == ball.y_min());
   CHECK(ball.surface_y(64, 16) == ball.y_min());
   const ScenarioWorld full(*scenario_model(1, 128), kSolid);
@@ -59,7 +58,7 @@ TEST_CASE("a player stands on the highest voxel of a scenario's world", "[genera
   CHECK(full.y_max() == 256);
 }
 
-TEST_CASE("a pin makes a scenario's world, or says why not", "[generate][scenarios]") {
+TEST_CASE("a pin makes a scenario's world or fails with the reason", "[generate][scenarios]") {
   const auto made = [](const char* parameters) {
     MaterialTable materials;
     for (const char* name : {"dirt", "stone"}) {
@@ -94,7 +93,7 @@ TEST_CASE("a pin makes a scenario's world, or says why not", "[generate][scenari
   CHECK(*read == odd);
 }
 
-TEST_CASE("around a scenario's world is nothing, in one run", "[generate][scenarios]") {
+TEST_CASE("outside a scenario's world is one empty run", "[generate][scenarios]") {
   const ScenarioWorld full(*scenario_model(1, 32), kSolid);
   CHECK(full.generate({64, 0, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));
   CHECK(full.generate({0, -64, 0}, Extent::cube(32)) == uniform_chunk(Extent::cube(32), kEmpty));

@@ -7,7 +7,7 @@
 namespace runstone::test {
 namespace {
 
-TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh]") {
+TEST_CASE("materials get indices in the order in which they occur, counted per class", "[mesh]") {
   const VisibilityTable& v = mesh_visibility();
   rdm::ChunkPalette palette;
   for (int round = 0; round < 2; ++round) {  // clear() forgets everything
@@ -38,7 +38,7 @@ TEST_CASE("materials are numbered in the order they come, a class apart", "[mesh
   }
 }
 
-TEST_CASE("palette fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
+TEST_CASE("palette indices fit bytes up to 127 opaque and 128 transparent materials", "[mesh]") {
   const VisibilityTable v(
       visibilities(many_materials()));  // 1 to 149 opaque, 150 to 299 transparent
   rdm::ChunkPalette palette;

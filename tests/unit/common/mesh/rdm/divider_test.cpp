@@ -8,7 +8,8 @@ namespace runstone::rdm {
 namespace {
 
 TEST_CASE("a divider divides every index of a chunk by every side exactly", "[mesh]") {
-  // The quotient can only go wrong at multiples and just before them, and grows with the index between.
+  // The quotient can be wrong only at multiples and directly before them, because it grows with the
+  // index between them.
   for (std::uint32_t side = 1; side <= kSideMax + 1; ++side) {
     const Divider divide(side);
     std::uint32_t wrong = 0;

@@ -1,5 +1,5 @@
-// The promise of RdmScratch: once its buffers and the output's have grown, meshing allocates nothing. Counted
-// by the global operator new of this test program.
+// The guarantee of RdmScratch: once its buffers and the output have grown, meshing allocates
+// nothing. The global operator new of this test program counts.
 #include <catch2/catch.hpp>
 #include <memory>
 #include <vector>
@@ -17,7 +17,7 @@ struct Place {
   const VisibilityTable* visibility = &mesh_visibility();
 };
 
-/// Two transparent materials on both sides of all borders, so that equal and other ones meet.
+/// Two transparent materials on both sides of all borders, so that equal and different ones meet.
 MeshScene scene_of_transparents(Extent extent) {
   MeshScene scene;
   const auto striped = [extent](std::uint32_t stripe) {
@@ -31,8 +31,8 @@ MeshScene scene_of_transparents(Extent extent) {
   return scene;
 }
 
-/// Scenes that between them use every buffer: both widths of rows, both forms of codes, borders where
-/// transparents meet.
+/// Scenes that together use every buffer: both widths of rows, both types of indices, borders where
+/// transparent voxels meet.
 std::vector<Place> places(SplitMix64& rng) {
   std::vector<Place> out;
   for (int i = 0; i < 40; ++i) out.push_back({random_scene(rng, 20)});
@@ -73,7 +73,7 @@ TEST_CASE("meshing allocates nothing once scratch and output have grown", "[mesh
       CAPTURE(i);
       if (grown) CHECK(cost.count == 0);
     }
-    if (!grown) CHECK(counted > 0);  // the counter counts
+    if (!grown) CHECK(counted > 0);  // the counter works
   }
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("remeshing layers allocates nothing once scratch and mesh have grown",
   ChunkMesh mesh;
   const VisibilityTable& visibility = mesh_visibility();
   mesh_rdm(scene.chunk, scene.pointers(), visibility, scratch, mesh);
-  // A voxel that comes and goes; the swap of buffers takes two rounds to grow both.
+  // A voxel is placed and removed. The swap of buffers takes two rounds to grow both.
   const std::uint32_t voxel = scene.chunk.volume() / 2;
   const LocalPos at = pos_of(voxel, scene.chunk.extent, scene.chunk.order);
   DirtyLayers dirty;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Extent kSmall = Extent::cube(8);
 
-/// material(x, y, z) for every voxel.
+/// Makes a chunk with material(x, y, z) for every voxel.
 template <class F>
 RunChunk chunk_where(Extent extent, AxisOrder order, F&& material) {
   RunBuilder builder(extent, order);
@@ -30,14 +30,14 @@ MeshScene surrounded(RunChunk chunk, Material by) {
   return scene;
 }
 
-/// Meshes and holds the mesh to the oracle before anything else is said about it.
+/// Meshes the scene and checks the mesh with the oracle.
 ChunkMesh checked_mesh(const MeshScene& scene) {
   ChunkMesh mesh = mesh_of(scene);
   REQUIRE(scene_difference(scene, mesh).value_or("") == "");
   return mesh;
 }
 
-/// The thesis' sphere: distance of the voxel's corner to the middle of a chunk of edge 32.
+/// The thesis' sphere: distance of the voxel's corner from the middle of a chunk of edge 32.
 bool in_sphere(int x, int y, int z, int radius) {
   return (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16) < radius * radius;
 }
@@ -70,7 +70,7 @@ TEST_CASE("a single voxel has six quads, one per direction, in its layers", "[me
 }
 
 TEST_CASE("the quads of a small scene have these bits", "[mesh]") {
-  // Golden: quad packing, grouping and order, for the renderer that reads the bytes.
+  // Golden bits: quad packing, grouping and order, for the renderer that reads the bytes.
   RunChunk chunk = uniform_chunk(kSmall, kEmpty, AxisOrder::xyz);
   fill(chunk, index_of({1, 2, 3}, kSmall, AxisOrder::xyz), 2, kStone);
   fill(chunk, index_of({3, 2, 3}, kSmall, AxisOrder::xyz), 1, kWater);
@@ -86,7 +86,7 @@ TEST_CASE("the quads of a small scene have these bits", "[mesh]") {
   CHECK(mesh.transparent.quads == transparent);
 }
 
-TEST_CASE("a full chunk alone is six quads, and none among full ones", "[mesh]") {
+TEST_CASE("a full chunk alone has six quads, and none between full neighbours", "[mesh]") {
   for (const Extent extent : {kSmall, Extent{8, 20, 128}, Extent::cube(32)}) {
     for (const AxisOrder order : kAxisOrders) {
       const RunChunk chunk = uniform_chunk(extent, kStone, order);
@@ -191,7 +191,7 @@ TEST_CASE("water against stone shows the stone and not the water", "[mesh]") {
   }
 }
 
-TEST_CASE("a strip goes on where only what it looks at changes", "[mesh]") {
+TEST_CASE("a strip continues where only the voxels that it faces change", "[mesh]") {
   // A wall of stone towards water below and air above is one quad in every axis order.
   for (const AxisOrder order : kAxisOrders) {
     const ChunkMesh mesh = checked_mesh(surrounded(
@@ -205,7 +205,8 @@ TEST_CASE("a strip goes on where only what it looks at changes", "[mesh]") {
 }
 
 TEST_CASE("faces at the end of a line are not faces to the start of the next", "[mesh]") {
-  // One voxel at the end of a line and one at the start of the next touch in index order, but not in space.
+  // One voxel at the end of a line and one at the start of the next are adjacent in index order,
+  // but not in space.
   for (const AxisOrder order : kAxisOrders) {
     RunChunk chunk = uniform_chunk(kSmall, kEmpty, order);
     fill(chunk, 8 * 11 - 1, 2, kStone);
@@ -217,8 +218,9 @@ TEST_CASE("faces at the end of a line are not faces to the start of the next", "
 }
 
 TEST_CASE("shapes of the thesis have its face and vertex counts", "[mesh]") {
-  // Scenarios 1-4, 6-8, 9, 17, 23, 28 and 33 of the thesis for a chunk alone; its (x, y, z) is our (x, z, y)
-  // and its index order our zyx. Four vertices a quad; merged counts are those of its grid mesher.
+  // Scenarios 1-4, 6-8, 9, 17, 23, 28 and 33 of the thesis for a chunk alone. Its (x, y, z) is (x,
+  // z, y) here and its index order is zyx. A quad has four vertices; merged counts are those of its
+  // grid mesher.
   struct Case {
     const char* name;
     bool (*solid)(int x, int y, int z);  // in the thesis' axes
