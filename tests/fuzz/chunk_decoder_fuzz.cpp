@@ -1,5 +1,5 @@
-// Any bytes as chunk bytes: what decodes is valid and comes back from all encodings; raw and coded bytes have
-// one spelling.
+// Decodes any bytes as chunk bytes. A decoded chunk is valid and equal after a round trip through
+// all encodings. raw and coded bytes have one encoding.
 #include <cstdint>
 
 #include "common/core/assert.hpp"

@@ -1,6 +1,6 @@
-// Any bytes as a stream from either side, split by the bytes themselves. Input: 1 byte sender and pieces
-// (bit 0: sender; the rest seeds the split), then the stream. The same stream must give the same messages and
-// the same outcome however it is split, and no message may exceed its limit.
+// Reads any bytes as a stream from either side, in pieces that the bytes determine. Input: 1 byte
+// sender and pieces (bit 0: sender; the rest seeds the split), then the stream. Every split must
+// give the same messages and the same result, and no message may exceed its limit.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,6 @@
-// Any bytes as a message. Input: 1 byte (bit 0 sender, bits 1-2 class, bit 3 whether the world's edge of 16
-// is known), then the message. What decodes is written again and read again as the same message.
+// Decodes any bytes as a message. Input: 1 byte (bit 0 sender, bits 1-2 class, bit 3 whether the
+// world's edge of 16 is known), then the message. A decoded message is equal after it is encoded
+// and decoded again.
 #include <cstdint>
 
 #include "protocol/codec/messages.hpp"
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes aligned(data + 1, data + size);
   const auto message = decode_message(sender, frame_class, aligned, edge);
   if (!message) return 0;
-  // Of another protocol, these say nothing but their version.
+  // A Hello or Welcome of another protocol contains only its version.
   const auto* hello = std::get_if<Hello>(&*message);
   if (hello != nullptr && hello->protocol != kProtocolVersion) return 0;
   const auto* welcome = std::get_if<Welcome>(&*message);
