@@ -1,6 +1,6 @@
-// Counts what a test program takes from the heap: it replaces the global operator new, with and without an
-// alignment. Include it in one file of a program. Test programs are single-threaded unless a test starts
-// threads; then read it while they rest.
+// Counts the heap allocations of a test program: it replaces the global operator new, with and
+// without an alignment. Include it in one file of a program. Thread: test programs are
+// single-threaded unless a test starts threads; read the counts while those rest.
 #pragma once
 #include <atomic>
 #include <cstdlib>
@@ -16,10 +16,10 @@ namespace counting {
 inline std::atomic<std::size_t> count{0}, bytes{0};
 }
 
-/// Since the program began.
+/// Returns the allocations since the program began.
 inline Allocations allocations() { return {counting::count, counting::bytes}; }
 
-/// Of a call.
+/// Returns the allocations of a call.
 template <class F>
 Allocations allocations_of(F&& f) {
   const Allocations before = allocations();
@@ -30,7 +30,7 @@ Allocations allocations_of(F&& f) {
 
 }  // namespace runstone::test
 
-// Not inlined: g++ would see free() meet operator new and warn.
+// Not inlined: otherwise g++ would see free() together with operator new and warn.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++runstone::test::counting::count;
   runstone::test::counting::bytes += size;

@@ -1,4 +1,4 @@
-// raw_sql: changes a world's database behind the store's back, as damage and other programs do.
+// raw_sql: changes a world's database without the store, as damage and other programs do.
 #pragma once
 #include <sqlite3.h>
 
@@ -6,8 +6,8 @@
 
 namespace runstone::test {
 
-/// Runs statements on a closed (or WAL-shared) database. Returns the first column of the last row as text;
-/// "ERROR: ..." when something went wrong.
+/// Runs statements on a closed (or WAL-shared) database. Returns the first column of the last row
+/// as text, or "ERROR: ..." if something went wrong.
 inline std::string raw_sql(const std::string& file, const std::string& sql,
                            const char* vfs = nullptr) {
   sqlite3* database = nullptr;
