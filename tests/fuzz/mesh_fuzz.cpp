@@ -1,16 +1,14 @@
 // Compares meshers with the face oracle on scenes that bytes describe, and remeshing with meshing.
 // Every input is a scene and some edits:
-//   3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128), 1 byte axis order,
-//   1 byte
-//   mask of neighbours (bit 6: every run of stone becomes a material of its own),
-//   then per chunk (the chunk itself first) a byte of axis order and depth (neighbours only) and
-//   (length,
-//   material) byte pairs until it is full; when the bytes end, the rest of a chunk is empty;
-//   then kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one
-//   voxel),
-//   material. When the bytes end, the edits are drawn from a generator that the whole input seeds,
-//   so
-//   that every scene is edited.
+//   - 3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128);
+//   - 1 byte axis order;
+//   - 1 byte mask of neighbours (bit 6: every run of stone becomes a material of its own);
+//   - per chunk (the chunk itself first) a byte of axis order and depth (neighbours only) and
+//     (length, material) byte pairs until it is full; when the bytes end, the rest of a chunk is
+//     empty;
+//   - kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one voxel),
+//     material. When the bytes end, the edits are drawn from a generator that the whole input
+//     seeds, so that every scene is edited.
 #include <algorithm>
 #include <array>
 #include <cstdint>

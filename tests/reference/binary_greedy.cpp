@@ -132,8 +132,8 @@ class Pass {
   void across_fast(Direction direction) {
     const bool positive = is_positive(direction);
     const Shape shape(direction, axes_[1], axes_[2]);
-    std::vector<Word>& planes =
-        scratch_.planes;  // word s of layer f: planes[f * kBinarySideMax + s]
+    // Word s of layer f: planes[f * kBinarySideMax + s].
+    std::vector<Word>& planes = scratch_.planes;
     planes.assign(std::size_t{kBinarySideMax} * kBinarySideMax, 0);
     Plane slab;
     Word any = 0;
@@ -166,8 +166,8 @@ class Pass {
   /// Returns the faces of line m, s towards the next or the previous voxel of the same line.
   Word faces_along(std::uint32_t m, std::uint32_t s, bool positive) const {
     const std::size_t word = word_at(m, s);
-    const unsigned ends =
-        mask_.ends[word] >> (positive ? 1 : 0);  // bit 0: opaque beyond, bit 2: transparent
+    // Bit 0: opaque beyond, bit 2: transparent.
+    const unsigned ends = mask_.ends[word] >> (positive ? 1 : 0);
     const auto moved = [&](Word w, bool end) {
       return positive ? w >> 1 | Word{end} << (e_.f - 1) : w << 1 | Word{end};
     };

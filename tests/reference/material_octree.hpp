@@ -38,8 +38,8 @@ class MaterialOctree {
   }
 
  private:
-  using Brick = std::array<Material, std::size_t{kBrickSide} * kBrickSide *
-                                         kBrickSide>;  // x fastest, z slowest
+  // x fastest, z slowest.
+  using Brick = std::array<Material, std::size_t{kBrickSide} * kBrickSide * kBrickSide>;
   struct Node {
     std::uint32_t children = 0;  // the first of eight nodes, x fastest; 0: none
     std::uint32_t brick = 0;     // index + 1; 0: none

@@ -49,8 +49,8 @@ class Builder {
   void scan(std::ptrdiff_t m, std::ptrdiff_t s) {
     const bool inside = within(m, e_.m) && within(s, e_.s);
     const Material* const line = grid_.line(m, s);
-    std::uint64_t changes =
-        differing_bits(line, line + 1, e_.f) & (low_bits(e_.f) >> 1);  // bit i: i + 1 differs
+    // Bit i: i + 1 differs.
+    std::uint64_t changes = differing_bits(line, line + 1, e_.f) & (low_bits(e_.f) >> 1);
     std::uint64_t is_opaque = 0, is_transparent = 0;
     for (std::uint32_t from = 0;;) {
       const std::uint32_t to =

@@ -15,8 +15,8 @@ namespace runstone::reference {
 
 /// Returns the lowest `count` bits. Requires 0 < count <= 64.
 constexpr std::uint64_t low_bits(std::uint32_t count) {
-  return ~std::uint64_t{0} >>
-         ((64 - count) & 63);  // the mask costs nothing and bounds the shift for analysers
+  // The mask costs nothing and bounds the shift for analysers.
+  return ~std::uint64_t{0} >> ((64 - count) & 63);
 }
 
 /// The materials that differing_bits() may read beyond the last one that it compares.

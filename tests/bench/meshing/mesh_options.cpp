@@ -36,7 +36,8 @@ CLI::App* add_mesh_command(CLI::App& app, BenchOptions& options) {
       ->delimiter(',')
       ->check(CLI::IsMember(std::set<std::string>{"best", "worst", "all"}));
   add_repetitions_option(*mesh, options, "--min-runs", "repetitions of each mesher in each cell");
-  mesh->add_flag("--quick", "three repetitions, edge 16 and best orders, unless said otherwise");
+  mesh->add_flag("--quick")->description(
+      "three repetitions, edge 16 and best orders, unless said otherwise");
   mesh->callback([mesh, &options] {
     if (mesh->count("--quick") == 0) return;
     if (mesh->count("--min-runs") == 0) options.repetitions = 3;

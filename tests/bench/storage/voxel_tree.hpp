@@ -4,9 +4,8 @@
 // stores of it:
 //   SparseOctree   every part has nodes of its own. Source: thesis 3.4; Laine, Karras 2010.
 //   VoxelDag       equal parts share nodes; an edit makes new nodes along its path only. Source:
-//                  Kämpe, Sintorn,
-//                  Assarsson, "High Resolution Sparse Voxel DAGs" (2013); edits as in Careil et al.
-//                  (2020).
+//                  Kämpe, Sintorn, Assarsson, "High Resolution Sparse Voxel DAGs" (2013); edits as
+//                  in Careil et al. (2020).
 // A tree is canonical: equal voxels have the same number of nodes, whatever edits came before.
 #pragma once
 #include <algorithm>

@@ -1,8 +1,7 @@
 // Luanti's blocks as its server sends them (serialisation version 29), byte for byte, as a form to
 // compare with. One zstd stream of level 3 without a content size holds
-//   flags u8 | lighting u16 | content width 2 | parameter width 2 | 4096 ids as big-endian u16 |
-//   4096 param1
-//   | 4096 param2 | metadata u8 0
+//   flags u8 | lighting u16 | content width 2 | parameter width 2 | 4096 ids as big-endian u16
+//   | 4096 param1 | 4096 param2 | metadata u8 0
 // and one byte follows the stream. Rows of map.sqlite have a version byte before the stream and,
 // inside it, a timestamp and a table of names, which the wire does not have. Source: Luanti's
 // doc/world_format.md and mapblock.cpp.
@@ -21,8 +20,8 @@ inline constexpr std::size_t kLuantiNodes = 4096;
 /// 16^3 nodes, x fastest, then y, then z.
 struct LuantiNodes {
   std::array<std::uint16_t, kLuantiNodes> id{};
-  std::array<std::uint8_t, kLuantiNodes>
-      param1{};  // light: low nibble by day, high nibble at night
+  // Light: low nibble by day, high nibble at night.
+  std::array<std::uint8_t, kLuantiNodes> param1{};
   std::array<std::uint8_t, kLuantiNodes> param2{};
   friend bool operator==(const LuantiNodes&, const LuantiNodes&) = default;
 };

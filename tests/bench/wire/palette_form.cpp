@@ -18,8 +18,8 @@ struct Scratch {
   std::vector<Material> names;    // of the last decoded section
   PackedLongs numbers;            // of the present section: palette indices, or ids
   Bytes received;
-  std::vector<std::uint16_t> index_of =
-      std::vector<std::uint16_t>(65536, 0xffff);  // by id; 0xffff: absent
+  // By id; 0xffff: absent.
+  std::vector<std::uint16_t> index_of = std::vector<std::uint16_t>(65536, 0xffff);
 };
 
 Scratch& scratch() {

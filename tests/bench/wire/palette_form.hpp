@@ -3,8 +3,7 @@
 // longs, big-endian
 //   bits 0: one material, a varint; no longs
 //   bits 4 .. 8: varint size and varints of the palette in order of appearance; indices, low bits
-//   first, none
-//   across two longs
+//   first, none across two longs
 //   bits 15: no palette, ids themselves
 // The sections of one chunk lie one after another in one zlib stream of level 6, as in the game.
 // Biomes and light are left out. Source: wiki.vg, "Chunk Format".

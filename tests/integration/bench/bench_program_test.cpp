@@ -385,8 +385,8 @@ TEST_CASE("runstone-bench storage has a row for every store on every volume", "[
   }
   CHECK(std::stoul(cells["empty 0 -16 0 32"]["octree"].at("bytes")) < 200);
   CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["octree"].at("bytes")) > 65536);
-  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["dag"].at("bytes")) <
-        1000);  // one leaf, and one node for each height
+  // One leaf, and one node for each height.
+  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["dag"].at("bytes")) < 1000);
 
   const auto document = nlohmann::json::parse(text_of(json));
   CHECK(document.at("rows").size() == rows.size());

@@ -30,8 +30,8 @@ TEST_CASE("every mesher case replaces a surface by its last mesh", "[bench]") {
         CHECK(surface.quads.size() == mesher_case->quads());
         CHECK(surface.triangles.vertices.empty() ==
               (owed.empty() || (name != "monotone" && name != "poly2tri")));
-        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden")
-          continue;  // they show hidden faces, too
+        // They show hidden faces, too.
+        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden") continue;
         CHECK(test::surface_difference(surface, volume.scene.chunk.extent, seeded_materials(), owed)
                   .value_or("") == "");
       }

@@ -134,8 +134,8 @@ TEST_CASE("thin triangles are counted beyond 1:16 and 1:100", "[mesh][reference]
   using Pair = std::pair<std::size_t, std::size_t>;
   CHECK(count(1, 1) == Pair{0, 0});
   CHECK(count(15, 1) == Pair{0, 0});
-  CHECK(count(1, 16) ==
-        Pair{2, 0});  // the diagonal is a little longer than 16, and the height is less than 1
+  // The diagonal is a little longer than 16, and the height is less than 1.
+  CHECK(count(1, 16) == Pair{2, 0});
   CHECK(count(2, 31) == Pair{0, 0});
   CHECK(count(99, 1) == Pair{2, 0});
   CHECK(count(1, 100) == Pair{2, 2});

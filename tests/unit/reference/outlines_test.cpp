@@ -42,8 +42,9 @@ TEST_CASE("a region is a ring of its corners, and one for each hole", "[mesh][re
   const Outlines frame = outlines_of({"####", "#..#", "#..#", "####"});
   CHECK(frame.regions.size() == 1);
   CHECK(ring_sizes(frame) == Sizes{4, 4});
+  // Clockwise.
   CHECK(std::vector<LayerPoint>(frame.points.begin() + 4, frame.points.end()) ==
-        std::vector<LayerPoint>{{1, 3}, {3, 3}, {3, 1}, {1, 1}});  // clockwise
+        std::vector<LayerPoint>{{1, 3}, {3, 3}, {3, 1}, {1, 1}});
   CHECK(outlines_of({"...", "..."}).regions.empty());
 }
 

@@ -125,8 +125,8 @@ TEST_CASE("the grid variant joins rows only if they are alike", "[mesh][referenc
     if (unpack(quad).direction == Direction::pos_y) up.push_back(unpack(quad));
   }
   REQUIRE(up.size() == 2);
-  CHECK(up[0] ==
-        QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});  // along z first: u of a y face
+  // Along z first: u of a y face.
+  CHECK(up[0] == QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});
   CHECK(up[1] == QuadFields{2, 1, 1, 2, 1, Direction::pos_y, kStone});
 }
 

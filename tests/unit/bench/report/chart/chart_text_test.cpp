@@ -35,8 +35,8 @@ TEST_CASE("text is cut to a width, at characters, with an ellipsis", "[chart]") 
   CHECK(cut.ends_with(ellipsis));
   CHECK(cut.size() > 8);
   CHECK(width_of(cut, 12) <= 80);
-  CHECK(shortened("\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5", 12, 30).size() % 2 ==
-        1);  // 2 bytes each, and 3
+  // 2 bytes each, and 3.
+  CHECK(shortened("\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5", 12, 30).size() % 2 == 1);
   CHECK(shortened("name", 12, 0) == ellipsis);
   CHECK(shortened("name", 12, -5) == ellipsis);
   CHECK(width_of("wide", 24) == Approx(2 * width_of("wide", 12)));
