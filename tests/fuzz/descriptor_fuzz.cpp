@@ -1,5 +1,5 @@
-// Any bytes as a descriptor and as a record: what decodes is valid, means exactly its own bytes, and its
-// geometry agrees with itself.
+// Decodes any bytes as a descriptor and as a record. A decoded value is valid, encodes to the same
+// bytes, and its geometry is consistent.
 #include <cstdint>
 #include <vector>
 

@@ -1,8 +1,10 @@
-// Bytes read as a chunk and a script of edit stacks, applied to runs and to the dense oracle side by side.
+// Reads bytes as a chunk and a script of edit stacks, and applies them to runs and to the dense
+// oracle side by side.
 //   chunk:  side x, y, z (8 + byte % 17), axis order, shape, seed (u16)
-//   stack:  depth (1 + byte % 8), then per edit: kind, mask, mask material, material, x, y, z, three sizes; from
-//           kind 192 on a paste in orientation (kind - 192) % 48, then the seed (u16) of its clipboard
-// A script that ends early reads zeros for what is missing.
+//   stack:  depth (1 + byte % 8), then per edit: kind, mask, mask material, material, x, y, z,
+//           three sizes; from kind 192 on a paste in orientation (kind - 192) % 48, then the
+//           seed (u16) of its clipboard
+// Missing bytes at the end read as zeros.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

@@ -1,12 +1,14 @@
-// Meshers against the face oracle on scenes spelled by bytes, and remeshing against meshing. Every input is a
-// scene and some edits:
-//   3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128), 1 byte axis order, 1 byte
-//   mask of neighbours (bit 6: every run of stone becomes a material of its own),
-//   then per chunk (the chunk itself first) a byte of axis order and depth (neighbours only) and (length,
-//   material) byte pairs until it is full; when the bytes run out, the rest of a chunk is empty;
-//   then kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one voxel),
-//   material. When the bytes run out, the edits are drawn from a generator that the whole input seeds, so
-//   that every scene is edited.
+// Compares meshers with the face oracle on scenes that bytes describe, and remeshing with meshing.
+// Every input is a scene and some edits:
+//   - 3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128);
+//   - 1 byte axis order;
+//   - 1 byte mask of neighbours (bit 6: every run of stone becomes a material of its own);
+//   - per chunk (the chunk itself first) a byte of axis order and depth (neighbours only) and
+//     (length, material) byte pairs until it is full; when the bytes end, the rest of a chunk is
+//     empty;
+//   - kEdits edits of five bytes: which chunk, 2 bytes first voxel, length (below 128: one voxel),
+//     material. When the bytes end, the edits are drawn from a generator that the whole input
+//     seeds, so that every scene is edited.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -38,14 +40,14 @@ class Input {
  public:
   explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes), rng_(seed_of(bytes)) {}
   bool empty() const { return bytes_.empty(); }
-  /// Zeros behind the end.
+  /// Returns the next byte, or 0 behind the end.
   std::uint8_t next() {
     if (bytes_.empty()) return 0;
     const std::uint8_t byte = bytes_.front();
     bytes_ = bytes_.subspan(1);
     return byte;
   }
-  /// Random bytes behind the end.
+  /// Returns the next byte, or a random one behind the end.
   std::uint8_t next_or_drawn() {
     return empty() ? static_cast<std::uint8_t>(rng_.below(256)) : next();
   }
@@ -55,7 +57,7 @@ class Input {
   SplitMix64 rng_;
 };
 
-/// One long side is enough for rows of two words, and keeps a scene small.
+/// One long side suffices for rows of two words, and keeps a scene small.
 Extent read_extent(Input& in) {
   bool long_side = false;
   const auto side = [&]() -> std::uint8_t {
@@ -72,7 +74,8 @@ Extent read_extent(Input& in) {
 
 AxisOrder read_order(Input& in) { return kAxisOrders[in.next() % kAxisOrderCount]; }
 
-/// A neighbour's extent: along its direction as deep as the chunk, or deeper, or flatter. `code`: 0 .. 42.
+/// Returns a neighbour's extent: along its direction as deep as the chunk, deeper, or flatter.
+/// `code` is 0 .. 42.
 Extent extent_beyond(Extent extent, Axis axis, unsigned code) {
   constexpr std::array<std::uint8_t, 3> kDeep = {64, 65, 128};
   if (code == 0) return extent;
@@ -82,7 +85,8 @@ Extent extent_beyond(Extent extent, Axis axis, unsigned code) {
   return extent;
 }
 
-/// `stone`: the material that the next run of stone gets, where each gets one of its own; else none.
+/// `stone` is the material of the next run of stone if each run has one of its own, otherwise
+/// nullopt.
 RunChunk read_chunk(Input& in, Extent extent, AxisOrder order, std::optional<Material>& stone) {
   RunBuilder builder(extent, order);
   while (!in.empty() && builder.filled() < extent.volume()) {
@@ -124,7 +128,7 @@ DirtyLayers read_edit(Input& in, RunChunk& chunk) {
   return test::fill_and_mark(chunk, first, std::min(length, chunk.volume() - first), material);
 }
 
-/// The chunk, or the neighbour of that direction if there is one.
+/// Returns the index of the chunk, or of the neighbour of that direction if there is one.
 unsigned read_place(Input& in, const test::MeshScene& scene) {
   const unsigned place = in.next_or_drawn() % 12u;
   return place < kDirectionCount && scene.neighbours[place] ? place : kDirectionCount;
@@ -136,19 +140,20 @@ void demand(bool right, const char* what) {
   std::abort();
 }
 
-/// Quad for quad, in order.
+/// Compares quad by quad, in order.
 bool equal(const ChunkMesh& a, const ChunkMesh& b) {
   return a.opaque.quads == b.opaque.quads && a.opaque.first == b.opaque.first &&
          a.transparent.quads == b.transparent.quads && a.transparent.first == b.transparent.first;
 }
 
-/// Buffers live as long as the program: what one input leaves behind would show in the next.
+/// The buffers live as long as the program, so that the remains of one input would show in the
+/// next.
 class Trial {
  public:
   Trial() { plain_.use_plain_path(true); }
 
-  /// The mesh of a scene: right by the oracle, as are those of all reference meshers, and the same by every
-  /// path.
+  /// Meshes a scene. The oracle checks this mesh and those of all reference meshers; every path
+  /// must give the same mesh.
   void mesh(const test::MeshScene& scene) {
     const std::string fault = jury_.fault(scene);
     demand(fault.empty(), fault.c_str());
@@ -177,7 +182,7 @@ class Trial {
            "a mesh makes other borders than its chunk has");
   }
 
-  /// Edits a scene that was meshed; dirty layers give the mesh that all of it does.
+  /// Edits a meshed scene. Remeshing the dirty layers must give the mesh of the whole chunk.
   void edit(Input& in, test::MeshScene& scene) {
     DirtyLayers dirty;
     std::array<DirtyLayers, kDirectionCount> beyond{};
@@ -196,8 +201,8 @@ class Trial {
   const ChunkMesh& last() const { return mesh_; }
 
  private:
-  test::MesherJury jury_;
-  test::PolygonJury polygon_jury_;
+  test::MesherChecks jury_;
+  test::PolygonChecks polygon_jury_;
   RdmScratch scratch_, plain_;
   ChunkMesh mesh_, other_;
   std::array<ChunkBorders, kDirectionCount> kept_;

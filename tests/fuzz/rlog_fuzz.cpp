@@ -1,6 +1,6 @@
-// Any bytes as an .rlog, twice: as they are (checksums stop nearly everything), and with every checksum made
-// right, so that lengths, columns and zstd frames are hostile. Whatever is read is a sound log, and written
-// again it reads the same.
+// Reads any bytes as an .rlog in two ways: unchanged (checksums reject nearly everything), and with
+// every checksum corrected, so that lengths, columns and zstd frames are hostile. Whatever is read
+// is a valid log, and reads the same after it is written again.
 #include <cstdint>
 
 #include "common/core/assert.hpp"
@@ -21,7 +21,7 @@ void read(const Bytes& file) {
     epoch = record.version.epoch;
   }
   if (contents.error) {
-    // Records come before the error, never behind it.
+    // Records come before the error, never after it.
     RUNSTONE_ASSERT(contents.records.empty() || contents.error->seq >= next);
     return;
   }

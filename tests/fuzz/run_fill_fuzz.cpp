@@ -1,4 +1,5 @@
-// Bytes become a small chunk and a script of fills; runs, areas and digest must follow the dense oracle.
+// Turns bytes into a small chunk and a script of fills. Runs, areas and digest must equal those of
+// the dense oracle.
 //   byte 0: axis order; bytes 1-3: sides - 8, modulo 6 (8 .. 13); byte 4: first material
 //   then 5 bytes a fill: first (u16), count - 1 (u16), material
 #include <cstdint>
@@ -46,7 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (step % 8 == 0) demand(test::DenseChunk::of(chunk) == oracle, "voxels differ", step);
     demand(changed || chunk == before, "runs moved though nothing changed", step);
     if (!changed) continue;
-    // The digest follows through the edit area alone, as the edit sweep has it follow.
+    // The digest is updated from the edit area alone, as in the edit sweep.
     VoxelIndex begin = before.runs.begin(area.first);
     for (std::size_t i = area.first; i < area.first + area.before; ++i) {
       digest = digest - digest_of_span(before, begin, before.runs.end(i), before.runs.material(i));

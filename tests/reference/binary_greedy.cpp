@@ -14,7 +14,7 @@ namespace {
 using Word = std::uint64_t;
 using Plane = std::array<Word, kBinarySideMax>;
 
-/// Packs the quads of one direction; `bit_axis` is the one the words' bits lie along.
+/// Packs the quads of one direction. `bit_axis` is the axis along which the words' bits lie.
 struct Shape {
   Shape(Direction direction, Axis bit_axis, Axis word_axis)
       : base(static_cast<std::uint64_t>(direction) << 35),
@@ -27,8 +27,8 @@ struct Shape {
   unsigned layer_shift, bit_shift, word_shift, bits_shift, words_shift;
 };
 
-/// One pass over the faces of one visibility class. kOne: all its voxels are of one material, so that nothing
-/// has to be compared.
+/// One pass over the faces of one visibility class. kOne means that all its voxels have one
+/// material, so that nothing has to be compared.
 template <bool kTransparent, bool kOne>
 class Pass {
  public:
@@ -64,14 +64,14 @@ class Pass {
     return (m + 1) + std::size_t{e_.m + 2} * (s + 1);
   }
 
-  /// What hides faces of this pass whatever it is made of.
+  /// Returns the voxels that hide faces of this pass, whatever the material of the faces.
   Word hiding(std::size_t word) const {
     if constexpr (kTransparent && kOne) return opaque_[word] | own_[word];
     return opaque_[word];
   }
 
-  /// Faces of line m, s towards the line `word_step` words, `voxel_step` voxels further, as bits along the
-  /// line.
+  /// Returns the faces of line m, s towards the line that lies `word_step` words and `voxel_step`
+  /// voxels further, as bits along the line.
   Word faces(std::uint32_t m, std::uint32_t s, std::ptrdiff_t word_step,
              std::ptrdiff_t voxel_step) const {
     const std::size_t word = word_at(m, s);
@@ -83,7 +83,7 @@ class Pass {
     return shown & (~own_[other] | differing_bits(line, line + voxel_step, e_.f));
   }
 
-  /// Layers of the slowest axis: their words lie together.
+  /// Merges the layers of the slowest axis, whose words lie together.
   void across_slow(Direction direction) {
     const Shape shape(direction, axes_[0], axes_[1]);
     const std::ptrdiff_t sign = is_positive(direction) ? 1 : -1;
@@ -102,7 +102,7 @@ class Pass {
     end_layers(direction, e_.s);
   }
 
-  /// Layers of the middle axis, as many at a time as words share a cache line.
+  /// Merges the layers of the middle axis, as many at a time as words share a cache line.
   void across_middle(Direction direction) {
     constexpr std::uint32_t kAtOnce = 8;
     const Shape shape(direction, axes_[0], axes_[2]);
@@ -127,13 +127,13 @@ class Pass {
     end_layers(direction, e_.m);
   }
 
-  /// Layers of the fastest axis, across the bits: each slow layer's words are turned, so that a bit becomes a
-  /// layer.
+  /// Merges the layers of the fastest axis, which lie across the bits. The words of each slow layer
+  /// are transposed, so that a bit becomes a layer.
   void across_fast(Direction direction) {
     const bool positive = is_positive(direction);
     const Shape shape(direction, axes_[1], axes_[2]);
-    std::vector<Word>& planes =
-        scratch_.planes;  // word s of layer f: planes[f * kBinarySideMax + s]
+    // Word s of layer f: planes[f * kBinarySideMax + s].
+    std::vector<Word>& planes = scratch_.planes;
     planes.assign(std::size_t{kBinarySideMax} * kBinarySideMax, 0);
     Plane slab;
     Word any = 0;
@@ -148,7 +148,7 @@ class Pass {
         }
       }
       if (faces_left != 0) continue;
-      // Too many faces to place one by one.
+      // There are too many faces to place one by one.
       std::fill(slab.begin() + e_.m, slab.end(), 0);
       transpose_bits(slab.data());
       for (std::uint32_t f = 0; f < e_.f; ++f) planes[f * kBinarySideMax + s] = slab[f];
@@ -161,13 +161,13 @@ class Pass {
     }
     end_layers(direction, e_.f);
   }
-  static constexpr std::uint32_t kScatteredMax = 192;  // about what a transposition costs
+  static constexpr std::uint32_t kScatteredMax = 192;  // about the cost of a transposition
 
-  /// Faces of line m, s towards the next or the last voxel of the same line.
+  /// Returns the faces of line m, s towards the next or the previous voxel of the same line.
   Word faces_along(std::uint32_t m, std::uint32_t s, bool positive) const {
     const std::size_t word = word_at(m, s);
-    const unsigned ends =
-        mask_.ends[word] >> (positive ? 1 : 0);  // bit 0: opaque beyond, bit 2: transparent
+    // Bit 0: opaque beyond, bit 2: transparent.
+    const unsigned ends = mask_.ends[word] >> (positive ? 1 : 0);
     const auto moved = [&](Word w, bool end) {
       return positive ? w >> 1 | Word{end} << (e_.f - 1) : w << 1 | Word{end};
     };
@@ -180,7 +180,8 @@ class Pass {
     return shown & (~beside | differing_bits(line, line + (positive ? 1 : -1), e_.f));
   }
 
-  /// How many of `count` materials from `at` on equal `material`, before the first that does not.
+  /// Returns how many of `count` materials from `at` on equal `material`, before the first that
+  /// differs.
   template <bool kContiguous>
   static std::uint32_t equal_run(const Material* at, std::ptrdiff_t stride, std::uint32_t count,
                                  Material material) {
@@ -191,8 +192,8 @@ class Pass {
     return i;
   }
 
-  /// Covers the set bits of a plane by rectangles, and clears the plane's later words. `at` is the voxel of
-  /// bit 0 of word 0.
+  /// Covers the set bits of a plane with rectangles, and clears the plane's later words. `at` is
+  /// the voxel of bit 0 of word 0.
   template <bool kContiguous>
   void merge(Word* plane, std::uint32_t words, const Material* at, std::ptrdiff_t bit_stride,
              std::ptrdiff_t word_stride, const Shape& shape, std::uint32_t layer) {
@@ -223,7 +224,7 @@ class Pass {
     count_ = static_cast<std::uint32_t>(out - scratch_.quads.data());
   }
 
-  /// Notes where a layer's quads start and makes room for as many as it can have.
+  /// Records where a layer's quads start, and reserves room for its greatest number of quads.
   void start_layer(Direction direction, std::uint32_t layer) {
     out_.first[static_cast<std::size_t>(direction) * kSideMax + layer] = count_;
     const std::size_t most = std::size_t{count_} + kBinarySideMax * kBinarySideMax;

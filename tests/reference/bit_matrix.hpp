@@ -1,13 +1,13 @@
-// Transposing a matrix of 64 x 64 bits in place. Source: recursive block swaps (Warren, Hacker's Delight,
-// 7-3).
+// Transposes a matrix of 64 x 64 bits in place. Source: recursive block swaps (Warren, Hacker's
+// Delight, 7-3).
 #pragma once
 #include <cstdint>
 
 namespace runstone::reference {
 
-/// Bit c of rows[r] becomes bit r of rows[c].
+/// Moves bit c of rows[r] to bit r of rows[c].
 inline void transpose_bits(std::uint64_t* rows) {
-  std::uint64_t low = 0xffff'ffff;  // of each pair of blocks of `side` bits, the lower one
+  std::uint64_t low = 0xffff'ffff;  // the lower one of each pair of blocks of `side` bits
   for (unsigned side = 32; side != 0; side /= 2, low ^= low << side) {
     for (unsigned block = 0; block < 64; block += 2 * side) {
       for (unsigned r = block; r < block + side; ++r) {

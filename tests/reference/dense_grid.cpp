@@ -11,7 +11,7 @@
 namespace runstone::reference {
 namespace {
 
-/// Fills [from, to) and up to kSlack materials behind it: whole vectors, no tail.
+/// Fills [from, to) and up to kSlack materials behind it, in whole vectors without a tail.
 inline void fill_beyond(Material* from, const Material* to, Material material) {
   std::array<Material, 16> splat;
   splat.fill(material);
@@ -22,13 +22,13 @@ inline void fill_beyond(Material* from, const Material* to, Material material) {
 }
 static_assert(DenseGrid::kSlack >= 16);
 
-/// The voxels inside. One fill a run, right through the border between two lines: the border is written
-/// afterwards.
+/// Decodes the voxels inside. One fill a run, across the border between two lines: the border is
+/// written afterwards.
 template <class Runs>
 void decode_inside(const Runs& runs, OrderedExtent e, DenseGrid& grid) {
   Material* to = grid.line(0, 0);
   const std::ptrdiff_t gap = grid.line_stride() - static_cast<std::ptrdiff_t>(e.f);
-  std::uint32_t line_end = e.f;  // index behind the line the next voxel lies in
+  std::uint32_t line_end = e.f;  // index behind the line of the next voxel
   std::uint32_t lines_left = e.m;
   Material* line_to = to + e.f;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -52,7 +52,7 @@ void decode_inside(const Runs& runs, OrderedExtent e, DenseGrid& grid) {
   }
 }
 
-/// The border layer in one direction: the neighbour's nearest voxels.
+/// Decodes the border layer in one direction: the neighbour's nearest voxels.
 void decode_border(const RunChunk* neighbour, Direction direction, std::vector<Material>& layer,
                    DenseGrid& grid) {
   const std::array<Axis, 3> axes = axes_of(grid.order());

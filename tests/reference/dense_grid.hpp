@@ -1,7 +1,7 @@
-// DenseGrid: one material per voxel of a chunk and of the one voxel around it, the input of the dense
-// reference meshers. A type of its own, so that nothing dense leaks into the product: only this folder,
-// benchmarks and tests use it. Flattened in an axis order like a chunk, so that runs of the same order decode
-// by plain fills.
+// DenseGrid: one material per voxel of a chunk and of the one voxel around it, the input of the
+// dense reference meshers. It is a type of its own, so that nothing dense gets into the product:
+// only this folder, benchmarks and tests use it. It is flattened in an axis order like a chunk, so
+// that runs of the same order decode by plain fills.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -15,38 +15,41 @@
 
 namespace runstone::reference {
 
-/// The six chunks around one, by Direction, in any axis order, with equal sides where they touch; a null one
-/// counts as empty.
+/// The six chunks around a chunk, by Direction, in any axis order, with equal sides where they
+/// touch. A null chunk counts as empty.
 using GridNeighbours = std::array<const RunChunk*, kDirectionCount>;
 
 class DenseGrid {
  public:
-  /// Takes a shape; the voxels are unspecified afterwards. Allocates only to grow. Requires a valid extent.
+  /// Sets the shape; the voxels are unspecified afterwards. Allocates only to grow. Requires a
+  /// valid extent.
   void reset(Extent extent, AxisOrder order);
 
   Extent extent() const { return extent_; }
   AxisOrder order() const { return order_; }
-  /// Sides without the border: fastest, middle and slowest axis.
+  /// Returns the sides without the border: fastest, middle and slowest axis.
   OrderedExtent sides() const { return sides_; }
-  /// Voxels from one line to the next and from one slow layer to the next, border included.
+  /// Return the voxels from one line to the next and from one slow layer to the next, border
+  /// included.
   std::ptrdiff_t line_stride() const { return line_stride_; }
   std::ptrdiff_t layer_stride() const { return layer_stride_; }
-  /// Voxels from a voxel to the next one along an axis.
+  /// Returns the voxels from a voxel to the next one along an axis.
   std::ptrdiff_t stride(Axis axis) const;
-  /// Voxels of grid and border in bytes.
+  /// Returns the bytes of the voxels of grid and border.
   std::size_t byte_size() const { return volume_ * sizeof(Material); }
 
-  /// The first voxel of line m of slow layer s. Requires -1 <= m, s <= their side; [-1] and [side] of a line
-  /// are its border. The twelve edges of the border belong to no face: decode() and the octree may write
-  /// anything.
+  /// Returns the first voxel of line m of slow layer s. Requires -1 <= m, s <= their side. [-1] and
+  /// [side] of a line are its border. The twelve edges of the border belong to no face: decode()
+  /// and the octree may write any value there.
   const Material* line(std::ptrdiff_t m, std::ptrdiff_t s) const {
     return voxels_.data() + offset(m, s);
   }
   Material* line(std::ptrdiff_t m, std::ptrdiff_t s) { return voxels_.data() + offset(m, s); }
-  /// The voxel at 0 0 0; others lie at multiples of stride().
+  /// Returns the voxel at 0 0 0. Others lie at multiples of stride().
   const Material* origin() const { return line(0, 0); }
 
-  /// Materials that may be overwritten behind the last voxel, so that fills need not stop exactly.
+  /// The materials behind the last voxel that may be overwritten, so that fills need not stop
+  /// exactly.
   static constexpr std::size_t kSlack = 32;
 
  private:
@@ -61,9 +64,9 @@ class DenseGrid {
   std::vector<Material> voxels_;  // volume_ + kSlack or more
 };
 
-/// Decodes a chunk and the adjoining layers of its neighbours into a grid of the chunk's axis order: what a
-/// dense mesher of a world of runs has to do first. Counts a dense expansion. `layer` is scratch. O(volume),
-/// a fill a run.
+/// Decodes a chunk and the adjoining layers of its neighbours into a grid of the chunk's axis
+/// order, as a dense mesher of a world of runs must do first. Counts a dense expansion. `layer` is
+/// scratch. Cost: O(volume), a fill a run.
 void decode(const RunChunk& chunk, const GridNeighbours& neighbours, std::vector<Material>& layer,
             DenseGrid& grid);
 

@@ -1,4 +1,4 @@
-// The polygons of a surface one by one, whichever kind they are.
+// Visits the polygons of a surface one by one, quads and triangles alike.
 #pragma once
 #include <array>
 #include <cstddef>

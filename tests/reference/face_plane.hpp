@@ -1,5 +1,5 @@
-// FacePlane: the drawn faces of one direction in one layer, as materials in rows. What every mesher that
-// merges within a layer looks at, before it takes faces out of it.
+// FacePlane: the drawn faces of one direction in one layer, as materials in rows. Every mesher that
+// merges within a layer reads it and removes faces from it.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -31,8 +31,8 @@ struct PlaneRectangle {
   friend bool operator==(const PlaneRectangle&, const PlaneRectangle&) = default;
 };
 
-/// Replaces `plane` by the drawn faces of `direction` in `layer`; returns whether there are any. O(faces of a
-/// layer).
+/// Replaces `plane` by the drawn faces of `direction` in `layer`. Returns true if there are any.
+/// Cost: O(faces of a layer).
 inline bool read_faces(const DenseGrid& grid, const VisibilityTable& visibility,
                        Direction direction, std::uint32_t layer, FacePlane& plane) {
   const Axis across = axis_of(direction);
@@ -59,7 +59,7 @@ inline bool read_faces(const DenseGrid& grid, const VisibilityTable& visibility,
   return any;
 }
 
-/// Calls merge(direction, layer) for each plane of a grid in which there are faces, with those in `plane`, by
+/// Calls merge(direction, layer) for each plane of a grid with faces, which are in `plane`, by
 /// direction and layer.
 template <class Merge>
 void each_face_plane(const DenseGrid& grid, const VisibilityTable& visibility, FacePlane& plane,

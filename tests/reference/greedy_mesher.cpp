@@ -5,7 +5,7 @@
 namespace runstone::reference {
 namespace {
 
-/// The widest, then highest rectangle that starts at a face of the plane.
+/// Returns the widest, then highest rectangle that starts at a face of the plane.
 PlaneRectangle grow(const FacePlane& plane, std::uint32_t u, std::uint32_t v) {
   const Material* row = plane.row(v) + u;
   const Material material = *row;

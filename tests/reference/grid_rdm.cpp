@@ -12,11 +12,11 @@ using Strip = GridRdmScratch::Strip;
 struct Traversal {
   Axis layer, row, run;
 };
-/// By axis of the faces. The thesis' axes are x, y, z with z up; here that is x, z, y.
+/// By axis of the faces. The thesis' axes are x, y, z with z up; here they are x, z, y.
 constexpr std::array<Traversal, 3> kTraversals = {
     {{Axis::x, Axis::y, Axis::z}, {Axis::y, Axis::x, Axis::z}, {Axis::z, Axis::y, Axis::x}}};
 
-/// First phase: the run strips of one direction.
+/// First phase: makes the run strips of one direction.
 void make_strips(const DenseGrid& grid, const VisibilityTable& visibility, Direction direction,
                  std::vector<Strip>& strips) {
   const Traversal t = kTraversals[static_cast<std::size_t>(axis_of(direction))];
@@ -44,7 +44,8 @@ void make_strips(const DenseGrid& grid, const VisibilityTable& visibility, Direc
   }
 }
 
-/// Second phase: joins strips with their like in the row before. What was joined keeps its first row's place.
+/// Second phase: joins strips with equal strips in the row before. A joined strip keeps the place
+/// of its first row.
 void join_rows(GridRdmScratch& scratch) {
   std::vector<std::uint32_t>& row = scratch.row;
   std::vector<std::uint32_t>& before = scratch.row_before;
@@ -54,7 +55,7 @@ void join_rows(GridRdmScratch& scratch) {
   std::uint32_t kept = 0;
   std::uint8_t layer = 0;
   std::uint8_t row_at = 0;
-  for (const Strip strip : strips) {  // by value: joined strips are written over
+  for (const Strip strip : strips) {  // by value: joined strips are overwritten
     if (strip.layer != layer || strip.row_first != row_at) {
       before.swap(row);
       row.clear();

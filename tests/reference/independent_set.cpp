@@ -8,8 +8,9 @@ namespace runstone::reference {
 void IndependentSet::find(const BipartiteGraph& graph) {
   left_partner_.assign(graph.left_count(), kFar);
   right_partner_.assign(graph.right_count, kFar);
-  // The last search reaches no unmatched vertex on the right. What it did reach decides: the smallest cover
-  // is the left vertices out of its reach and the right ones within (König).
+  // The last search reaches no unmatched vertex on the right. The vertices that it reached decide:
+  // the smallest cover is the left vertices that it did not reach and the right ones that it
+  // reached (König).
   while (reach_free(graph)) {
     next_edge_.assign(graph.first.begin(), graph.first.end() - 1);
     for (std::uint32_t left = 0; left < graph.left_count(); ++left) {
@@ -18,8 +19,9 @@ void IndependentSet::find(const BipartiteGraph& graph) {
   }
 }
 
-/// Breadth first from all unmatched left vertices along edges to the right and partners back to the left, down
-/// to the first unmatched right vertices. Returns whether there are any.
+/// Searches breadth first from all unmatched left vertices, along edges to the right and along
+/// partners back to the left, down to the first unmatched right vertices. Returns true if there are
+/// any.
 bool IndependentSet::reach_free(const BipartiteGraph& graph) {
   distance_.assign(graph.left_count(), kFar);
   reached_.assign(graph.right_count, 0);
@@ -47,9 +49,9 @@ bool IndependentSet::reach_free(const BipartiteGraph& graph) {
   return shortest_ != kFar;
 }
 
-/// Matches an unmatched left vertex, if a shortest path from it to an unmatched right one is left, by
-/// exchanging the edges of that path that are in the matching and those that are not. Depth first, each edge
-/// once a phase.
+/// Matches an unmatched left vertex if a shortest path from it to an unmatched right one exists. It
+/// exchanges the edges of that path that are in the matching and those that are not. Depth first,
+/// each edge once a phase.
 void IndependentSet::augment(const BipartiteGraph& graph, std::uint32_t root) {
   path_.assign(1, root);
   while (!path_.empty()) {

@@ -1,14 +1,14 @@
-// IndependentSet: the largest set of vertices of a bipartite graph of which no two are joined. By König's
-// theorem it is what a smallest vertex cover leaves, and that follows from a largest matching, which is found
-// by augmenting along shortest paths, many of one length at a time (J. Hopcroft and R. Karp, SIAM J. Comput. 2,
-// 1973).
+// IndependentSet: the largest set of vertices of a bipartite graph of which no two are joined. By
+// König's theorem it is the complement of a smallest vertex cover. The cover follows from a largest
+// matching, which is found by augmenting along shortest paths, many of one length at a time (J.
+// Hopcroft and R. Karp, SIAM J. Comput. 2, 1973).
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace runstone::reference {
 
-/// Vertices of two sides; edges run between them only.
+/// Vertices of two sides. Edges run between the sides only.
 struct BipartiteGraph {
   std::uint32_t right_count = 0;
   std::vector<std::uint32_t> first = {0};  // edges of left vertex l: from first[l] to first[l + 1]
@@ -20,17 +20,17 @@ struct BipartiteGraph {
     first.assign(1, 0);
     edges.clear();
   }
-  /// Ends the edges of a left vertex: the next to be added are the next one's.
+  /// Ends the edges of a left vertex. The next edges belong to the next vertex.
   void end_left() { first.push_back(static_cast<std::uint32_t>(edges.size())); }
 };
 
-/// Buffers reused between calls. Belongs to one thread.
+/// Keeps its buffers between calls. Thread: one.
 class IndependentSet {
  public:
-  /// Finds the set of a graph. O(edges * sqrt(vertices)).
+  /// Finds the set of a graph. Cost: O(edges * sqrt(vertices)).
   void find(const BipartiteGraph& graph);
 
-  /// Of the last graph.
+  /// Returns true if the set of the last graph has the vertex.
   bool has_left(std::uint32_t vertex) const { return distance_[vertex] != kFar; }
   bool has_right(std::uint32_t vertex) const { return reached_[vertex] == 0; }
 
@@ -40,13 +40,16 @@ class IndependentSet {
   bool reach_free(const BipartiteGraph& graph);
   void augment(const BipartiteGraph& graph, std::uint32_t root);
 
-  // A partner is an index of the other side, kFar where there is none.
+  // A partner is an index on the other side, or kFar if there is none.
   std::vector<std::uint32_t> left_partner_, right_partner_;
-  std::vector<std::uint32_t> distance_;  // of left vertices: pairs of edges from an unmatched one
-  std::vector<std::uint8_t> reached_;    // right vertices the same search came by
+  // Of left vertices: pairs of edges from an unmatched one.
+  std::vector<std::uint32_t> distance_;
+  // Right vertices that the same search reached.
+  std::vector<std::uint8_t> reached_;
   std::vector<std::uint32_t> queue_, next_edge_, path_;
   std::uint32_t shortest_ =
-      kFar;  // distance of the left vertices before the nearest unmatched right ones
+      // Distance of the left vertices before the nearest unmatched right ones.
+      kFar;
 };
 
 }  // namespace runstone::reference

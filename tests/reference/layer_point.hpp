@@ -1,10 +1,10 @@
-// LayerPoint: a corner in a layer of faces, and the two exact questions that triangulations ask.
+// LayerPoint: a corner in a layer of faces, and the two exact predicates of triangulations.
 #pragma once
 #include <cstdint>
 
 namespace runstone::reference {
 
-/// A point of the lattice of corners, 0 .. 128; u and v are those of quads (common/mesh/quad.hpp).
+/// A point of the lattice of corners, 0 .. 128. u and v are those of quads (common/mesh/quad.hpp).
 struct LayerPoint {
   std::uint8_t u = 0, v = 0;
   friend constexpr bool operator==(const LayerPoint&, const LayerPoint&) = default;
@@ -14,12 +14,13 @@ struct LayerPoint {
   }
 };
 
-/// Twice the area of a b c: positive if they turn left (counter-clockwise), 0 on a line.
+/// Returns twice the area of a b c: positive if they turn left (counter-clockwise), 0 on a line.
 constexpr std::int32_t turn(LayerPoint a, LayerPoint b, LayerPoint c) {
   return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
 }
 
-/// Positive if d lies within the circle through a b c, 0 on it. Requires turn(a, b, c) > 0. Exact: below 2^34.
+/// Returns a positive number if d lies within the circle through a b c, 0 on it. Requires turn(a,
+/// b, c) > 0. Exact: below 2^34.
 constexpr std::int64_t in_circle(LayerPoint a, LayerPoint b, LayerPoint c, LayerPoint d) {
   const std::int64_t au = a.u - d.u, av = a.v - d.v, bu = b.u - d.u, bv = b.v - d.v, cu = c.u - d.u,
                      cv = c.v - d.v;

@@ -14,7 +14,8 @@ constexpr VoxelPos child_of(VoxelPos at, std::int32_t half, std::uint32_t child)
           at.z + ((child & 4) != 0 ? half : 0)};
 }
 
-/// Place of a voxel in its brick; takes coordinates relative to the brick's or the tree's origin.
+/// Returns the index of a voxel in its brick. Coordinates are relative to the origin of the brick
+/// or the tree.
 constexpr std::size_t place_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   constexpr std::int32_t kLow = MaterialOctree::kBrickSide - 1;
   return static_cast<std::size_t>((x & kLow) +
@@ -71,7 +72,8 @@ void MaterialOctree::compact() {
   *this = std::move(out);
 }
 
-/// Copies a node and what is below it to node `to` of another tree. Returns whether it is of one material.
+/// Copies a node and the nodes below it to node `to` of another tree. Returns true if it is of one
+/// material.
 bool MaterialOctree::compact(std::uint32_t node, MaterialOctree& into, std::uint32_t to) const {
   const Node& from = nodes_[node];
   if (from.brick != 0) {
@@ -102,7 +104,7 @@ bool MaterialOctree::compact(std::uint32_t node, MaterialOctree& into, std::uint
     return false;
   }
   into.nodes_[to].material = into.nodes_[first].material;
-  into.nodes_.resize(first);  // nothing was added behind the eight, or they would not be uniform
+  into.nodes_.resize(first);  // nothing was added behind the eight, since they are uniform
   return true;
 }
 
@@ -111,13 +113,13 @@ void MaterialOctree::sample(VoxelPos first, DenseGrid& grid) const {
   count_dense_expansion();
   const OrderedExtent e = grid.sides();
   const VoxelPos low = {first.x - origin_.x, first.y - origin_.y,
-                        first.z - origin_.z};  // of the grid, in the tree
+                        first.z - origin_.z};  // origin of the grid, in the tree
   const VoxelBox wanted = {
       {low.x - 1, low.y - 1, low.z - 1},
       {low.x + static_cast<std::int32_t>(e.f) + 1, low.y + static_cast<std::int32_t>(e.m) + 1,
        low.z + static_cast<std::int32_t>(e.s) + 1}};
   const VoxelBox cube = {{0, 0, 0}, {side(), side(), side()}};
-  if (intersect(wanted, cube) != wanted) {  // part of it lies outside
+  if (intersect(wanted, cube) != wanted) {  // a part of it lies outside
     for (std::ptrdiff_t s = -1; s <= static_cast<std::ptrdiff_t>(e.s); ++s) {
       for (std::ptrdiff_t m = -1; m <= static_cast<std::ptrdiff_t>(e.m); ++m) {
         std::fill_n(grid.line(m, s) - 1, e.f + 2, kEmpty);

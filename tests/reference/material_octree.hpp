@@ -1,5 +1,6 @@
-// MaterialOctree: voxels the way Voxel Plugin keeps them (thesis 6.3.1), as a store for the culled baseline
-// to sample from: a cube split in eight until a part is of one material or a brick of 16 x 16 x 16 voxels.
+// MaterialOctree: voxels as Voxel Plugin stores them (thesis 6.3.1), for the culled baseline to
+// sample. A cube is divided into eight parts until a part is of one material or a brick of 16 x 16
+// x 16 voxels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,18 +18,19 @@ class MaterialOctree {
   static constexpr std::int32_t kBrickSide = 16;  // voxels
   static constexpr unsigned kDepthMax = 6;
 
-  /// An empty cube of kBrickSide << depth voxels a side whose first voxel is `origin`. Requires depth <=
-  /// kDepthMax.
+  /// Makes an empty cube of kBrickSide << depth voxels a side whose first voxel is `origin`.
+  /// Requires depth <= kDepthMax.
   MaterialOctree(VoxelPos origin, unsigned depth);
 
-  /// Writes a chunk's voxels; what lies outside the cube is left out. O(volume / 16 + runs). Call compact()
-  /// behind the last one.
+  /// Writes a chunk's voxels. Voxels outside the cube are left out. Call compact() after the last
+  /// chunk. Cost: O(volume / 16 + runs).
   void insert(VoxelPos first, const RunChunk& chunk);
-  /// Makes every part of one material a single node. O(bricks).
+  /// Makes every part of one material a single node. Cost: O(bricks).
   void compact();
 
-  /// Fills `grid`, border and its edges included, with the voxels from `first` on (the grid's voxel 0 0 0);
-  /// empty outside the cube. Counts a dense expansion. Requires a grid of order xyz. O(volume + nodes met).
+  /// Fills `grid`, its border and the edges of the border, with the voxels from `first` on (the
+  /// grid's voxel 0 0 0); empty outside the cube. Counts a dense expansion. Requires a grid of
+  /// order xyz. Cost: O(volume + nodes met).
   void sample(VoxelPos first, DenseGrid& grid) const;
 
   std::size_t byte_size() const {
@@ -36,12 +38,12 @@ class MaterialOctree {
   }
 
  private:
-  using Brick = std::array<Material, std::size_t{kBrickSide} * kBrickSide *
-                                         kBrickSide>;  // x fastest, z slowest
+  // x fastest, z slowest.
+  using Brick = std::array<Material, std::size_t{kBrickSide} * kBrickSide * kBrickSide>;
   struct Node {
     std::uint32_t children = 0;  // the first of eight nodes, x fastest; 0: none
     std::uint32_t brick = 0;     // index + 1; 0: none
-    Material material = kEmpty;  // of the whole part, if it has neither
+    Material material = kEmpty;  // of the whole part, if it has neither children nor brick
   };
 
   Brick& brick_at(std::int32_t x, std::int32_t y, std::int32_t z);

@@ -6,12 +6,13 @@ namespace runstone::reference {
 namespace {
 
 constexpr std::array<std::uint8_t, 2> kWall = {
-    1, 2};  // by Line: the edge from here to the next corner
+    // By Line: the edge from here to the next corner.
+    1, 2};
 constexpr std::uint8_t kConcave = 4;
-constexpr std::uint8_t kServed = 8;  // a chord that was taken ends here
+constexpr std::uint8_t kServed = 8;  // a chord of the set ends here
 
-/// Whether exactly three of the four faces around a corner are of one material: across the corner two are
-/// equal, and one of the others is, too.
+/// Returns true if exactly three of the four faces around a corner have one material: two faces
+/// across the corner are equal, and one of the others has their material, too.
 bool turns_inwards(Material a, Material b, Material c, Material d) {
   if (a == d) return a != kEmpty && (b == a) != (c == a);
   return b == c && b != kEmpty && (a == b) != (d == b);
@@ -32,7 +33,8 @@ void MinimumPartition::find(const FacePlane& plane, std::vector<PlaneRectangle>&
 void MinimumPartition::find_corners(const FacePlane& plane) {
   step_ = {1, static_cast<std::size_t>(plane.width) + 1};
   corners_.assign(step_[along_v] * (plane.height + 1), 0);
-  const auto face = [&plane](std::uint32_t u, std::uint32_t v) {  // -1 wraps to beyond the width
+  // -1 wraps to a number beyond the width
+  const auto face = [&plane](std::uint32_t u, std::uint32_t v) {
     return u < plane.width && v < plane.height ? plane.row(v)[u] : kEmpty;
   };
   auto corner = corners_.begin();
@@ -49,12 +51,13 @@ void MinimumPartition::find_corners(const FacePlane& plane) {
   }
 }
 
-/// Whether the edge from a corner to the next is a wall.
+/// Returns true if the edge from a corner to the next one is a wall.
 bool MinimumPartition::is_wall(std::size_t corner, Line line) const {
   return (corners_[corner] & kWall[line]) != 0;
 }
 
-/// Whether a wall meets `line` at a corner from either side. Inside a shape that is where a cut ends.
+/// Returns true if a wall meets `line` at a corner from either side. Inside a shape a cut ends
+/// there.
 bool MinimumPartition::is_crossed(std::size_t corner, Line line) const {
   const Line across = line == along_u ? along_v : along_u;
   return is_wall(corner, across) || is_wall(corner - step_[across], across);
@@ -64,8 +67,8 @@ void MinimumPartition::cut(std::size_t from, std::size_t to, Line line) {
   for (; from != to; from += step_[line]) corners_[from] |= kWall[line];
 }
 
-/// A chord goes through the inside from one concave corner to another. Each corner has one way along u and one
-/// along v, so chords of one line share no corners.
+/// A chord leads through the inside from one concave corner to another. Each corner has one chord
+/// along u and one along v at most, so chords of one line share no corners.
 void MinimumPartition::find_chords(Line line) {
   chords_[line].clear();
   for (std::size_t from = 0; from < corners_.size(); ++from) {
@@ -103,7 +106,7 @@ void MinimumPartition::cut_chords() {
   }
 }
 
-/// Along u, away from the outline, to the first wall.
+/// Cuts along u, away from the outline, to the first wall.
 void MinimumPartition::cut_from_corners_left() {
   for (std::size_t corner = 0; corner < corners_.size(); ++corner) {
     if ((corners_[corner] & (kConcave | kServed)) != kConcave) continue;
@@ -120,7 +123,7 @@ void MinimumPartition::cut_from_corners_left() {
   }
 }
 
-/// Between walls there are now rectangles only.
+/// Reads the rectangles: there are no other shapes between walls now.
 void MinimumPartition::read_off(const FacePlane& plane, std::vector<PlaneRectangle>& out) {
   out.clear();
   covered_.assign(plane.faces.size(), 0);

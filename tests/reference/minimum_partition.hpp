@@ -1,21 +1,23 @@
-// MinimumPartition: the faces of a plane in as few rectangles of one material as there can be. T. Ohtsuki
-// (ISCAS 1982), Lipski et al. (1979) and L. Ferrari, P. V. Sankar and J. Sklansky (CVGIP 28, 1984) found it; D.
-// Eppstein surveys it ("Graph-Theoretic Solutions to Computational Geometry Problems", WG 2009).
+// MinimumPartition: the faces of a plane in the fewest possible rectangles of one material.
+// Sources: T. Ohtsuki (ISCAS 1982), Lipski et al. (1979) and L. Ferrari, P. V. Sankar and J.
+// Sklansky (CVGIP 28, 1984); survey: D. Eppstein, "Graph-Theoretic Solutions to Computational
+// Geometry Problems" (WG 2009).
 //
-// Where three of the four faces around a corner are of one material and the fourth is not, the outline turns
-// inwards: a concave corner, and from it at least one cut must go. Each cut saves itself if it ends at another
-// such corner. So: of all such *chords* take as many as there are that neither cross nor touch, which is an
-// independent set of a bipartite graph, since only a chord along u meets one along v; then cut once from every
-// concave corner that is left. A component of c concave corners, n chords taken and h holes comes apart into
-// c - n - h + 1 rectangles.
+// Where three of the four faces around a corner have one material and the fourth has not, the
+// outline turns inwards: a concave corner. At least one cut must start there. A cut that ends at
+// another concave corner serves both. So the algorithm has two steps:
+// - Take the largest set of such *chords* that neither cross nor touch. It is an independent set of
+//   a bipartite graph, since a chord along u meets only chords along v.
+// - Cut once from every remaining concave corner.
+// A component of c concave corners, n chords taken and h holes then has c - n - h + 1 rectangles.
 //
 //   # # #        o o concave corners, joined by a chord: one cut for both
 //   # #o- - o# #
 //   # # # # # #
 //
-// Corners at which equal faces touch only across are convex twice over and need no cut, and no chord passes
-// them: so shapes that touch themselves or each other there come out right without being told apart, and holes
-// need nothing of their own either.
+// A corner at which equal faces touch only diagonally is convex for both and needs no cut, and no
+// chord passes it. So shapes that touch themselves or each other there need no special case, and
+// neither do holes.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -27,11 +29,11 @@
 
 namespace runstone::reference {
 
-/// Buffers reused between calls. Belongs to one thread.
+/// Keeps its buffers between calls. Thread: one.
 class MinimumPartition {
  public:
-  /// Replaces `out` by rectangles that cover each face of `plane` once, by row and place of their first face.
-  /// O(faces + m * sqrt(n)) for n chords that meet in m places.
+  /// Replaces `out` by rectangles that cover each face of `plane` once, by row and place of their
+  /// first face. Cost: O(faces + m * sqrt(n)) for n chords that meet in m places.
   void find(const FacePlane& plane, std::vector<PlaneRectangle>& out);
 
  private:
@@ -50,15 +52,17 @@ class MinimumPartition {
   bool is_crossed(std::size_t corner, Line line) const;
   void cut(std::size_t from, std::size_t to, Line line);
 
-  // Corners of faces, row after row, one more a row than faces: whether the edges from it along u and v are
-  // walls, whether it is concave, whether it needs a cut of its own no longer.
+  // The corners of faces, row after row, one more a row than faces. Flags: the edges from it along
+  // u and v are walls; it is concave; it needs no cut of its own any more.
   std::vector<std::uint8_t> corners_;
   std::array<std::size_t, 2> step_{};         // to the next corner, by Line
   std::array<std::vector<Chord>, 2> chords_;  // by Line
-  std::vector<std::uint32_t> chord_at_;       // the chord along v at a corner, plus one; 0: none
-  BipartiteGraph meetings_;                   // of chords along u (left) and along v (right)
+  // The chord along v at a corner, plus one; 0: none.
+  std::vector<std::uint32_t> chord_at_;
+  // Meetings of chords along u (left) and along v (right).
+  BipartiteGraph meetings_;
   IndependentSet taken_;
-  std::vector<std::uint8_t> covered_;  // faces that are read off
+  std::vector<std::uint8_t> covered_;  // faces whose rectangle is in the output
 };
 
 }  // namespace runstone::reference

@@ -9,7 +9,7 @@ namespace runstone::reference {
 void MonotoneTriangulation::run(const Outlines& outlines, const Outlines::Region& region) {
   sweep_.read(outlines, region);
   triangles_.clear();
-  // The same regions take the same buffers again, which have then grown enough.
+  // The same regions use the same buffers again, which are then large enough.
   piece_count_ = slab_count_ = 0;
   free_pieces_.clear();
   free_slabs_.clear();
@@ -17,7 +17,8 @@ void MonotoneTriangulation::run(const Outlines& outlines, const Outlines::Region
   right_of_.assign(sweep_.corners.size(), kNone);
   for (CornerId corner = 0; corner < sweep_.corners.size(); ++corner) {
     const auto [point, before, after] = sweep_.corners[corner];
-    // The region lies on the left of its ring, which runs up its right sides and down its left ones.
+    // The region lies on the left of its ring. The ring runs up the region's right sides and down
+    // its left ones.
     if (before < corner && after > corner) {
       const SlabId slab = right_of_[corner];
       const PieceId piece = meet_right(slabs_[slab], corner);
@@ -83,8 +84,8 @@ void MonotoneTriangulation::close_slab(SlabId slab) {
   free_slabs_.push_back(slab);
 }
 
-/// The slab that has a corner inside. Sides along u are not looked at: none crosses the height of a corner
-/// that lies within a slab.
+/// Returns the slab that contains a corner. Sides along u are not considered: none crosses the
+/// height of a corner that lies within a slab.
 MonotoneTriangulation::SlabId MonotoneTriangulation::slab_around(CornerId corner) const {
   const auto inside = [&](SlabId slab) {
     return at(slabs_[slab].left_end).u < at(corner).u &&
@@ -95,7 +96,8 @@ MonotoneTriangulation::SlabId MonotoneTriangulation::slab_around(CornerId corner
   return *found;
 }
 
-/// A corner on the left side of a slab: returns the one piece that goes on, with the corner on its left chain.
+/// Handles a corner on the left side of a slab. Returns the one piece that continues, with the
+/// corner on its left chain.
 MonotoneTriangulation::PieceId MonotoneTriangulation::meet_left(Slab& slab, CornerId corner) {
   if (slab.left_piece != slab.right_piece) close_piece(slab.left_piece, corner);
   pieces_[slab.right_piece].left.push_back(corner);
@@ -119,7 +121,7 @@ void MonotoneTriangulation::split(CornerId corner) {
   Slab left = slabs_[below];
   Slab right = left;
   close_slab(below);
-  if (left.left_piece != left.right_piece) {  // joined with the corner that merges
+  if (left.left_piece != left.right_piece) {  // joined with the merging corner
     pieces_[left.left_piece].right.push_back(corner);
     pieces_[right.right_piece].left.push_back(corner);
   } else {
@@ -165,8 +167,8 @@ void MonotoneTriangulation::end(CornerId corner) {
   if (slab.left_piece != slab.right_piece) close_piece(slab.right_piece, corner);
 }
 
-/// Both chains in one row upwards; a stack keeps those that still wait for a triangle on both sides, a chain
-/// that bends towards the other one.
+/// Triangulates a piece: visits both chains in one row upwards. A stack holds the corners that
+/// still wait for a triangle, a chain that bends towards the other one.
 void MonotoneTriangulation::triangulate(const Piece& piece) {
   const auto& left = piece.left;
   const auto& right = piece.right;

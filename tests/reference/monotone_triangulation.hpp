@@ -1,11 +1,13 @@
-// MonotoneTriangulation: a region cut into monotone polygons by a sweep, and these into triangles (Fournier
-// and Montuno 1984; de Berg et al., Computational Geometry, chapter 3). Exact, in integers.
+// MonotoneTriangulation: cuts a region into monotone polygons by a sweep, and these into triangles
+// (Fournier and Montuno 1984; de Berg et al., Computational Geometry, chapter 3). Exact, in
+// integers.
 //
-// The sweep goes row by row and along u in each row, as if every side along u rose a little: no two points are
-// then at the same height. What it has open are slabs, the stretches of the region between a left and a right
-// side. A corner where a slab splits in two is joined with the latest corner of the slab; one where two merge
-// waits for the next corner of theirs and is joined with that. Nothing lies between the ends of these
-// diagonals, so there are no new points, and no point lies within a side of a piece.
+// The sweep proceeds row by row and along u in each row, as if every side along u rose a little: no
+// two points are then at the same height. Its open elements are slabs, the stretches of the region
+// between a left and a right side. A corner where a slab splits in two is joined with the latest
+// corner of the slab. A corner where two slabs merge waits for their next corner and is joined with
+// that. Nothing lies between the ends of these diagonals. So there are no new points, and no point
+// lies within a side of a piece.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,30 +18,32 @@
 
 namespace runstone::reference {
 
-/// Buffers are kept. Belongs to one thread.
+/// Keeps its buffers between calls. Thread: one.
 class MonotoneTriangulation {
  public:
-  using Triangle = std::array<std::uint32_t, 3>;  // places in points(), counter-clockwise over u, v
+  // Indices of points(), counter-clockwise over u, v.
+  using Triangle = std::array<std::uint32_t, 3>;
 
-  /// Triangulates a region of `outlines`. O(n log n), plus a look at every open slab where one splits.
+  /// Triangulates a region of `outlines`. Cost: O(n log n), plus a look at every open slab where
+  /// one splits.
   void run(const Outlines& outlines, const Outlines::Region& region);
 
-  /// Each corner of the region once, ascending.
+  /// Returns each corner of the region once, ascending.
   std::span<const LayerPoint> points() const { return sweep_.points; }
   std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
-  using CornerId = std::uint32_t;  // place in sweep_.corners: ascending is upwards
+  using CornerId = std::uint32_t;  // index in sweep_.corners: ascending is upwards
   using PieceId = std::uint32_t;
   using SlabId = std::uint32_t;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// A monotone polygon that is still open at its top: both chains start with its lowest corner.
+  /// A monotone polygon that is still open at its top. Both chains start with its lowest corner.
   struct Piece {
     std::vector<CornerId> left, right;
   };
-  /// A merged slab has two pieces until the next corner joins the merging one, which ends the right chain of
-  /// one and the left chain of the other. Else both are the same.
+  /// A merged slab has two pieces until the next corner joins the merging one. That corner ends the
+  /// right chain of one piece and the left chain of the other. Otherwise both are the same piece.
   struct Slab {
     PieceId left_piece = 0, right_piece = 0;
     CornerId left_end = 0, right_end = 0;  // upper ends of its two sides
@@ -68,13 +72,15 @@ class MonotoneTriangulation {
 
   SweepPoints sweep_;
   std::vector<Triangle> triangles_;
-  std::vector<Piece> pieces_;  // of the last region those below piece_count_, some of them free
+  // Of the last region: those below piece_count_, some of them free.
+  std::vector<Piece> pieces_;
   std::vector<PieceId> free_pieces_;
   std::uint32_t piece_count_ = 0, slab_count_ = 0;
   std::vector<Slab> slabs_;
   std::vector<SlabId> free_slabs_, open_slabs_;
-  std::vector<SlabId> left_of_, right_of_;  // by corner: the slab whose left, right side ends there
-  std::vector<Stacked> row_, stack_;        // of triangulate()
+  // By corner: the slab whose left or right side ends there.
+  std::vector<SlabId> left_of_, right_of_;
+  std::vector<Stacked> row_, stack_;  // of triangulate()
 };
 
 }  // namespace runstone::reference

@@ -5,14 +5,14 @@
 namespace runstone::reference {
 namespace {
 
-/// Takes faces of `material` from `row` on, up to `most`; returns how many.
+/// Takes faces of `material` from `row` on, up to `most`. Returns their number.
 std::uint32_t take_run(Material* row, std::uint32_t most, Material material) {
   std::uint32_t taken = 0;
   while (taken < most && row[taken] == material) row[taken++] = kEmpty;
   return taken;
 }
 
-/// Takes `width` faces of `material` from `row` on, or none.
+/// Takes `width` faces of `material` from `row` on, or none. Returns true if it took them.
 bool take_row(Material* row, std::uint32_t width, Material material) {
   if (row[0] != material || row[width - 1] != material) return false;
   const std::uint32_t taken = take_run(row, width, material);

@@ -9,7 +9,7 @@
 namespace runstone::reference {
 namespace {
 
-/// Remembers whether more than one material was seen.
+/// Records whether there is more than one material.
 struct OneMaterial {
   Material first = kEmpty;
   bool seen = false, one = true;
@@ -20,7 +20,7 @@ struct OneMaterial {
   }
 };
 
-/// The bits of a voxel beyond the end of a line, before it or (`behind`) after it.
+/// Returns the bits of a voxel beyond the end of a line: before it, or (`behind`) after it.
 unsigned end_bits(Visibility is, bool behind) {
   const unsigned bits = is == Visibility::opaque ? 1u : is == Visibility::transparent ? 4u : 0u;
   return behind ? bits << 1 : bits;
@@ -37,7 +37,7 @@ class Builder {
     mask.ends.resize(lines);
   }
 
-  /// Opaque materials beyond the border hide faces whatever they are; transparent ones are compared.
+  /// Opaque materials beyond the border hide every face; transparent ones are compared.
   Visibility look_up(Material material, bool inside) {
     const Visibility is = visibility_[material];
     if (is == Visibility::opaque && inside) opaque_.see(material);
@@ -45,12 +45,12 @@ class Builder {
     return is;
   }
 
-  /// The words of a line, border lines included, from the grid.
+  /// Makes the words of a line, border lines included, from the grid.
   void scan(std::ptrdiff_t m, std::ptrdiff_t s) {
     const bool inside = within(m, e_.m) && within(s, e_.s);
     const Material* const line = grid_.line(m, s);
-    std::uint64_t changes =
-        differing_bits(line, line + 1, e_.f) & (low_bits(e_.f) >> 1);  // bit i: i + 1 differs
+    // Bit i: i + 1 differs.
+    std::uint64_t changes = differing_bits(line, line + 1, e_.f) & (low_bits(e_.f) >> 1);
     std::uint64_t is_opaque = 0, is_transparent = 0;
     for (std::uint32_t from = 0;;) {
       const std::uint32_t to =
@@ -67,7 +67,7 @@ class Builder {
     mask_.transparent[word_at(m, s)] = is_transparent;
   }
 
-  /// The words of all lines inside, from runs.
+  /// Makes the words of all lines inside, from runs.
   template <class Runs>
   void scan_runs(const Runs& runs) {
     std::uint64_t* opaque = mask_.opaque.data() + word_at(0, 0);
@@ -102,7 +102,7 @@ class Builder {
     }
   }
 
-  /// Border lines: their words from the grid, none for the edges of the border.
+  /// Makes the words of the border lines from the grid; the edges of the border have none.
   void scan_border() {
     const auto m_side = static_cast<std::ptrdiff_t>(e_.m);
     const auto s_side = static_cast<std::ptrdiff_t>(e_.s);
@@ -117,14 +117,14 @@ class Builder {
     }
   }
 
-  /// What lies beyond the ends of all lines inside, from the grid.
+  /// Records the voxels beyond the ends of all lines inside, from the grid.
   void scan_ends() {
     for_each_line([this](std::ptrdiff_t m, std::ptrdiff_t s) {
       const Material* const line = grid_.line(m, s);
       return end_bits(look_up(line[-1], false), false) | end_bits(look_up(line[e_.f], false), true);
     });
   }
-  /// The same where it is one material before and one behind every line.
+  /// Does the same where every line has one material before it and one behind it.
   void set_ends(Material before, Material behind) {
     const unsigned ends =
         end_bits(look_up(before, false), false) | end_bits(look_up(behind, false), true);
@@ -182,7 +182,7 @@ void occupancy_of_decoded(const RunChunk& chunk, const GridNeighbours& neighbour
                           OccupancyMask& mask) {
   RUNSTONE_ASSERT(grid.extent() == chunk.extent && grid.order() == chunk.order);
   const OrderedExtent e = grid.sides();
-  // Where lines hold many runs, comparing voxels side by side is faster than stepping through runs.
+  // Where lines hold many runs, comparing voxels side by side is faster than iterating over runs.
   if (chunk.runs.size() > std::size_t{6} * e.m * e.s) return occupancy_of(grid, visibility, mask);
   Builder builder(grid, visibility, mask);
   chunk.runs.visit([&](const auto& runs) { builder.scan_runs(runs); });

@@ -1,7 +1,7 @@
-// Optimal greedy meshing (thesis 4.2.9, which cites Blackflux, "Meshing in Voxel Engines", part 2, 2014, and
-// Eppstein): the faces of each layer of each direction in as few rectangles as there can be
-// (minimum_partition.hpp). No mesher whose quads are rectangles of exposed faces of one material needs fewer:
-// this is what the others are measured against, and no faster than it has to be.
+// Optimal greedy meshing (thesis 4.2.9, which cites Blackflux, "Meshing in Voxel Engines", part 2,
+// 2014, and Eppstein): the faces of each layer of each direction in the fewest possible rectangles
+// (minimum_partition.hpp). No mesher whose quads are rectangles of exposed faces of one material
+// needs fewer. It is the optimum for the others; its speed does not matter.
 #pragma once
 #include <vector>
 
@@ -12,15 +12,15 @@
 
 namespace runstone::reference {
 
-/// Buffers reused between calls. Belongs to one thread.
+/// Buffers that are reused between calls. Thread: one.
 struct OptimalGreedyScratch {
   FacePlane plane;
   MinimumPartition partition;
   std::vector<PlaneRectangle> rectangles;
 };
 
-/// Replaces `out` by the mesh of `grid`, by direction, layer and row of the first face. O(volume), and for
-/// each layer of n chords that meet in m places O(m * sqrt(n)).
+/// Replaces `out` by the mesh of `grid`, by direction, layer and row of the first face. Cost:
+/// O(volume), and for each layer of n chords that meet in m places O(m * sqrt(n)).
 void mesh_optimal_greedy(const DenseGrid& grid, const VisibilityTable& visibility,
                          OptimalGreedyScratch& scratch, std::vector<Quad>& out);
 

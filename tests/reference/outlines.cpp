@@ -8,9 +8,9 @@ namespace {
 struct Step {
   int u, v;
 };
-/// A quarter turn left each: +u, +v, -u, -v.
+/// Each step is a quarter turn left of the one before: +u, +v, -u, -v.
 constexpr std::array<Step, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-/// The faces that lie ahead of a point on the way of a step, to its left and to its right.
+/// The faces ahead of a point in the direction of a step, to its left and to its right.
 constexpr std::array<Step, 4> kAheadLeft = {{{0, 0}, {-1, 0}, {-1, -1}, {0, -1}}};
 constexpr std::array<Step, 4> kAheadRight = {{{0, -1}, {0, 0}, {-1, 0}, {-1, -1}}};
 
@@ -30,8 +30,8 @@ void OutlineTracer::trace(const FacePlane& plane, Outlines& out) {
       if (material == kEmpty || region_[index(u, v)] != 0) continue;
       gather(plane, u, v);
       out.regions.push_back({material, static_cast<std::uint32_t>(out.rings.size()), 0, 0});
-      // The first face lies lowest, so the first ring is the outer one. Every ring has a side that runs along
-      // +u and starts with a corner.
+      // The first face lies lowest, so the first ring is the outer one. Every ring has a side that
+      // runs along +u and starts with a corner.
       const auto ours = [this](int at_u, int at_v) {
         return region_[index(at_u, at_v)] == regions_;
       };
@@ -40,12 +40,12 @@ void OutlineTracer::trace(const FacePlane& plane, Outlines& out) {
         const bool corner = !ours(cell.u - 1, cell.v) || ours(cell.u - 1, cell.v - 1);
         if (side && corner && traced_[index(cell.u, cell.v)] == 0) trace_ring(cell.u, cell.v, out);
       }
-      out.regions.back().touching /= 2;  // a ring comes by once for each of the two faces
+      out.regions.back().touching /= 2;  // a ring passes the corner once for each of the two faces
     }
   }
 }
 
-/// The faces of the region that has this one.
+/// Collects the faces of the region that contains this one.
 void OutlineTracer::gather(const FacePlane& plane, int u, int v) {
   ++regions_;
   cells_.clear();
@@ -67,7 +67,7 @@ void OutlineTracer::gather(const FacePlane& plane, int u, int v) {
   }
 }
 
-/// The ring that runs along the lower side of a face, whose start is a corner.
+/// Traces the ring that runs along the lower side of a face, whose start is a corner.
 void OutlineTracer::trace_ring(int u, int v, Outlines& out) {
   const std::uint32_t region = region_[index(u, v)];
   const auto first = static_cast<std::uint32_t>(out.points.size());

@@ -1,11 +1,12 @@
-// Outlines: the faces of a layer as polygons (thesis 4.2.11). Faces of one material that hang together by
-// their sides are a region; each region is an outer ring and a ring for each of its holes.
+// Outlines: the faces of a layer as polygons (thesis 4.2.11). Faces of one material that are
+// connected by their sides are a region. Each region is an outer ring and a ring for each of its
+// holes.
 //
-// Where a region touches itself at a corner only, two faces on one diagonal and none on the other, it does
-// not hang together: the ring keeps to the face it came along, passes the corner once for each of the two
-// faces, and is weakly simple. A hole that touches the outline, or another hole, is thereby part of that
-// ring. Traced the other way, across the corner, they would be rings that share a point, which Poly2Tri's
-// original refuses.
+// A region may touch itself at a corner only, with two faces on one diagonal and none on the other.
+// It is not connected there: the ring stays with the face along which it came, passes the corner
+// once for each of the two faces, and is weakly simple. A hole that touches the outline, or another
+// hole, is therefore part of that ring. Traced across the corner they would be rings that share a
+// point, which Poly2Tri's original rejects.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -22,10 +23,11 @@ struct Outlines {
   struct Region {
     Material material = kEmpty;
     std::uint32_t first_ring = 0, ring_count = 0;  // the outer one first
-    std::uint32_t touching = 0;                    // corners in which it touches itself
+    std::uint32_t touching = 0;                    // corners at which it touches itself
   };
-  /// Corners alone: sides alternate between u and v. The region lies on the left, so outer rings run
-  /// counter-clockwise over u, v and holes clockwise. No corner lies within a side of the same region.
+  /// Corners only: sides alternate between u and v. The region lies on the left, so outer rings run
+  /// counter-clockwise over u, v and holes clockwise. No corner lies within a side of the same
+  /// region.
   std::vector<LayerPoint> points;
   std::vector<Ring> rings;
   std::vector<Region> regions;
@@ -37,10 +39,11 @@ struct Outlines {
   }
 };
 
-/// Traces the regions of planes. Buffers are kept. Belongs to one thread.
+/// Traces the regions of planes. Keeps its buffers between calls. Thread: one.
 class OutlineTracer {
  public:
-  /// Replaces `out` by the outlines of a plane, regions by their lowest row, then along u. O(faces).
+  /// Replaces `out` by the outlines of a plane, regions by their lowest row, then along u. Cost:
+  /// O(faces).
   void trace(const FacePlane& plane, Outlines& out);
 
  private:
@@ -55,9 +58,11 @@ class OutlineTracer {
 
   std::size_t stride_ = 0;
   std::vector<std::uint32_t>
-      region_;  // of each face, from 1; a margin of none lies around the plane
-  std::vector<std::uint8_t> traced_;  // whether the side towards -v belongs to a ring
-  std::vector<Cell> cells_;           // of the region at hand
+      // The region of each face, from 1. A margin of 0 lies around the plane.
+      region_;
+  // Whether the side of a face towards -v belongs to a ring.
+  std::vector<std::uint8_t> traced_;
+  std::vector<Cell> cells_;  // of the present region
   std::uint32_t regions_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The walk that the meshers of polygons share: every layer of every direction, outlined and handed on region by
-// region to what makes triangles of it.
+// The common traversal of the polygon meshers: every layer of every direction is outlined, and each
+// region is passed to the triangulation.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace runstone::reference {
 
-/// Buffers reused between calls, and what the last call met. Belongs to one thread.
+/// Buffers that are reused between calls, and counts of the last call. Thread: one.
 struct PolygonScratch {
   FacePlane plane;
   OutlineTracer tracer;
   Outlines outlines;
   std::size_t regions = 0;
-  std::size_t touching_regions = 0;  // those that touch themselves at a corner or more
+  std::size_t touching_regions = 0;  // regions that touch themselves at a corner or more
   std::size_t touching_corners = 0;
 };
 
-/// Replaces `out` by the triangles of every region of a grid. Triangulation has run(outlines, region), then
-/// points() and triangles() of that region, counter-clockwise over u, v.
+/// Replaces `out` by the triangles of every region of a grid. Triangulation has run(outlines,
+/// region), then points() and triangles() of that region, counter-clockwise over u, v.
 template <class Triangulation>
 void mesh_polygons(const DenseGrid& grid, const VisibilityTable& visibility,
                    PolygonScratch& scratch, Triangulation& triangulation, TriangleMesh& out) {

@@ -12,7 +12,7 @@ void mesh_rle_rdm(const RunChunk& chunk, const VisibilityTable& visibility,
   RUNSTONE_ASSERT(chunk.order == AxisOrder::zyx);
   out.clear();
   const OrderedExtent e = ordered(chunk.extent, chunk.order);
-  OrderedPos at{0, 0, 0};  // walks along with the runs
+  OrderedPos at{0, 0, 0};  // advances with the runs
   std::uint32_t begin = 0;
   for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
     const Run run = chunk.runs[i];

@@ -1,6 +1,6 @@
-// RLE RDM as the thesis built it (7.3.1, 7.3.2): runs become cuboids' sides straight from the compressed
-// chunk, with tail culling as the only culling, no merging and no neighbours. The prototype ours sets out
-// from.
+// RLE RDM as the thesis built it (7.3.1, 7.3.2): runs become sides of cuboids directly from the
+// compressed chunk. Tail culling is the only culling; there is no merging, and neighbours are not
+// read. The product's mesher started from this prototype.
 #pragma once
 #include <vector>
 
@@ -10,11 +10,13 @@
 
 namespace runstone::reference {
 
-/// Replaces `out` by the mesh of `chunk`. A drawn run is cut where lines end; each piece gives, in our axes,
-/// the strips +x, +y and the ends +z, -z, the strip -x unless the run had come past the piece one slow layer
-/// before, and the strip -y unless it had one line before in the same slow layer. So it covers every exposed
-/// face and many hidden ones. Requires order zyx, the thesis' (y, z, x with z up). O(runs + lines of drawn
-/// runs).
+/// Replaces `out` by the mesh of `chunk`. A drawn run is cut at the ends of lines. Each piece
+/// gives, in our axes:
+/// - the strips +x and +y and the ends +z and -z;
+/// - the strip -x, unless the run passed the same piece one slow layer before;
+/// - the strip -y, unless the run passed it one line before in the same slow layer.
+/// So the mesh covers every exposed face and many hidden ones. Requires order zyx, which is the
+/// thesis' (y, z, x with z up). Cost: O(runs + lines of drawn runs).
 void mesh_rle_rdm(const RunChunk& chunk, const VisibilityTable& visibility, std::vector<Quad>& out);
 
 }  // namespace runstone::reference

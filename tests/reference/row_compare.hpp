@@ -1,5 +1,5 @@
-// Comparing materials that lie side by side, a word of 64 bits for up to 64 of them. SSE2 is part of every
-// x86-64; elsewhere the same words come from a loop.
+// Compares materials that lie side by side, up to 64 in a word of 64 bits. SSE2 is part of every
+// x86-64; elsewhere a loop makes the same words.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace runstone::reference {
 
-/// The lowest `count` bits. Requires 0 < count <= 64.
+/// Returns the lowest `count` bits. Requires 0 < count <= 64.
 constexpr std::uint64_t low_bits(std::uint32_t count) {
-  return ~std::uint64_t{0} >>
-         ((64 - count) & 63);  // the mask costs nothing and bounds the shift for analysers
+  // The mask costs nothing and bounds the shift for analysers.
+  return ~std::uint64_t{0} >> ((64 - count) & 63);
 }
 
-/// Materials that differing_bits() may read beyond the last one it compares.
+/// The materials that differing_bits() may read beyond the last one that it compares.
 inline constexpr std::size_t kCompareSlack = 16;
 
-/// Bit i: a[i] != b[i], for i < count. Requires 0 < count <= 64 and kCompareSlack readable materials behind
-/// both.
+/// Returns a word with bit i set if a[i] != b[i], for i < count. Requires 0 < count <= 64 and
+/// kCompareSlack readable materials behind both.
 inline std::uint64_t differing_bits(const Material* a, const Material* b, std::uint32_t count) {
   std::uint64_t equal = 0;
 #if defined(__SSE2__)
@@ -42,8 +42,8 @@ inline std::uint64_t differing_bits(const Material* a, const Material* b, std::u
   return ~equal & low_bits(count);
 }
 
-/// How many of the `count` materials from `row` on equal `material`, before the first that does not. Requires
-/// kCompareSlack readable materials behind them.
+/// Returns how many of the `count` materials from `row` on equal `material`, before the first that
+/// differs. Requires kCompareSlack readable materials behind them.
 inline std::uint32_t equal_prefix(const Material* row, std::uint32_t count, Material material) {
   std::uint32_t i = 0;
 #if defined(__SSE2__)

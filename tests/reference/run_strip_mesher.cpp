@@ -8,13 +8,13 @@
 namespace runstone::reference {
 namespace {
 
-/// How the faces of one direction are walked.
+/// The traversal of the faces of one direction.
 struct Way {
   Direction direction;
   Axis run;
-  std::ptrdiff_t beside;    // from a voxel to the one its face looks at
+  std::ptrdiff_t beside;    // from a voxel to the one that its face touches
   std::ptrdiff_t next;      // to the next voxel of a run
-  std::size_t next_marked;  // the same among the marks
+  std::size_t next_marked;  // the same step among the marks
 };
 
 std::array<Way, kDirectionCount> ways_through(const DenseGrid& grid) {
@@ -30,7 +30,7 @@ std::array<Way, kDirectionCount> ways_through(const DenseGrid& grid) {
   return ways;
 }
 
-/// Marks the faces of a run from `voxel` on, of at most `most` voxels; returns how many they are.
+/// Marks the faces of a run from `voxel` on, of at most `most` voxels. Returns their number.
 std::uint32_t cover_run(const VisibilityTable& visibility, HiddenFaces hidden, const Way& way,
                         const Material* voxel, std::uint8_t* covered, std::uint32_t most) {
   const Material material = *voxel;

@@ -1,4 +1,4 @@
-// The simple mesher (thesis 4.2.3): six quads for each voxel that is drawn at all, hidden or not.
+// The simple mesher (thesis 4.2.3): six quads for each drawn voxel, hidden or not.
 #pragma once
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace runstone::reference {
 
-/// Replaces `out` by six quads a drawn voxel, 48 bytes each; none is culled, the border is not read.
-/// O(volume).
+/// Replaces `out` by six quads a drawn voxel, 48 bytes each. None is culled, and the border is not
+/// read. Cost: O(volume).
 void mesh_simple(const DenseGrid& grid, const VisibilityTable& visibility, std::vector<Quad>& out);
 
 }  // namespace runstone::reference

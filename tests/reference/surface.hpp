@@ -1,5 +1,5 @@
-// Surface: what any mesher made of one chunk, quads or triangles, so that meshes of both kinds can be counted
-// and compared.
+// Surface: any mesher's mesh of one chunk, quads or triangles, so that meshes of both kinds can be
+// counted and compared.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace runstone::reference {
 
-/// A mesher fills one of both and clears the other.
+/// A mesher fills one of the two and clears the other.
 struct Surface {
   std::vector<Quad> quads;
   TriangleMesh triangles;
@@ -18,9 +18,9 @@ struct Surface {
     quads.clear();
     triangles.clear();
   }
-  /// 4 a quad, as the thesis counts.
+  /// Returns 4 a quad, as the thesis counts, or the vertices of the triangle mesh.
   std::size_t vertex_count() const { return 4 * quads.size() + triangles.vertices.size(); }
-  /// 2 a quad.
+  /// Returns 2 a quad, or the triangles of the triangle mesh.
   std::size_t triangle_count() const { return 2 * quads.size() + triangles.triangles.size(); }
 };
 

@@ -22,7 +22,7 @@ void SweepDelaunay::run(const Outlines& outlines, const Outlines::Region& region
   for (PointId point = static_cast<PointId>(row); point < count; ++point) {
     point == row ? start_front(row) : point_event(point);
     restore();
-    // Sides go in with their upper end; those of the first row with the first point above it.
+    // A side is added with its upper end; the sides of the first row with the first point above it.
     for (; corner < sweep_.corners.size() && sweep_.corners[corner].point <= point; ++corner) {
       const auto [upper, before, after] = sweep_.corners[corner];
       if (before < corner) edge_event(sweep_.corners[before].point, upper);
@@ -57,7 +57,8 @@ void SweepDelaunay::set_hull(PointId from, PointId to, EdgeId edge) {
   hull_edge_[from] = edge;
 }
 
-/// Points in the lowest row: two or more, since it holds a side of the region.
+/// Returns the number of points in the lowest row: two or more, since it contains a side of the
+/// region.
 std::size_t SweepDelaunay::first_row() const {
   const auto& points = sweep_.points;
   const auto above = std::find_if(points.begin(), points.end(),
@@ -66,7 +67,7 @@ std::size_t SweepDelaunay::first_row() const {
   return static_cast<std::size_t>(above - points.begin());
 }
 
-/// A fan from the first point above the lowest row.
+/// Makes a fan from the first point above the lowest row.
 void SweepDelaunay::start_front(std::size_t row) {
   const auto top = static_cast<PointId>(row);
   for (PointId a = 0; a + 1 < top; ++a) {
@@ -81,7 +82,8 @@ void SweepDelaunay::start_front(std::size_t row) {
   set_hull(top, 0, 2);
 }
 
-/// Joins a point to all it sees of the hull, starting from the point before it, which is the highest.
+/// Joins a point to all points of the hull that it sees, starting from the point before it, which
+/// is the highest.
 void SweepDelaunay::point_event(PointId point) {
   const auto seen = [&](PointId from) {
     return turn(at(from), at(hull_next_[from]), at(point)) < 0;
@@ -92,7 +94,7 @@ void SweepDelaunay::point_event(PointId point) {
   while (seen(hull_prev_[first])) first = hull_prev_[first];
   RUNSTONE_ASSERT(first != last);
 
-  EdgeId rising = kNone;  // of the triangle before: from the hull up to the point
+  EdgeId rising = kNone;  // of the previous triangle: from the hull up to the point
   EdgeId falling = kNone;
   for (PointId a = first; a != last; a = hull_next_[a]) {
     const EdgeId hull = hull_edge_[a];
@@ -111,7 +113,7 @@ void SweepDelaunay::point_event(PointId point) {
   set_hull(point, last, falling);
 }
 
-/// Makes sure of the side from -> to, the region on its left.
+/// Makes the side from -> to an edge, with the region on its left.
 void SweepDelaunay::edge_event(PointId from, PointId to) {
   if (edge_between(from, to) == kNone && edge_between(to, from) == kNone) {
     cross(from, to);
@@ -127,11 +129,13 @@ void SweepDelaunay::mark(PointId from, PointId to) {
   if (outer != kNone) side_[outer] = Side::outer;
 }
 
-/// Flips away what lies across a side that is no edge yet (Sloan 1993), then restores what is around it.
+/// Flips away the edges across a side that is no edge yet (Sloan 1993), then restores the edges
+/// around it.
 void SweepDelaunay::cross(PointId from, PointId to) {
   crossed_.clear();
   fresh_.clear();
-  EdgeId e = edge_across(from, to);  // from the right of the side to its left, as all that follow
+  // From the right of the side to its left, like all that follow.
+  EdgeId e = edge_across(from, to);
   crossed_.push_back({from_[e], end_of(e)});
   for (PointId apex = apex_of(twin_[e]); apex != to; apex = apex_of(twin_[e])) {
     e = turn(at(from), at(to), at(apex)) > 0 ? next(twin_[e]) : previous(twin_[e]);
@@ -139,7 +143,7 @@ void SweepDelaunay::cross(PointId from, PointId to) {
   }
   for (std::size_t i = 0; i < crossed_.size(); ++i) {
     e = edge_between(crossed_[i][0], crossed_[i][1]);
-    if (!convex(e)) {  // it will be, when others have been flipped
+    if (!convex(e)) {  // it becomes convex when others are flipped
       crossed_.push_back(crossed_[i]);
       continue;
     }
@@ -158,7 +162,7 @@ void SweepDelaunay::cross(PointId from, PointId to) {
   restore();
 }
 
-/// An edge, if it is one in this direction: on the hull there is one direction only.
+/// Returns the edge in this direction, or kNone. On the hull an edge has one direction only.
 SweepDelaunay::EdgeId SweepDelaunay::edge_between(PointId from, PointId to) const {
   EdgeId found = kNone;
   each_edge_from(from, [&](EdgeId e) {
@@ -167,7 +171,7 @@ SweepDelaunay::EdgeId SweepDelaunay::edge_between(PointId from, PointId to) cons
   return found;
 }
 
-/// The edge opposite to `from` in its triangle that the way to `to` goes through.
+/// Returns the edge opposite to `from` in the triangle through which the line to `to` leads.
 SweepDelaunay::EdgeId SweepDelaunay::edge_across(PointId from, PointId to) const {
   EdgeId found = kNone;
   each_edge_from(from, [&](EdgeId e) {
@@ -178,8 +182,8 @@ SweepDelaunay::EdgeId SweepDelaunay::edge_across(PointId from, PointId to) const
   return found;
 }
 
-/// Calls visit(edge) for each edge that starts in a point, turning left until the hull or a full turn, then
-/// right.
+/// Calls visit(edge) for each edge that starts in a point, turning left until the hull or a full
+/// turn, then right.
 template <class F>
 void SweepDelaunay::each_edge_from(PointId from, F&& visit) const {
   const EdgeId first = edge_of_[from];
@@ -195,15 +199,16 @@ void SweepDelaunay::each_edge_from(PointId from, F&& visit) const {
   }
 }
 
-/// Whether the two triangles of an edge are a convex polygon, without a straight corner at its ends.
+/// Returns true if the two triangles of an edge are a convex polygon, without a straight corner at
+/// its ends.
 bool SweepDelaunay::convex(EdgeId e) const {
   const LayerPoint a = at(from_[e]), b = at(end_of(e)), c = at(apex_of(e)),
                    d = at(apex_of(twin_[e]));
   return turn(c, a, d) > 0 && turn(d, b, c) > 0;
 }
 
-/// Turns an edge: of the two triangles a b c and b a d to d c a and c d b. The edge keeps its place, the four
-/// around it move on by one.
+/// Flips an edge: the triangles a b c and b a d become d c a and c d b. The edge keeps its index,
+/// the four around it move by one.
 void SweepDelaunay::flip(EdgeId e) {
   const EdgeId f = twin_[e];
   const std::array<EdgeId, 4> around = {next(e), previous(e), next(f), previous(f)};
@@ -229,7 +234,7 @@ void SweepDelaunay::flip(EdgeId e) {
   }
 }
 
-/// Flips until every edge that may be doubtful and is no side has the Delaunay property (Lawson 1977).
+/// Flips until every doubtful edge that is no side has the Delaunay property (Lawson 1977).
 void SweepDelaunay::restore() {
   while (!doubtful_.empty()) {
     const EdgeId e = doubtful_.back();

@@ -1,16 +1,19 @@
-// SweepDelaunay: the constrained Delaunay triangulation of a region by a sweep over its corners, as Poly2Tri
-// does it (Domiter and Zalik 2008, "Sweep-line algorithm for constrained Delaunay triangulation"). Exact, in
-// integers; no new points.
+// SweepDelaunay: the constrained Delaunay triangulation of a region by a sweep over its corners, as
+// in Poly2Tri (Domiter and Zalik 2008, "Sweep-line algorithm for constrained Delaunay
+// triangulation"). Exact, in integers; no new points.
 //
-// Points come row by row. Each is joined to what it sees of the front and flips restore the Delaunay property
-// (the point event); then the sides of the region that end in it are forced in (the edge event). In two
-// things this is not theirs. Their front is a chain from left to right that begins on artificial points below
-// and is smoothed by rules for gaps and basins; ours is the hull of the points so far, so that a side always
-// lies within triangles. And their edge event empties what a side crosses and fills it anew; ours flips the
-// crossed edges away (Sloan 1993). The outcome is the same up to points on one circle.
+// Points come row by row. The point event joins each point to the points of the front that it sees,
+// and flips restore the Delaunay property. Then the edge event forces in the sides of the region
+// that end in the point. There are two differences from the paper:
+// - Its front is a chain from left to right that begins on artificial points below and is smoothed
+//   by rules for gaps and basins. Here the front is the hull of the points so far, so that a side
+//   always lies within triangles.
+// - Its edge event removes the triangles that a side crosses and fills the hole again. Here crossed
+//   edges are flipped away (Sloan 1993).
+// The result is the same, except for points on one circle.
 //
-// A point where the region touches itself is one point with four sides, which a triangulation of points does
-// not mind: the original walks outlines and refuses those that touch.
+// A point where the region touches itself is one point with four sides, which is no special case
+// for a triangulation of points. The original walks outlines and rejects those that touch.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,26 +24,29 @@
 
 namespace runstone::reference {
 
-/// Buffers are kept. Belongs to one thread.
+/// Keeps its buffers between calls. Thread: one.
 class SweepDelaunay {
  public:
-  using Triangle = std::array<std::uint32_t, 3>;  // places in points(), counter-clockwise over u, v
+  // Indices of points(), counter-clockwise over u, v.
+  using Triangle = std::array<std::uint32_t, 3>;
 
-  /// Triangulates a region of `outlines`. O(n log n) plus flips, which are few in practice and O(n^2) at
-  /// worst.
+  /// Triangulates a region of `outlines`. Cost: O(n log n) plus flips, which are few in practice
+  /// and O(n^2) at worst.
   void run(const Outlines& outlines, const Outlines::Region& region);
 
-  /// Each corner of the region once, ascending.
+  /// Returns each corner of the region once, ascending.
   std::span<const LayerPoint> points() const { return sweep_.points; }
   std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
   using PointId = std::uint32_t;
   using EdgeId =
-      std::uint32_t;  // 3 t + i: from corner i of triangle t to the next, the triangle on its left
+      // 3 t + i: the edge from corner i of triangle t to the next corner, with the triangle on its
+      // left.
+      std::uint32_t;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  /// What an edge is to the region.
-  enum class Side : std::uint8_t { free, inner, outer };  // outer: the region is on its right
+  /// The position of an edge relative to the region. outer: the region is on its right.
+  enum class Side : std::uint8_t { free, inner, outer };
 
   static EdgeId next(EdgeId e) { return e % 3 == 2 ? e - 2 : e + 1; }
   static EdgeId previous(EdgeId e) { return e % 3 == 0 ? e + 2 : e - 1; }
@@ -69,15 +75,18 @@ class SweepDelaunay {
   SweepPoints sweep_;
   std::vector<Triangle> triangles_;
 
-  std::vector<PointId> from_;  // by edge, as the next two
+  std::vector<PointId> from_;  // by edge, like the next two
   std::vector<EdgeId> twin_;   // kNone on the hull
   std::vector<Side> side_;
-  std::vector<EdgeId> edge_of_;                          // by point: one that starts there
-  std::vector<PointId> hull_next_, hull_prev_;           // by point on the hull, counter-clockwise
-  std::vector<EdgeId> hull_edge_;                        // by point on the hull: to the next one
-  std::vector<EdgeId> doubtful_;                         // edges that may have to be flipped
-  std::vector<std::array<PointId, 2>> crossed_, fresh_;  // by their ends: flips move edges about
-  std::vector<std::uint8_t> kept_;                       // by triangle
+  std::vector<EdgeId> edge_of_;  // by point: an edge that starts there
+  // By point on the hull, counter-clockwise.
+  std::vector<PointId> hull_next_, hull_prev_;
+  // By point on the hull: the edge to the next one.
+  std::vector<EdgeId> hull_edge_;
+  std::vector<EdgeId> doubtful_;  // edges that may have to be flipped
+  // By their ends, since flips change the indices of edges.
+  std::vector<std::array<PointId, 2>> crossed_, fresh_;
+  std::vector<std::uint8_t> kept_;  // by triangle
 };
 
 }  // namespace runstone::reference

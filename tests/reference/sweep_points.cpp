@@ -8,7 +8,8 @@ namespace runstone::reference {
 
 void SweepPoints::read(const Outlines& outlines, const Outlines::Region& region) {
   const auto rings = std::span(outlines.rings).subspan(region.first_ring, region.ring_count);
-  const std::uint32_t first = rings.front().first;  // the rings of a region follow each other
+  // The rings of a region follow each other.
+  const std::uint32_t first = rings.front().first;
   const std::uint32_t count = rings.back().first + rings.back().count - first;
   const LayerPoint* const at = outlines.points.data() + first;
 

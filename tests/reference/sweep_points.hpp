@@ -1,4 +1,4 @@
-// SweepPoints: the corners of one region in the order in which a sweep meets them.
+// SweepPoints: the corners of one region in the order of a sweep.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,20 +7,23 @@
 
 namespace runstone::reference {
 
-/// Corners are passages of a ring, points are places: where a region touches itself a point has two corners.
+/// Corners are passages of a ring, points are places. Where a region touches itself a point has two
+/// corners.
 struct SweepPoints {
   struct Corner {
-    std::uint32_t point = 0;              // place in `points`
-    std::uint32_t before = 0, after = 0;  // its neighbours along the ring, as places in `corners`
+    std::uint32_t point = 0;  // index in `points`
+    // Its neighbours along the ring, as indices in `corners`.
+    std::uint32_t before = 0, after = 0;
   };
   std::vector<LayerPoint> points;  // each once, ascending
   std::vector<Corner> corners;     // ascending by point
 
-  /// Takes the corners of a region. O(corners log corners).
+  /// Reads the corners of a region. Cost: O(corners log corners).
   void read(const Outlines& outlines, const Outlines::Region& region);
 
  private:
-  std::vector<std::uint32_t> order_, rank_;  // corner of the outlines by rank, and back
+  // Corner of the outlines by rank, and rank by corner.
+  std::vector<std::uint32_t> order_, rank_;
 };
 
 }  // namespace runstone::reference

@@ -15,7 +15,8 @@ std::int64_t squared_length(const Corner& from, const Corner& to) {
   return sum;
 }
 
-/// The cross product of two sides; all but one of its parts are 0, since triangles lie across an axis.
+/// Returns the length of the cross product of two sides. All but one of its components are 0, since
+/// triangles are perpendicular to an axis.
 std::int64_t doubled_area(const Corner& a, const Corner& b, const Corner& c) {
   std::int64_t sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -32,7 +33,7 @@ std::int64_t doubled_area(const Corner& a, const Corner& b, const Corner& c) {
 ThinTriangles count_thin_triangles(const Surface& surface) {
   ThinTriangles out;
   const auto add = [&out](const Corner& a, const Corner& b, const Corner& c) {
-    // Length over height is length squared over the doubled area.
+    // Length over height is squared length over doubled area.
     const std::int64_t longest =
         std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
     const std::int64_t area = doubled_area(a, b, c);

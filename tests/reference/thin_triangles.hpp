@@ -1,4 +1,4 @@
-// Long, thin triangles (thesis 4.2.2): they shade many pixels that they do not cover.
+// Long, thin triangles (thesis 4.2.2), which shade many pixels that they do not cover.
 #pragma once
 #include <cstddef>
 
@@ -6,14 +6,15 @@
 
 namespace runstone::reference {
 
-/// Triangles whose longest edge is more than 16 times, 100 times as long as their height over it; the thesis
-/// suspects those above 1:100. A quad counts as the two triangles it is drawn as.
+/// The triangles whose longest edge is more than 16 times or 100 times as long as their height over
+/// it. The thesis suspects those above 1:100. A quad counts as the two triangles as which it is
+/// drawn.
 struct ThinTriangles {
   std::size_t above_16 = 0;
-  std::size_t above_100 = 0;  // also counted in the others
+  std::size_t above_100 = 0;  // also counted above 16
 };
 
-/// Exact, in integers. O(triangles).
+/// Exact, in integers. Cost: O(triangles).
 ThinTriangles count_thin_triangles(const Surface& surface);
 
 }  // namespace runstone::reference

@@ -1,4 +1,5 @@
-// TriangleMesh: what the meshers make that draw polygons instead of rectangles (thesis 4.2.10, 4.2.11).
+// TriangleMesh: the mesh of the meshers that draw polygons instead of rectangles (thesis 4.2.10,
+// 4.2.11).
 #pragma once
 #include <array>
 #include <compare>
@@ -16,7 +17,8 @@ struct MeshVertex {
   friend auto operator<=>(const MeshVertex&, const MeshVertex&) = default;
 };
 
-/// Three places in TriangleMesh::vertices, counter-clockwise seen from where the direction points.
+/// Three indices of TriangleMesh::vertices, counter-clockwise seen from the side to which the
+/// direction points.
 struct MeshTriangle {
   std::array<std::uint32_t, 3> vertices{};
   Direction direction = Direction::neg_x;
@@ -24,9 +26,9 @@ struct MeshTriangle {
   friend auto operator<=>(const MeshTriangle&, const MeshTriangle&) = default;
 };
 
-/// Triangles of one chunk, each in one layer of one direction. A vertex carries a normal and a material where
-/// it is drawn, so triangles share it only within one layer, direction and material; elsewhere it stands
-/// there again.
+/// The triangles of one chunk, each in one layer of one direction. A drawn vertex has a normal and
+/// a material, so triangles share it only within one layer, direction and material; elsewhere it is
+/// repeated.
 struct TriangleMesh {
   std::vector<MeshVertex> vertices;
   std::vector<MeshTriangle> triangles;

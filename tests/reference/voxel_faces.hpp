@@ -1,5 +1,5 @@
-// What the plain reference meshers share: quads of single faces as a raw list in the order in which they are
-// made, four vertices each, as the thesis counts them.
+// Quads of single faces for the plain reference meshers: a raw list in the order of creation, four
+// vertices each, as the thesis counts them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,14 +10,15 @@
 
 namespace runstone::reference {
 
-/// A rectangle of faces in one direction that starts at `at`, `along_u` and `along_v` faces large.
+/// Returns a rectangle of faces in one direction that starts at `at`, `along_u` and `along_v` faces
+/// large.
 constexpr Quad face_quad(LocalPos at, Direction direction, Material material,
                          std::uint32_t along_u = 1, std::uint32_t along_v = 1) {
   return pack({at.x, at.y, at.z, static_cast<std::uint8_t>(along_u),
                static_cast<std::uint8_t>(along_v), direction, material});
 }
 
-/// A strip of `length` faces along `axis`, which is not the direction's.
+/// Returns a strip of `length` faces along `axis`, which is not the direction's.
 constexpr Quad strip_quad(LocalPos at, Direction direction, Material material, Axis axis,
                           std::uint32_t length) {
   return u_axis_of(axis_of(direction)) == axis ? face_quad(at, direction, material, length, 1)

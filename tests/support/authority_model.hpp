@@ -1,6 +1,6 @@
-// AuthorityModel: the smallest world that orders edits: what a replica is told, without sessions, queues or
-// disk. Oracle for replica tests: it keeps voxels through apply_stack() one edit at a time, and versions by
-// its own rule.
+// AuthorityModel: the smallest world that orders edits, without sessions, queues or disk. It is the
+// oracle of replica tests: it keeps voxels through apply_stack() one edit at a time, and versions
+// by a rule of its own.
 #pragma once
 #include <map>
 #include <utility>
@@ -20,7 +20,7 @@ class AuthorityModel {
   Epoch epoch() const { return epoch_; }
   Sequence head() const { return head_; }
 
-  /// Before the first edit: the base is stone (material 1) below y = 0 and air above.
+  /// Returns a chunk. Before the first edit it is stone (material 1) below y = 0 and air above.
   const Chunk& chunk(ChunkCoord at) {
     const auto it = chunks_.find(at);
     if (it != chunks_.end()) return it->second;
@@ -60,8 +60,8 @@ class AuthorityModel {
     return commit({{op, edit}}, now_us);
   }
 
-  /// A crash and a new start: what was ordered after `durable` is gone. `replay` holds the edits 1 ..
-  /// durable.
+  /// Simulates a crash and a new start: edits after `durable` are lost. `replay` holds the edits 1
+  /// .. durable.
   void restart(const std::vector<std::pair<OperationId, EditDescriptor>>& replay) {
     chunks_.clear();
     head_ = 0;
@@ -69,7 +69,7 @@ class AuthorityModel {
     ++epoch_;
   }
 
-  /// Replaces a material by air in a chunk that is to be handed out.
+  /// Replaces a material by air in a chunk that is to be sent.
   static void hollow(Chunk& chunk, Material material) {
     for (VoxelIndex i = 0; i < chunk.voxels.volume(); ++i) {
       if (chunk.voxels.runs.material(find_run(chunk.voxels, i)) == material)

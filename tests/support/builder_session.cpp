@@ -64,7 +64,7 @@ EditRecord BuilderSession::next() {
   record.edit = {SetVoxel{builder.at}, {}, builder.material};
   builder.due_us += rng_.between(120'000, 450'000);
   if (!builder.took_back && builder.material != kEmpty && rng_.below(25) == 0) {
-    builder.took_back = true;  // the same voxel once more, emptied
+    builder.took_back = true;  // empties the same voxel again
     builder.material = kEmpty;
     return record;
   }

@@ -1,8 +1,11 @@
-// BuilderSession: single-voxel edits as people make them, from a seed: what logs of real evenings look like
-// more than uniform noise does. Each author stands at a site of their own (some share one), sets or removes
-// voxel after voxel along a line or a wall, changes the material with the stroke, now and then takes back the
-// voxel just set, walks on, and starts the client again every few thousand edits. Edits of all authors
-// interleave by time; gaps are drawn to the microsecond.
+// BuilderSession: single-voxel edits as people make them, from a seed. They resemble the logs of
+// real evenings more than uniform noise does:
+// - Each author stands at a site; some share one.
+// - An author sets or removes voxel after voxel along a line or a wall, and changes the material
+//   with the stroke.
+// - Sometimes an author takes back the voxel just set, walks on, or starts the client again after
+//   some thousand edits.
+// - The edits of all authors interleave by time; gaps are drawn to the microsecond.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,13 +18,13 @@ namespace runstone::test {
 class BuilderSession {
  public:
   explicit BuilderSession(std::uint64_t seed, AuthorId authors = 8);
-  /// The next edit in the order of time: sequences from 1, authors from 1, epoch 1.
+  /// Returns the next edit in the order of time: sequences from 1, authors from 1, epoch 1.
   EditRecord next();
 
  private:
   struct Builder {
     VoxelPos home, at;
-    int axis = 0, step = 1, left = 0;  // of the line under way
+    int axis = 0, step = 1, left = 0;  // of the present line
     int rows = 0, row_axis = 1, row_length = 1;
     Material material = 1;
     bool took_back = false;

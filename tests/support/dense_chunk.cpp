@@ -13,8 +13,9 @@ __extension__ using Wide = unsigned __int128;
 
 constexpr std::uint64_t kPrime = 2305843009213693951ULL;  // 2^61 - 1
 
-// The digest's definition written out a second time, so that a slip in common/core shows: SplitMix64's
-// finaliser, the salts as the ASCII they spell, and remainders instead of Mersenne folding.
+// A second implementation of the digest's definition, so that a mistake in common/core shows:
+// SplitMix64's finaliser, the salts as the ASCII that they spell, and remainders instead of
+// Mersenne folding.
 std::uint64_t scramble(std::uint64_t v) {
   v += 11400714819323198485ULL;
   v ^= v >> 30;
@@ -45,7 +46,7 @@ std::uint64_t times(std::uint64_t a, std::uint64_t b) {
   return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % kPrime);
 }
 
-// Axis letters of an order, fastest first: its name.
+// Returns the axis letters of an order, fastest first: its name.
 std::string_view letters(AxisOrder order) {
   switch (order) {
     case AxisOrder::xyz:
@@ -69,7 +70,7 @@ std::int32_t& along(VoxelPos& p, char letter) {
 }
 int side(Extent e, char letter) { return letter == 'x' ? e.x : letter == 'y' ? e.y : e.z; }
 
-// Steps to the next voxel in flattened order, as an odometer does.
+// Steps to the next voxel in flattened order, like an odometer.
 void advance(VoxelPos& p, Extent extent, AxisOrder order) {
   for (const char letter : letters(order)) {
     if (++along(p, letter) < side(extent, letter)) return;

@@ -1,6 +1,7 @@
-// DenseChunk: the oracle that run chunks are compared with. A flat vector of materials, per-voxel loops, its
-// own index arithmetic and its own digest: it shares no code with common/runs and no formula with its speed.
-// Every new DenseChunk counts as a dense expansion (copies do not), as design invariant 1 asks of oracles.
+// DenseChunk: the oracle for run chunks. It has a flat vector of materials, per-voxel loops, its
+// own index arithmetic and its own digest. It shares no code with common/runs and no formula with
+// its fast paths. Every new DenseChunk counts as a dense expansion (copies do not), as design
+// invariant 1 requires of oracles.
 #pragma once
 #include <iosfwd>
 #include <optional>
@@ -15,7 +16,7 @@ namespace runstone::test {
 
 class DenseChunk {
  public:
-  /// All voxels empty. Unlike a RunChunk it takes any sides from 1 up.
+  /// Makes a chunk of empty voxels. Unlike a RunChunk it accepts any sides from 1 up.
   explicit DenseChunk(Extent extent);
   /// Expands runs voxel by voxel. Requires a chunk that validates.
   static DenseChunk of(const RunChunk& chunk);
@@ -27,7 +28,7 @@ class DenseChunk {
   bool inside(int x, int y, int z) const {
     return x >= 0 && y >= 0 && z >= 0 && x < side_x() && y < side_y() && z < side_z();
   }
-  /// Requires inside(x, y, z), as set() does.
+  /// Reads and writes a voxel. Both require inside(x, y, z).
   Material at(int x, int y, int z) const { return voxels_[slot(x, y, z)]; }
   void set(int x, int y, int z, Material material) { voxels_[slot(x, y, z)] = material; }
 
@@ -35,10 +36,11 @@ class DenseChunk {
   /// Returns whether any voxel changed.
   bool fill(AxisOrder order, VoxelIndex first, std::uint32_t count, Material material);
 
-  /// Sum over single voxels, with tables derived here from the definition and plain remainders.
+  /// Returns the sum over single voxels, with tables derived here from the definition and plain
+  /// remainders.
   Digest digest() const;
 
-  /// Runs in `order`, counted voxel by voxel.
+  /// Returns the number of runs in `order`, counted voxel by voxel.
   std::uint32_t run_count(AxisOrder order) const;
 
   friend bool operator==(const DenseChunk&, const DenseChunk&) = default;
@@ -49,10 +51,12 @@ class DenseChunk {
   std::vector<Material> voxels_;  // x fastest, then y, then z
 };
 
-/// Position of the voxel with flattened index `index`: counted out axis by axis from the order's name.
+/// Returns the position of the voxel with flattened index `index`, counted axis by axis from the
+/// order's name.
 VoxelPos dense_pos(Extent extent, AxisOrder order, std::uint32_t index);
 
-/// First voxel at which two chunks of one extent differ (x fastest), for failure messages.
+/// Returns the first voxel at which two chunks of one extent differ (x fastest), for failure
+/// messages.
 std::optional<VoxelPos> first_difference(const DenseChunk& a, const DenseChunk& b);
 
 /// Prints "DenseChunk 8x9x10".

@@ -72,10 +72,10 @@ std::int32_t pick(SplitMix64& rng, std::int32_t low, std::int32_t high) {
   return high < low ? low : rng.between(low, high);
 }
 
-// The nearest point of the segment, in units of 1 / |ab|^2, then the distance to it, squared as it is
-// defined.
+// Finds the nearest point of the segment, in units of 1 / |ab|^2, then the distance to it, squared
+// as it is defined.
 bool near_segment(VoxelPos a, VoxelPos b, VoxelPos at, std::int64_t reach) {
-  // Most voxels are far away: along an axis alone.
+  // Most voxels are far away along one axis.
   const auto far = [reach](std::int64_t from, std::int64_t to, std::int64_t c) {
     const std::int64_t d = std::max(std::min(from, to) - c, c - std::max(from, to));
     return d > 0 && d * d > reach;
@@ -94,7 +94,8 @@ bool near_segment(VoxelPos a, VoxelPos b, VoxelPos at, std::int64_t reach) {
   return squared <= reach * whole * whole;
 }
 
-// Cell numbers voxel by voxel. The last one is kept, since the oracle asks for cell after cell.
+// Returns cell numbers voxel by voxel. Keeps the last clipboard, since the oracle reads cell after
+// cell.
 const DenseChunk& dense_cells(const std::shared_ptr<const Clipboard>& clipboard) {
   thread_local std::vector<std::pair<std::shared_ptr<const Clipboard>, DenseChunk>> kept;
   for (const auto& [key, cells] : kept) {
@@ -218,7 +219,7 @@ std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
 
 std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(
     const RunChunk& before, const RunChunk& after) {
-  // Lists runs as (begin, end, material); a run that is in both lists is kept.
+  // Lists runs as (begin, end, material). A run in both lists is kept.
   using Listed = std::tuple<std::uint32_t, std::uint32_t, Material>;
   const auto list = [](const RunChunk& chunk) {
     std::vector<Listed> runs;
@@ -271,7 +272,7 @@ FillStroke random_stroke(SplitMix64& rng, VoxelPos at) {
   stroke.points.push_back(at);
   while (stroke.points.size() < count) {
     VoxelPos next = stroke.points.back();
-    // Often along an axis or a plane, and never far from the start.
+    // Draws points that are often along an axis or a plane, and never far from the start.
     const auto wander = [&](std::int32_t& c, std::int32_t home) {
       if (rng.below(3) != 0) c = std::clamp(c + rng.between(-step, step), home - 24, home + 24);
     };
@@ -291,11 +292,11 @@ std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side
   };
   const Extent extent{side(), side(), side()};
   const AxisOrder order = random_order(rng);
-  // From a stretch per cell to few long ones, from all touched to hardly any.
+  // From one stretch a cell to few long ones, and from all touched cells to hardly any.
   const std::uint32_t stretch_max = rng.below(3) == 0 ? 1 : rng.below(2) == 0 ? 9 : extent.volume();
   const std::uint32_t untouched_of_8 = rng.below(8);
   ClipboardBuilder builder(extent, order);
-  builder.append(1, static_cast<Material>(rng.below(material_count)));  // something is touched
+  builder.append(1, static_cast<Material>(rng.below(material_count)));  // some cell is touched
   while (builder.filled() < extent.volume()) {
     const std::uint32_t count =
         std::min(1 + rng.below(stretch_max), extent.volume() - builder.filled());
@@ -306,7 +307,7 @@ std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side
     }
   }
   const auto cheapest = *builder.finish();
-  // Any order may stand in a descriptor.
+  // A descriptor may have any order.
   if (rng.below(2) == 0) return cheapest;
   return *Clipboard::of(cheapest->palette(), reorder(cheapest->cells(), random_order(rng)));
 }
@@ -340,7 +341,7 @@ EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent)
       break;
     case 3: {
       Paste paste{{at[0], at[1], at[2]}, random_clipboard(rng, 30, 8), random_orientation(rng)};
-      // Often reaching into the chunk from below, too.
+      // Often the paste reaches into the chunk from below.
       if (rng.below(2) == 0) paste.at.x -= paste.clipboard->extent().y / 2;
       if (rng.below(2) == 0) paste.at.z -= paste.clipboard->extent().x / 2;
       edit.shape = paste;

@@ -1,6 +1,6 @@
-// The edit oracle: edits voxel by voxel on a dense chunk, straight from their definitions. Shares no code and
-// no formula with common/edits. Also random edits that cluster around a chunk, for property tests and
-// benchmarks.
+// The edit oracle: applies edits voxel by voxel to a dense chunk, straight from their definitions.
+// It shares no code and no formula with common/edits. It also draws random edits around a chunk,
+// for property tests and benchmarks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -27,61 +27,67 @@ std::ostream& operator<<(std::ostream& out, const EditDescriptor& edit);
 
 namespace runstone::test {
 
-/// Mistakes that the oracle can be told to make, so that a test can show that it would notice them.
+/// Mistakes that the oracle makes on demand, so that a test can show that it would notice them.
 enum class OracleFault {
   none,
   thin_sphere,       // |d| <= r instead of |d| < r + 1/2
-  thin_stroke,       // distance <= r likewise
+  thin_stroke,       // distance <= r instead of distance < r + 1/2
   unturned_paste,    // a paste's cells lie as in the clipboard
-  early_mask,        // masks look at the chunk before the stack
-  lost_voxel,        // the last changed voxel is left as it was
+  early_mask,        // masks read the chunk before the stack
+  lost_voxel,        // the last changed voxel keeps its old material
   miscounted_voxel,  // one changed voxel too many is reported
 };
 
-/// What the geometry writes at this voxel, mask ignored; nothing where it does not hold it.
+/// Returns what the geometry writes at this voxel, without the mask, or nullopt if the voxel is not
+/// in it.
 std::optional<Material> oracle_writes(const EditDescriptor& edit, VoxelPos at,
                                       OracleFault fault = OracleFault::none);
 
-/// Whether the geometry holds this voxel.
+/// Returns true if the geometry contains this voxel.
 bool oracle_covers(const EditDescriptor& edit, VoxelPos at, OracleFault fault = OracleFault::none);
 
 struct OracleOutcome {
-  std::uint64_t voxels_changed = 0;         // against the chunk before the whole stack
+  std::uint64_t voxels_changed = 0;         // compared with the chunk before the whole stack
   std::array<std::set<unsigned>, 3> dirty;  // coordinates of changed voxels along x, y, z
 };
 
-/// Applies the edits one after another, each voxel by voxel, to the chunk whose first voxel is `origin`.
+/// Applies the edits one after another, each voxel by voxel, to the chunk whose first voxel is
+/// `origin`.
 OracleOutcome oracle_apply(DenseChunk& chunk, VoxelPos origin,
                            std::span<const EditDescriptor> edits,
                            OracleFault fault = OracleFault::none);
 
-/// Voxels of the geometry, found by trying every voxel up to `reach` away from `around`.
+/// Returns the voxels of the geometry, found by trying every voxel up to `reach` away from
+/// `around`.
 std::vector<VoxelPos> oracle_voxels(const EditDescriptor& edit, VoxelPos around,
                                     std::int32_t reach);
 
-/// (first, before, after) of the groups of runs that differ between two run lists, by comparing all runs.
+/// Returns (first, before, after) of the groups of runs that differ between two run lists, by
+/// comparing all runs.
 std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> oracle_areas(
     const RunChunk& before, const RunChunk& after);
 
-/// The spans of an edit's geometry in a chunk, maximal and ascending, found voxel by voxel.
+/// Returns the spans of an edit's geometry in a chunk, maximal and ascending, found voxel by voxel.
 std::vector<IndexSpan> oracle_spans(const EditDescriptor& edit, VoxelPos origin, Extent extent,
                                     AxisOrder order);
 
-/// Sides 1 .. side_max, mostly small; materials below `material_count`; any axis order.
+/// Returns a clipboard with sides 1 .. side_max, mostly small, materials below `material_count`,
+/// and any axis order.
 std::shared_ptr<const Clipboard> random_clipboard(SplitMix64& rng, unsigned side_max,
                                                   unsigned material_count);
 
-/// One of all 48.
+/// Returns one of all 48 orientations.
 Orientation random_orientation(SplitMix64& rng);
 
-/// A stroke of few points that starts at `at` and stays within 33 voxels of it.
+/// Returns a stroke of few points that starts at `at` and stays within 33 voxels of it.
 FillStroke random_stroke(SplitMix64& rng, VoxelPos at);
 
-/// Any kind, mask and material, valid, near the chunk at `origin`: mostly inside, often partly, sometimes
-/// wholly outside. Materials 0 .. 7, so that masks meet what earlier edits left.
+/// Returns a valid edit of any kind, mask and material near the chunk at `origin`: mostly inside,
+/// often partly, sometimes wholly outside. Materials are 0 .. 7, so that masks match what earlier
+/// edits wrote.
 EditDescriptor random_edit_near(SplitMix64& rng, VoxelPos origin, Extent extent);
 
-/// Any valid edit, all fields over their whole range, extremes included.
+/// Returns any valid edit, with all fields over their whole range, extremes included.
 EditDescriptor random_edit_anywhere(SplitMix64& rng);
 
 }  // namespace runstone::test

@@ -11,8 +11,9 @@
 namespace runstone::test {
 namespace {
 
-// Sorts faces, millions of them: packed into a word each in the order of their fields, which is then sorted
-// byte by byte from the lowest. Coordinates reach 254 at most, whatever the bits of a quad say.
+// Sorts faces, of which there may be millions. Each is packed into a word in the order of its
+// fields, and the words are sorted byte by byte from the lowest. Coordinates reach 254 at most,
+// whatever the bits of a quad are.
 void sort_faces(std::vector<UnitFace>& faces) {
   if (std::is_sorted(faces.begin(), faces.end())) return;
   std::vector<std::uint64_t> keys, sorted(faces.size());
@@ -56,13 +57,13 @@ const char* name_of(Direction direction) {
   return kNames.at(static_cast<std::size_t>(direction));
 }
 
-// Ids beyond the table count as opaque.
+// Returns a material's visibility. Ids beyond the table count as opaque.
 Visibility visibility_of(const MaterialTable& materials, Material id) {
   if (id == 0) return Visibility::empty;
   return id < materials.size() ? materials[id].visibility : Visibility::opaque;
 }
 
-// The material next to a voxel, looked up in the neighbour where the step leaves the chunk.
+// Returns the material next to a voxel, from the neighbour where the step leaves the chunk.
 Material material_beside(const DenseChunk& chunk, const DenseNeighbours& neighbours, int x, int y,
                          int z, const Step& step) {
   x += step.dx;
@@ -80,7 +81,7 @@ Material material_beside(const DenseChunk& chunk, const DenseNeighbours& neighbo
   return other->at(x, y, z);
 }
 
-// A quad read from its documented bits (common/mesh/quad.hpp), in a second hand.
+// A quad, read from its documented bits (common/mesh/quad.hpp) by a second implementation.
 struct Rectangle {
   int x, y, z, width, height, direction;
   Material material;
@@ -106,7 +107,7 @@ Rectangle rectangle_of(Quad quad) {
   return r;
 }
 
-// Width and height of a rectangle as sizes along x, y and z.
+// Returns width and height of a rectangle as sizes along x, y and z.
 std::array<int, 3> size_of(const Rectangle& r) {
   switch (r.direction / 2) {
     case 0:
@@ -130,8 +131,8 @@ void for_each_face(const Rectangle& r, F&& visit) {
   }
 }
 
-// The corners lie on the face's plane, span it, and wind counter-clockwise seen from where the direction
-// points.
+// Returns true if the corners lie on the face's plane, span it, and wind counter-clockwise seen
+// from the side to which the direction points.
 bool winds_outwards(Quad quad, const Rectangle& r) {
   const std::array<Corner, 4> c = quad_corners(quad);
   const auto axis = static_cast<std::size_t>(r.direction / 2);
@@ -219,7 +220,7 @@ std::string text_of(const UnitFace& face) {
   return out.str();
 }
 
-// Sorts the faces and names one that stands there twice, whatever its material.
+// Sorts the faces. Names a face that occurs twice, whatever its material.
 std::optional<std::string> sorted_fault(std::vector<UnitFace>& covered) {
   sort_faces(covered);
   const auto same_place = [](const UnitFace& a, const UnitFace& b) {
@@ -230,7 +231,7 @@ std::optional<std::string> sorted_fault(std::vector<UnitFace>& covered) {
   return std::nullopt;
 }
 
-// Both sorted.
+// Requires sorted lists.
 std::optional<std::string> first_odd_face(const std::vector<UnitFace>& found,
                                           const std::vector<UnitFace>& expected) {
   const auto [is, should] =
@@ -250,7 +251,7 @@ std::ostream& operator<<(std::ostream& out, const UnitFace& face) {
 
 namespace {
 
-/// Calls visit(x, y, z, material) for each voxel that is drawn at all, in the order of faces.
+/// Calls visit(x, y, z, material) for each drawn voxel, in the order of faces.
 template <class F>
 void each_drawn_voxel(const DenseChunk& chunk, const MaterialTable& materials, F&& visit) {
   for (int x = 0; x < chunk.side_x(); ++x) {
@@ -294,7 +295,7 @@ std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialT
   const auto at_index = [&](int i) {
     return chunk.at(i / layer, i / line % chunk.side_y(), i % line);
   };
-  const auto same_from = [&](int first, int last, Material material) {  // and within the chunk
+  const auto same_from = [&](int first, int last, Material material) {  // within the chunk
     if (first < 0) return false;
     for (int i = last; i >= first; --i) {
       if (at_index(i) != material) return false;
@@ -330,7 +331,7 @@ std::vector<UnitFace> tail_culled_faces(const DenseChunk& chunk, const MaterialT
 
 std::vector<UnitFace> run_on_faces(const DenseChunk& chunk, const std::vector<UnitFace>& exposed) {
   std::vector<UnitFace> faces = exposed;
-  for (UnitFace face : exposed) {  // and those between it and the next exposed one
+  for (UnitFace face : exposed) {  // the faces between it and the next exposed one
     for (;;) {
       (face.direction == Direction::neg_y || face.direction == Direction::pos_y ? face.x
                                                                                 : face.y)++;
@@ -358,7 +359,7 @@ std::vector<UnitFace> unit_faces(const ChunkMesh& mesh) {
 
 namespace {
 
-/// mesh_fault(); `covered` are the faces of a mesh without one, sorted.
+/// Does mesh_fault(). If there is no fault, `covered` are the sorted faces of the mesh.
 std::optional<std::string> fault_and_faces(const ChunkMesh& mesh, Extent extent,
                                            const MaterialTable& materials,
                                            std::vector<UnitFace>& covered) {
@@ -399,7 +400,8 @@ std::optional<std::string> quads_difference(std::span<const Quad> quads, Extent 
 }
 
 std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {
-  using Cells = std::map<std::pair<int, int>, Material>;  // cells still to be covered, by (v, u)
+  // cells that are not covered yet, by (v, u)
+  using Cells = std::map<std::pair<int, int>, Material>;
   std::map<std::pair<Direction, int>, Cells> planes;
   for (const UnitFace& face : faces) {
     const std::array<int, 3> at = {face.x, face.y, face.z};
@@ -414,7 +416,7 @@ std::size_t greedy_quad_count(const std::vector<UnitFace>& faces) {
       const Material material = cells.begin()->second;
       const int v0 = cells.begin()->first.first;
       const int u0 = cells.begin()->first.second;
-      // Cells of the row from u0 on that are open and of this material, up to `most`.
+      // Returns the number of open cells of this material in the row from u0 on, up to `most`.
       const auto open_width = [&cells, u0, material](int v, int most) {
         int width = 0;
         for (; width < most; ++width) {

@@ -1,4 +1,4 @@
-// Hex digits as bytes, for golden bytes; common/core/hex.hpp goes the other way.
+// Turns hex digits into bytes, for golden bytes; common/core/hex.hpp does the opposite.
 #pragma once
 #include <cstdint>
 #include <stdexcept>
@@ -9,7 +9,8 @@
 
 namespace runstone::test {
 
-/// Blanks and line ends are skipped. Throws on anything else that is not a hex digit, and on half a byte.
+/// Skips blanks and line ends. Throws on any other character that is no hex digit, and on half a
+/// byte.
 inline Bytes from_hex(std::string_view text) {
   Bytes out;
   int high = -1;

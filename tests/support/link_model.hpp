@@ -1,9 +1,8 @@
-// LinkModel: one direction of a link in a model: a drop-tail queue, a transmitter of fixed rate, loss on the way, and
-// a delay with jitter that never reorders. Pure: time is an argument, so that the lab's forwarder and shaper use it
-// with the clock and tests in virtual time.
-// Where packets come densely, none overtaking one that was held up longer makes nearly all of them as late as the
-// latest; alone, each is early or late as it is drawn.
-// One thread.
+// LinkModel: a model of one direction of a link: a drop-tail queue, a transmitter of fixed rate,
+// loss, and a delay with jitter that never reorders. It is pure: time is an argument, so that the
+// testbed's forwarder and shaper use it with the clock and tests in virtual time. No packet
+// overtakes one that was delayed longer. So dense packets are nearly all as late as the latest, and
+// a lone packet is early or late as it is drawn. Thread: one.
 #pragma once
 #include <cstdint>
 
@@ -16,7 +15,8 @@ enum class LinkFate : std::uint8_t { arrives, lost, no_room };
 
 struct LinkPassage {
   LinkFate fate = LinkFate::arrives;
-  TimeNs due_ns = 0;  // when its last bit arrives, or would have; not of no_room
+  // When its last bit arrives, or would have arrived; not set for no_room.
+  TimeNs due_ns = 0;
 };
 
 struct LinkCounts {
@@ -28,10 +28,10 @@ class LinkModel {
  public:
   LinkModel(const LinkProfile& profile, std::uint64_t seed) : profile_(profile), random_(seed) {}
 
-  /// A packet comes to the link. Requires that `now_ns` never goes back. A lost one takes its time of the
-  /// transmitter; one without room takes none. Dues never go back.
+  /// Passes a packet to the link. Requires that `now_ns` never decreases. A lost packet uses its
+  /// time of the transmitter; one without room uses none. Due times never decrease.
   LinkPassage push(std::uint64_t bytes, TimeNs now_ns);
-  /// Bytes that wait for the transmitter or are in it.
+  /// Returns the bytes that wait for the transmitter or are in it.
   std::uint64_t queued_bytes(TimeNs now_ns) const;
   const LinkProfile& profile() const { return profile_; }
   const LinkCounts& counts() const { return counts_; }
@@ -39,7 +39,7 @@ class LinkModel {
  private:
   LinkProfile profile_;
   SplitMix64 random_;
-  TimeNs free_ns_ = 0;  // when the transmitter is through with all it was given
+  TimeNs free_ns_ = 0;  // when the transmitter has sent everything
   TimeNs last_due_ns_ = 0;
   LinkCounts counts_;
 };

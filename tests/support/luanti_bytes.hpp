@@ -1,4 +1,5 @@
-// Writes Luanti map blocks for tests, from the published format and sharing nothing with the decoder.
+// Writes Luanti map blocks for tests, from the published format. It shares no code with the
+// decoder.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace runstone::test {
 
-/// What stands in a block before compression; every field can be set wrong.
+/// The content of a block before compression. Every field can be set wrong.
 struct LuantiBlockFields {
   std::uint8_t name_table_version = 0;
   std::vector<std::pair<std::uint16_t, std::string>> names;
@@ -18,16 +19,16 @@ struct LuantiBlockFields {
   Bytes rest = {0, 0, 0, 0, 0, 10, 0, 0};  // empty metadata, objects and timers
 };
 
-/// The bytes inside the stream.
+/// Returns the bytes inside the stream.
 Bytes luanti_plain(const LuantiBlockFields& fields);
-/// A whole row: version byte and zstd stream, without a content size as the game writes it.
+/// Returns a whole row: version byte and zstd stream, without a content size as in the game.
 Bytes luanti_row(const Bytes& plain, std::uint8_t version = 29);
 inline Bytes luanti_row(const LuantiBlockFields& fields) {
   return luanti_row(luanti_plain(fields));
 }
 
-/// Reads a row back node by node: the name of every node, in node order. An oracle for whole worlds; rows
-/// must be sound.
+/// Reads a row node by node: the name of every node, in node order. It is an oracle for whole
+/// worlds. Requires a valid row.
 std::vector<std::string> luanti_nodes(ByteView row);
 
 }  // namespace runstone::test

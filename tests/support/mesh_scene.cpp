@@ -69,7 +69,8 @@ MeshScene block_scene() {
 }
 
 MeshScene random_scene(SplitMix64& rng, unsigned side_max) {
-  // Materials beyond the table are opaque to the mesher; two or three materials make the largest faces.
+  // Materials beyond the table are opaque to the mesher. Two or three materials make the largest
+  // faces.
   const unsigned materials = rng.below(4) == 0 ? 2 + rng.below(12) : kMeshMaterialCount;
   MeshScene scene;
   scene.chunk = random_chunk(rng, side_max, materials);

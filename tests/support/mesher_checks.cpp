@@ -11,29 +11,29 @@ namespace runstone::test {
 
 using namespace reference;
 
-std::string MesherJury::fault_of_quads(const char* mesher, const MeshScene& scene,
-                                       const std::vector<UnitFace>& owed) const {
+std::string MesherChecks::fault_of_quads(const char* mesher, const MeshScene& scene,
+                                         const std::vector<UnitFace>& owed) const {
   const auto difference = quads_difference(quads_, scene.chunk.extent, mesh_materials(), owed);
   return difference ? std::string(mesher) + ": " + *difference : std::string();
 }
 
-std::string MesherJury::fault_of_count(const char* mesher, std::size_t quads) const {
+std::string MesherChecks::fault_of_count(const char* mesher, std::size_t quads) const {
   if (quads > culled_quads_) return std::string(mesher) + " has more quads than there are faces";
   if (quads < optimal_quads_) return std::string(mesher) + " has fewer quads than the optimum";
   return {};
 }
 
-std::string MesherJury::fault_of_merged(const char* mesher, const MeshScene& scene) const {
+std::string MesherChecks::fault_of_merged(const char* mesher, const MeshScene& scene) const {
   std::string wrong = fault_of_quads(mesher, scene, exposed_);
   return wrong.empty() ? fault_of_count(mesher, quads_.size()) : wrong;
 }
 
-std::string MesherJury::fault(const MeshScene& scene) {
+std::string MesherChecks::fault(const MeshScene& scene) {
   std::string wrong = fault_of_exposed(scene);
   return wrong.empty() ? fault_of_supersets(scene) : wrong;
 }
 
-std::string MesherJury::fault_of_exposed(const MeshScene& scene) {
+std::string MesherChecks::fault_of_exposed(const MeshScene& scene) {
   decode(scene.chunk, scene.pointers(), layer_, grid_);
   exposed_ = expected_faces(scene);
 
@@ -66,7 +66,7 @@ std::string MesherJury::fault_of_exposed(const MeshScene& scene) {
   return fault_of_count("binary greedy", mesh_.quad_count());
 }
 
-std::string MesherJury::fault_of_supersets(const MeshScene& scene) {
+std::string MesherChecks::fault_of_supersets(const MeshScene& scene) {
   const DenseChunk dense = DenseChunk::of(scene.chunk);
   const std::vector<UnitFace> all = all_faces(dense, mesh_materials());
   mesh_simple(grid_, mesh_visibility(), quads_);

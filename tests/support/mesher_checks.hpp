@@ -1,6 +1,6 @@
-// MesherJury: all reference meshers before the one oracle that also judges the product. Exposed unit faces
-// with material and direction, each covered once by quads that wind outwards; meshers that cull less are held
-// to what they do show, face by face.
+// MesherChecks: checks all reference meshers with the oracle that also checks the product: exposed
+// unit faces with material and direction, each covered once by quads that wind outwards. Meshers
+// that cull less are compared with what they do show, face by face.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -16,16 +16,17 @@
 
 namespace runstone::test {
 
-/// Buffers live as long as the jury: what one scene leaves behind would show in the next.
-class MesherJury {
+/// The buffers live as long as the object, so that the remains of one scene would show in the next.
+class MesherChecks {
  public:
-  /// What is wrong with the first wrong mesh of a scene, and whose it is; nothing if all is well. Binary
-  /// greedy is left out where a side is above 64.
+  /// Returns the first mesher with a wrong mesh of the scene and its fault, or an empty text.
+  /// Leaves binary greedy out where a side is above 64.
   std::string fault(const MeshScene& scene);
-  /// The same of those meshers alone that show the exposed faces and no others. Several times quicker.
+  /// Does the same for the meshers that show the exposed faces and no others. Several times as
+  /// fast.
   std::string fault_of_exposed(const MeshScene& scene);
 
-  /// Of the last scene.
+  /// Results of the last scene.
   const std::vector<UnitFace>& exposed() const { return exposed_; }
   std::size_t culled_quads() const { return culled_quads_; }
   std::size_t optimal_quads() const { return optimal_quads_; }
@@ -34,7 +35,7 @@ class MesherJury {
  private:
   std::string fault_of_quads(const char* mesher, const MeshScene& scene,
                              const std::vector<UnitFace>& owed) const;
-  /// The same of quads_ against the exposed faces, and what is wrong with how many they are.
+  /// Does the same for quads_ and the exposed faces, and also checks the number of quads.
   std::string fault_of_merged(const char* mesher, const MeshScene& scene) const;
   std::string fault_of_count(const char* mesher, std::size_t quads) const;
   std::string fault_of_supersets(const MeshScene& scene);

@@ -1,5 +1,5 @@
-// Spells packed chunk bytes field by field as docs/protocol.md lists them, right or wrong: what an honest
-// encoder would never write. Shares no code with the codec.
+// Writes packed chunk bytes field by field as docs/protocol.md lists them, right or wrong,
+// including what an honest encoder would never write. It shares no code with the codec.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace runstone::test {
 
-/// Plain varint, and spellings longer than needed: `extra` more bytes.
+/// Appends a varint, in the shortest form or with `extra` more bytes.
 inline void spell_varint(Bytes& out, std::uint64_t v, int extra = 0) {
   while (v >= 128) {
     out.push_back(static_cast<std::uint8_t>(128 + v % 128));
@@ -25,7 +25,8 @@ inline void spell_varint(Bytes& out, std::uint64_t v, int extra = 0) {
   out.push_back(0);
 }
 
-/// One zstd frame without its magic number. `announce` is whether it tells its content size.
+/// Returns one zstd frame without its magic number. `announce` says whether it contains its content
+/// size.
 Bytes zstd_frame(ByteView body, bool announce = true);
 
 /// By default: 8x8x8, three runs of 3, 197 and 312 voxels of materials 1, 0 and 300.
@@ -35,9 +36,9 @@ struct PackedSpelling {
   std::array<std::uint8_t, 3> sides{8, 8, 8};
   std::uint64_t runs = 3;
   std::vector<std::uint64_t> palette;         // first id, then differences - 1
-  std::optional<std::uint64_t> palette_size;  // if it should not be palette.size()
+  std::optional<std::uint64_t> palette_size;  // if it differs from palette.size()
   Bytes body;
-  std::optional<Bytes> stored;  // what follows instead of the body, for example a zstd frame
+  std::optional<Bytes> stored;  // instead of the body, for example a zstd frame
 
   Bytes bytes() const;
 };

@@ -51,7 +51,8 @@ std::size_t matching_size(const BipartiteGraph& graph) {
 
 namespace {
 
-/// Cells of a plane by component, with a border of none around: 0, or a number from 1 on.
+/// The cells of a plane by component, with a border of 0 around: 0 is no component, numbers start
+/// at 1.
 class Components {
  public:
   explicit Components(const FacePlane& plane)
@@ -75,8 +76,8 @@ class Components {
     }
   }
   int at(int u, int v) const { return of_[slot(u, v)]; }
-  /// What is not of a component is one piece around it, and one more for each hole. Pieces hang together across
-  /// corners, too.
+  /// Returns the number of holes. The cells outside a component are one piece around it and one
+  /// more for each hole. Those pieces are connected across corners, too.
   int holes(int component) const {
     std::vector<bool> seen(of_.size(), false);
     int pieces = 0;
@@ -103,7 +104,7 @@ class Components {
   std::size_t slot(int u, int v) const {
     return static_cast<std::size_t>((v + 1) * (width + 2) + u + 1);
   }
-  /// Goes on from each cell that enter(u, v) takes.
+  /// Continues from each cell that enter(u, v) accepts.
   template <class Enter>
   static void flood(int u, int v, bool across_corners, Enter&& enter) {
     std::vector<std::pair<int, int>> open;
@@ -126,7 +127,7 @@ struct Corner {
   int u, v;  // of the cell below and right
 };
 
-/// Corners around which three of the four cells are of a component.
+/// Returns the corners around which three of the four cells belong to a component.
 std::vector<Corner> concave_corners(const Components& cells, int component) {
   std::vector<Corner> corners;
   for (int v = 0; v <= cells.height; ++v) {
@@ -139,7 +140,7 @@ std::vector<Corner> concave_corners(const Components& cells, int component) {
   return corners;
 }
 
-/// Whether all cells beside the line from one corner to another are of a component.
+/// Returns true if all cells beside the line from one corner to another belong to a component.
 bool runs_inside(const Components& cells, int component, Corner a, Corner b) {
   const bool along_u = a.v == b.v;
   for (int i = along_u ? a.u : a.v; i < (along_u ? b.u : b.v); ++i) {

@@ -1,5 +1,5 @@
-// How few rectangles a region of equal faces falls apart into, found without the algorithm that is tested: by
-// trying all partitions of small regions, and by counting corners, chords and holes of any.
+// The fewest rectangles that tile a region of equal faces, found without the tested algorithm: by
+// trying all partitions of small regions, and by counting corners, chords and holes of any region.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace runstone::test {
 /// Regions of a grid of `width` x `height` as bits, row after row.
 class LeastRectangles {
  public:
-  /// Requires width * height <= 64; beyond 36 it takes too long.
+  /// Requires width * height <= 64. Above 36 it takes too long.
   LeastRectangles(unsigned width, unsigned height) : width_(width), height_(height) {}
-  /// The fewest rectangles that cover each cell of a region once. All ways to place the rectangle that holds
-  /// the first cell, and the rest of each; what was found is kept.
+  /// Returns the fewest rectangles that cover each cell of a region once. Tries all rectangles that
+  /// contain the first cell, and solves the rest of each. Keeps results.
   unsigned of(std::uint64_t region);
 
  private:
@@ -26,15 +26,17 @@ class LeastRectangles {
   std::unordered_map<std::uint64_t, unsigned> known_;
 };
 
-/// The same of all materials of a plane by the formula: concave corners, less the most chords that neither
-/// cross nor touch, less holes, plus one, for each component. Everything is counted cell by cell. O(chords^2).
+/// Returns the sum over all materials of a plane by the formula: concave corners, minus the most
+/// chords that neither cross nor touch, minus holes, plus one, for each component. Counts
+/// everything cell by cell. Cost: O(chords^2).
 std::size_t least_rectangles_by_formula(const reference::FacePlane& plane);
 
-/// Edges of the largest matching of a bipartite graph, by one augmenting path after the other.
+/// Returns the edges of the largest matching of a bipartite graph, by one augmenting path after the
+/// other.
 std::size_t matching_size(const reference::BipartiteGraph& graph);
 
-/// What is wrong with rectangles as a partition of a plane: a cell left out or covered twice, a material that is
-/// not the cells'. Nothing if all is well.
+/// Returns the fault of rectangles as a partition of a plane, or an empty text: a cell left out or
+/// covered twice, or a material that differs from the cells'.
 std::string partition_fault(const reference::FacePlane& plane,
                             const std::vector<reference::PlaneRectangle>& rectangles);
 

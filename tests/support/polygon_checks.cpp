@@ -4,8 +4,9 @@
 
 namespace runstone::test {
 
-std::string PolygonJury::fault(const MeshScene& scene, const VisibilityTable& visibility,
-                               const MaterialTable& materials, const std::vector<UnitFace>& owed) {
+std::string PolygonChecks::fault(const MeshScene& scene, const VisibilityTable& visibility,
+                                 const MaterialTable& materials,
+                                 const std::vector<UnitFace>& owed) {
   const reference::DenseGrid grid = grid_of(scene);
   const Extent extent = scene.chunk.extent;
   mesh_monotone(grid, visibility, monotone_, monotone_mesh_);
@@ -16,7 +17,7 @@ std::string PolygonJury::fault(const MeshScene& scene, const VisibilityTable& vi
   if (const auto wrong = triangles_difference(poly2tri_mesh_, extent, materials, owed)) {
     return "poly2tri: " + *wrong;
   }
-  // Any triangulation of a polygon without new points has as many triangles as any other.
+  // All triangulations of a polygon without new points have the same number of triangles.
   if (monotone_mesh_.vertices != poly2tri_mesh_.vertices) return "the meshers have other vertices";
   if (monotone_mesh_.triangles.size() != poly2tri_mesh_.triangles.size())
     return "the meshers differ in size";

@@ -1,4 +1,4 @@
-// PolygonJury: the meshers of polygons, monotone and Poly2Tri, before the triangle oracle.
+// PolygonChecks: checks the meshers of polygons, monotone and Poly2Tri, with the triangle oracle.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,14 +10,15 @@
 
 namespace runstone::test {
 
-/// Buffers live as long as the jury: what one scene leaves behind would show in the next.
-class PolygonJury {
+/// The buffers live as long as the object, so that the remains of one scene would show in the next.
+class PolygonChecks {
  public:
-  /// What is wrong with the first wrong mesh of a scene whose exposed faces are `owed`, and whose it is; nothing
-  /// if all is well. Of meshes that are right, both have to have the same vertices and as many triangles.
+  /// Returns the first mesher with a wrong mesh of the scene and its fault, or an empty text.
+  /// `owed` are the scene's exposed faces. Both meshers must have the same vertices and the same
+  /// number of triangles.
   std::string fault(const MeshScene& scene, const VisibilityTable& visibility,
                     const MaterialTable& materials, const std::vector<UnitFace>& owed);
-  /// Of the last scene: corners in which a region touches itself.
+  /// Returns the corners of the last scene at which a region touches itself.
   std::size_t touching_corners() const { return poly2tri_.polygons.touching_corners; }
 
  private:

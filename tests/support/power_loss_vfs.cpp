@@ -23,7 +23,7 @@ struct PowerLossCalls {
   using File = PowerLossVfs::File;
   using Change = PowerLossVfs::Change;
 
-  /// What SQLite holds per open file; `base` must come first.
+  /// SQLite's data of an open file; `base` must come first.
   struct Handle {
     sqlite3_file base;
     PowerLossVfs* vfs;
@@ -33,7 +33,8 @@ struct PowerLossCalls {
     int lock;
     bool delete_on_close;
     bool
-        sync_names;  // the next sync is the first of a new journal: SQLite's VFS then syncs the folder
+        // The next sync is the first of a new journal: SQLite's VFS then syncs the folder.
+        sync_names;
 
     bool alive() const { return generation == vfs->generation_ && !vfs->cut_; }
   };
@@ -115,7 +116,7 @@ struct PowerLossCalls {
 
   static int change(Handle& handle, Change change, int failure) {
     if (!handle.alive()) return failure;
-    // The write that the power cuts is itself half-way: it is pending like any other.
+    // The write during which the power fails is incomplete: it is pending like any other.
     const bool powered = handle.vfs->operate();
     PowerLossVfs::apply(change, handle.file->live);
     handle.file->pending.push_back(std::move(change));
@@ -306,22 +307,22 @@ void PowerLossVfs::power_loss(SplitMix64& chance) {
   ++generation_;
   cut_ = false;
   cut_at_ = ~std::uint64_t{0};
-  // How kind this failure is, out of 8: 0 loses all that was not synced, 8 loses nothing.
+  // The share of unsynced changes that survive, out of 8: 0 loses all of them, 8 loses none.
   const std::uint32_t kindness = chance.below(9);
   const auto kept = [&] { return chance.below(8) < kindness; };
 
   std::map<std::string, std::shared_ptr<File>> names = durable_names_;
   for (const auto& [path, file] : live_names_) {
     const auto durable = durable_names_.find(path);
-    if (durable == durable_names_.end() && kept()) names[path] = file;  // a new name that made it
+    if (durable == durable_names_.end() && kept()) names[path] = file;  // a new name that survived
   }
   for (const auto& [path, file] : durable_names_) {
-    if (!live_names_.contains(path) && kept()) names.erase(path);  // a deletion that made it
+    if (!live_names_.contains(path) && kept()) names.erase(path);  // a deletion that survived
   }
 
   live_names_.clear();
   for (const auto& [path, old] : names) {
-    // A fresh object, because connections from before the failure may still hold the old one.
+    // A new object, because connections from before the failure may still hold the old one.
     auto file = std::make_shared<File>();
     file->durable = old->durable;
     for (const Change& change : old->pending) {
@@ -334,7 +335,8 @@ void PowerLossVfs::power_loss(SplitMix64& chance) {
         const std::size_t sector_end = (begin / kPowerLossSectorBytes + 1) * kPowerLossSectorBytes;
         const std::size_t bytes = std::min(change.bytes.size() - at, sector_end - begin);
         if (kept()) {
-          // Sectors between the old end and this one were allocated but never written: they hold anything.
+          // Sectors between the old end and this one were allocated but never written, so they have
+          // any content.
           const std::size_t old_size = file->durable.size();
           const auto* from = change.bytes.data() + at;
           apply({false, begin, Bytes(from, from + bytes)}, file->durable);

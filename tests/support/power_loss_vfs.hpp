@@ -1,9 +1,11 @@
-// PowerLossVfs: an SQLite file system in memory whose power can fail. What was written but not synced may
-// then be lost, kept, or torn at sector borders, each sector by itself, in any subset and so in any order;
-// files that were never synced may vanish, deletions that were not synced may come back. What was synced
-// stays. It promises what SQLite's default VFS promises on Linux: bytes outside a write are never harmed
-// (powersafe overwrite), a sync of a new file also syncs its name. Connections of one process share files and
-// WAL memory. Threads: one at a time, connections and controls together.
+// PowerLossVfs: an SQLite file system in memory whose power can fail.
+// - Unsynced writes may then be lost, kept, or torn at sector borders, each sector independently,
+//   in any subset and so in any order.
+// - Files that were never synced may disappear, and unsynced deletions may come back.
+// - Synced data stays.
+// It promises what SQLite's default VFS promises on Linux: bytes outside a write are never harmed
+// (powersafe overwrite), and a sync of a new file also syncs its name. Connections of one process
+// share files and WAL memory. Thread: one at a time, connections and controls together.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -23,33 +25,35 @@ inline constexpr std::size_t kPowerLossSectorBytes = 512;
 
 class PowerLossVfs {
  public:
-  /// Registers itself under a name of its own with SQLite.
+  /// Registers itself with SQLite under a name of its own.
   PowerLossVfs();
-  /// Every connection must be closed.
+  /// Requires that every connection is closed.
   ~PowerLossVfs();
   PowerLossVfs(const PowerLossVfs&) = delete;
   PowerLossVfs& operator=(const PowerLossVfs&) = delete;
 
   const std::string& name() const { return name_; }
 
-  /// The power fails at operation number `operations` from now (writes, truncations, syncs and deletions
-  /// count, from 1): that operation and every later one of open connections fail.
+  /// Makes the power fail at operation number `operations` from now. Writes, truncations, syncs and
+  /// deletions count, from 1. That operation and every later one of open connections fail.
   void cut_after(std::uint64_t operations) { cut_at_ = operations_ + operations; }
   bool is_cut() const { return cut_; }
-  /// The power fails now if it has not yet, then comes back: files hold what chance (and sync) left of them.
-  /// Old connections stay dead.
+  /// Makes the power fail now if it has not yet, and restores it. Files hold what chance (and sync)
+  /// left of them. Old connections stay dead.
   void power_loss(SplitMix64& chance);
 
-  /// The next sync fails with an I/O error, as fsync does once on a dying disk; power stays on.
+  /// Makes the next sync fail with an I/O error, as fsync does once on a dying disk. The power
+  /// stays on.
   void fail_next_sync() { fail_sync_ = true; }
 
-  /// From operation number `operations` from now on, as cut_after() counts, writes find the disk full; the power stays on.
+  /// Makes writes find the disk full from operation number `operations` from now on, counted as in
+  /// cut_after(). The power stays on.
   void full_after(std::uint64_t operations) { full_at_ = operations_ + operations; }
   void make_room() { full_at_ = ~std::uint64_t{0}; }
 
   std::uint64_t operations() const { return operations_; }
   std::uint64_t syncs() const { return syncs_; }
-  /// Bytes of a file as programs see them now; empty if there is none.
+  /// Returns the bytes of a file as programs see them now; empty if there is none.
   Bytes contents(const std::string& path) const;
 
  private:
@@ -65,23 +69,25 @@ class PowerLossVfs {
     Bytes live, durable;
     std::vector<Change> pending;
     int readers = 0;                 // locks of the rollback protocol
-    const void* reserved = nullptr;  // the connection that holds each, if any
+    const void* reserved = nullptr;  // the connection that holds it, if any
     const void* pending_lock = nullptr;
     const void* exclusive = nullptr;
     std::vector<std::unique_ptr<Bytes>> shared_memory;
     std::vector<const void*>
-        shared_memory_users[8];  // holders of each lock; exclusive if the flag is set
+        // The holders of each lock; exclusive if the flag is set.
+        shared_memory_users[8];
     bool shared_memory_exclusive[8] = {};
   };
 
-  /// Counts an operation; false if the power is gone.
+  /// Counts an operation. Returns false if the power is off.
   bool operate();
   static void apply(const Change& change, Bytes& to);
 
   std::string name_;
   std::unique_ptr<sqlite3_vfs> vfs_;
   std::map<std::string, std::shared_ptr<File>> live_names_, durable_names_;
-  std::uint64_t generation_ = 0;  // raised by each power loss: connections remember theirs
+  // Raised by each power loss; connections remember theirs.
+  std::uint64_t generation_ = 0;
   std::uint64_t operations_ = 0, syncs_ = 0, cut_at_ = ~std::uint64_t{0},
                 full_at_ = ~std::uint64_t{0};
   bool cut_ = false, fail_sync_ = false;

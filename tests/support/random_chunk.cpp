@@ -9,7 +9,7 @@
 namespace runstone::test {
 namespace {
 
-// The ids a chunk may use: 0 and `count - 1` others, small or spread over all of u16.
+// The ids of a chunk: 0 and `count - 1` others, small or spread over all of u16.
 class Palette {
  public:
   Palette(SplitMix64& rng, unsigned count)
@@ -77,7 +77,7 @@ bool in_box(const Blob& b, int x, int y, int z) {
 Extent random_extent(SplitMix64& rng, unsigned side_max) {
   RUNSTONE_ASSERT(side_max >= kSideMin && side_max <= kSideMax);
   const auto side = [&] {
-    // Two draws, the smaller wins: small sides are frequent and large ones still occur.
+    // Of two draws the smaller wins: small sides are frequent and large ones occur.
     const std::uint32_t a = rng.below(side_max - kSideMin + 1);
     const std::uint32_t b = rng.below(side_max - kSideMin + 1);
     return static_cast<std::uint8_t>(kSideMin + (a < b ? a : b));
@@ -107,7 +107,8 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
                     [&](int, int y, int) { return layers[static_cast<std::size_t>(y)]; });
     }
     case Shape::
-        columns: {  // a height map: ground of two materials, water up to a level, empty above
+        // A height map: ground of two materials, water up to a level, empty above.
+        columns: {
       std::vector<int> heights(static_cast<std::size_t>(extent.x) * extent.z);
       int height = rng.between(0, extent.y);
       for (int& h : heights) {
@@ -134,7 +135,8 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
         return ground;
       });
     }
-    case Shape::speckled: {  // mostly one material, ores in it
+    // Mostly one material with ores in it.
+    case Shape::speckled: {
       const Material ground = palette.pick(rng);
       const std::uint32_t rarity = 2 + rng.below(200);
       return stream(extent, order, [&](int, int, int) {
@@ -158,7 +160,8 @@ RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned 
 }
 
 RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials) {
-  const Extent extent = random_extent(rng, side_max);  // a statement each: arguments have no order
+  // a separate statement: arguments have no order
+  const Extent extent = random_extent(rng, side_max);
   const AxisOrder order = random_order(rng);
   return random_chunk(rng, extent, order, materials);
 }

@@ -1,29 +1,31 @@
-// Seeded random chunks for property tests: all axis orders, few and many materials, and shapes from one
-// single run to a run per voxel. Made by streaming into a RunBuilder, so they count no dense expansion.
+// Seeded random chunks for property tests: all axis orders, few and many materials, and shapes from
+// one single run to a run per voxel. They are streamed into a RunBuilder, so they count no dense
+// expansion.
 #pragma once
 #include "common/core/hash.hpp"
 #include "common/runs/run_chunk.hpp"
 
 namespace runstone::test {
 
-/// Sides 8 .. side_max, mostly small, so that tests are quick. Requires 8 <= side_max <= 128.
+/// Returns sides 8 .. side_max, mostly small, so that tests are fast. Requires 8 <= side_max <=
+/// 128.
 Extent random_extent(SplitMix64& rng, unsigned side_max = 40);
 
 AxisOrder random_order(SplitMix64& rng);
 
-/// How the voxels of a random chunk lie.
+/// The arrangement of the voxels of a random chunk.
 enum class Shape { uniform, layered, columns, boxes, spheres, speckled, noise, checkerboard };
 inline constexpr int kShapeCount = 8;
 
-/// Materials are drawn from `materials` ids (0, the empty one, among them). Requires 1 <= materials <=
-/// 65,536.
+/// Draws from `materials` ids, among them 0, the empty one. Requires 1 <= materials <= 65,536.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials,
                       Shape shape);
-/// Any shape.
+/// Draws any shape.
 RunChunk random_chunk(SplitMix64& rng, Extent extent, AxisOrder order, unsigned materials);
-/// Any shape and order over sides 8 .. side_max.
+/// Draws any shape and order over sides 8 .. side_max.
 RunChunk random_chunk(SplitMix64& rng, unsigned side_max, unsigned materials);
-/// Any shape, order and materials over sides 8 .. 40; one chunk in thirty-two reaches up to 128.
+/// Draws any shape, order and materials over sides 8 .. 40; one chunk in thirty-two reaches up to
+/// 128.
 RunChunk random_chunk(SplitMix64& rng);
 
 }  // namespace runstone::test

@@ -12,7 +12,7 @@
 namespace runstone::test {
 namespace {
 
-// Small and large values alike: a shift spreads the draw over all magnitudes.
+// Small and large values are equally frequent: a shift spreads the draw over all magnitudes.
 std::uint64_t any64(SplitMix64& rng) { return rng.next() >> rng.below(64); }
 std::int64_t any_time(SplitMix64& rng) {
   return static_cast<std::int64_t>(rng.next()) >> (10 + rng.below(53));  // within kWireTimeUsMax
@@ -184,7 +184,7 @@ HistoryState any_history_state(SplitMix64& rng) {
   return m;
 }
 
-/// Strictly ascending, some of them neighbours.
+/// Returns strictly ascending keys, some of them neighbours.
 std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
   std::set<ChunkKey> keys;
   ChunkCoord at = any_coord(rng);

@@ -1,4 +1,5 @@
-// Seeded messages of every kind, all fields drawn, valid for a world of chunk edge kMessageEdge.
+// Seeded messages of every kind, with all fields drawn, valid for a world of chunk edge
+// kMessageEdge.
 #pragma once
 #include <cstddef>
 #include <variant>
@@ -11,13 +12,13 @@ namespace runstone::test {
 inline constexpr std::uint16_t kMessageEdge = 16;
 inline constexpr std::size_t kMessageKinds = std::variant_size_v<Message>;
 
-/// A message of the kind with this index in Message. Requires kind < kMessageKinds.
+/// Returns a message of the kind with this index in Message. Requires kind < kMessageKinds.
 Message random_message(SplitMix64& rng, std::size_t kind);
 
-/// A side that may send it (a goodbye: the client).
+/// Returns a side that may send the message (for a goodbye: the client).
 Sender sender_of(const Message& message);
 
-/// Decodes as the other side would.
+/// Decodes a message as the other side would.
 Result<Message> decode(const Message& kind, const EncodedMessage& encoded);
 
 }  // namespace runstone::test

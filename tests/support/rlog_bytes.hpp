@@ -9,18 +9,18 @@
 
 namespace runstone::test {
 
-/// A world that differs from the default in every field; its log begins at `first`.
+/// Returns a world that differs from the default in every field. Its log begins at `first`.
 RlogWorld sample_rlog_world(Sequence first = 1);
 std::vector<RlogPlayer> sample_rlog_players();
 
-/// The whole file. Fails an assertion if the records do not continue the world's head.
+/// Returns the whole file. Fails an assertion if the records do not continue the world's head.
 Bytes rlog_of(const RlogWorld& world, std::span<const RlogPlayer> players,
               std::span<const EditRecord> records, RlogOptions options);
 
 /// The bytes must outlive the source.
 RlogSource source_of(const Bytes& file);
 
-/// What can be read of a file, and why no more.
+/// The readable part of a file, and the error that ends it.
 struct RlogContents {
   RlogWorld world;
   std::vector<RlogPlayer> players;
@@ -29,10 +29,11 @@ struct RlogContents {
 };
 RlogContents read_rlog(const Bytes& file, const RlogFrom& from = {});
 
-/// Where the blocks of a sound file begin, the end block included; behind them the length of the file.
+/// Returns where the blocks of a valid file begin, the end block included, and last the length of
+/// the file.
 std::vector<std::size_t> blocks_of(const Bytes& file);
 
-/// Makes every checksum and position right again, as far as the headers' lengths lead.
+/// Corrects every checksum and position, as far as the headers' lengths lead.
 void mend_rlog(Bytes& file);
 
 }  // namespace runstone::test

@@ -1,4 +1,4 @@
-// Runs runstone-replay as a function. Who includes it links server/app.
+// Runs runstone-replay as a function. Requires a link with server/app.
 #pragma once
 #include <sstream>
 #include <string>
@@ -13,7 +13,7 @@ struct ReplayOutcome {
   std::string out, err;
 };
 
-/// `arguments` without the program's name.
+/// `arguments` do not include the program's name.
 inline ReplayOutcome run_replay(const std::vector<std::string>& arguments) {
   std::vector<const char*> argv = {"runstone-replay"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());

@@ -1,5 +1,5 @@
-// A small world for tests of store, log writer, replay and server: meta, records and chunks that differ in
-// every field, from a seed.
+// A small world for tests of store, log writer, replay and server: meta, records and chunks that
+// differ in every field, from a seed.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -40,8 +40,8 @@ inline PlayerRow sample_player(AuthorId author) {
   return row;
 }
 
-/// An edit near the origin: voxels, boxes, strokes, spheres and pastes, some masked, so that edits overlap and depend
-/// on order.
+/// Returns an edit near the origin: voxels, boxes, strokes, spheres and pastes, some masked, so
+/// that edits overlap and depend on order.
 inline EditDescriptor sample_edit(SplitMix64& rng) {
   EditDescriptor edit;
   const VoxelPos at{rng.between(-40, 40), rng.between(-20, 40), rng.between(-40, 40)};
@@ -73,7 +73,8 @@ inline EditDescriptor sample_edit(SplitMix64& rng) {
   return edit;
 }
 
-/// Record `seq` of two players with two client processes each; client sequences and times rise with `seq`.
+/// Returns record `seq` of two players with two client processes each. Client sequences and times
+/// rise with `seq`.
 inline EditRecord sample_record(SplitMix64& rng, Epoch epoch, Sequence seq) {
   EditRecord record;
   record.version = {epoch, seq};

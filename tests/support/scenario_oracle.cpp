@@ -1,6 +1,7 @@
 #include "tests/support/scenario_oracle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -11,14 +12,67 @@ namespace {
 
 const double kPi = std::acos(-1.0);
 
+enum class Shape { all, half_x, half_y, half_z, ball, strips, waves, checkerboard, draws };
+
+struct Model {
+  unsigned number;
+  Shape shape;
+  std::array<float, 3> values;  // radius; gaps of x, y, z; omega; threshold
+};
+/// scenarios.csv, line by line. Scenario 5 is data, not a formula.
+constexpr std::array<Model, 36> kModels = {{{1, Shape::all, {}},
+                                            {2, Shape::half_x, {}},
+                                            {3, Shape::half_z, {}},
+                                            {4, Shape::half_y, {}},
+                                            {6, Shape::ball, {4}},
+                                            {7, Shape::ball, {8}},
+                                            {8, Shape::ball, {16}},
+                                            {9, Shape::strips, {1, 1, 1}},
+                                            {10, Shape::strips, {2, 2, 2}},
+                                            {11, Shape::strips, {3, 3, 3}},
+                                            {12, Shape::strips, {2, 2, 2}},
+                                            {13, Shape::strips, {15, 15, 15}},
+                                            {14, Shape::waves, {2}},
+                                            {15, Shape::waves, {4}},
+                                            {16, Shape::waves, {10}},
+                                            {17, Shape::checkerboard, {}},
+                                            {18, Shape::draws, {0.99f}},
+                                            {19, Shape::draws, {0.75f}},
+                                            {20, Shape::draws, {0.5f}},
+                                            {21, Shape::draws, {0.25f}},
+                                            {22, Shape::draws, {0.01f}},
+                                            {23, Shape::strips, {0, 15, 0}},
+                                            {24, Shape::strips, {0, 7, 0}},
+                                            {25, Shape::strips, {0, 3, 0}},
+                                            {26, Shape::strips, {0, 2, 0}},
+                                            {27, Shape::strips, {0, 1, 0}},
+                                            {28, Shape::strips, {0, 0, 15}},
+                                            {29, Shape::strips, {0, 0, 7}},
+                                            {30, Shape::strips, {0, 0, 3}},
+                                            {31, Shape::strips, {0, 0, 2}},
+                                            {32, Shape::strips, {0, 0, 1}},
+                                            {33, Shape::strips, {15, 0, 0}},
+                                            {34, Shape::strips, {7, 0, 0}},
+                                            {35, Shape::strips, {3, 0, 0}},
+                                            {36, Shape::strips, {2, 0, 0}},
+                                            {37, Shape::strips, {1, 0, 0}}}};
+
+const Model& model_of(unsigned number) {
+  const auto found = std::find_if(kModels.begin(), kModels.end(),
+                                  [&](const Model& model) { return model.number == number; });
+  if (found == kModels.end()) std::abort();
+  return *found;
+}
+
 double wave(double omega, int c) { return std::sin(omega * c / (2 * kPi)); }
 
-bool in_strip(int c, int n, int gaps) {
+bool in_strip(int c, int n, float gaps) {
   const int width = std::max(1, static_cast<int>(std::floor(n / (2.0 * gaps + 0.75))));
   return (c / width) % 2 == 0;
 }
 
-/// The draws of one chunk in the thesis' order, each as the fraction it compares.
+/// Returns the draws of one chunk in the thesis' order, each as the fraction that the thesis
+/// compares.
 std::vector<float> draws(int n) {
   std::uint64_t state = 1;
   std::vector<float> out;
@@ -29,108 +83,45 @@ std::vector<float> draws(int n) {
   return out;
 }
 
+/// Returns true if the model is solid at a voxel, given in the thesis' axes, of a chunk of `n`
+/// voxels a side.
+bool is_solid(const Model& model, const std::vector<float>& random, int n, int x, int y, int z) {
+  const auto& values = model.values;
+  switch (model.shape) {
+    case Shape::all:
+      return true;
+    case Shape::half_x:
+      return x < n / 2;
+    case Shape::half_y:
+      return y < n / 2;
+    case Shape::half_z:
+      return z < n / 2;
+    case Shape::ball:
+      return std::sqrt(std::pow(x - n / 2, 2) + std::pow(y - n / 2, 2) + std::pow(z - n / 2, 2)) <
+             values[0];
+    case Shape::strips:
+      return in_strip(x, n, values[0]) && in_strip(y, n, values[1]) && in_strip(z, n, values[2]);
+    case Shape::waves:
+      return wave(values[0], x) + wave(values[0], y) + wave(values[0], z) > 0;
+    case Shape::checkerboard:
+      return (x + y + z) % 2 == 0;
+    case Shape::draws:
+      return random[static_cast<std::size_t>((x * n + y) * n + z)] < values[0];
+  }
+  std::abort();
+}
+
 }  // namespace
 
 DenseChunk scenario_dense(unsigned number, unsigned edge) {
+  const Model& model = model_of(number);
   const int n = static_cast<int>(edge);
-  const std::vector<float> random = number >= 18 && number <= 22 ? draws(n) : std::vector<float>();
-  const auto solid = [&](int x, int y, int z) {  // the thesis' axes
-    const auto half = [n](int c) { return c < n / 2; };
-    const auto ball = [&](double radius) {
-      return std::sqrt(std::pow(x - n / 2, 2) + std::pow(y - n / 2, 2) + std::pow(z - n / 2, 2)) <
-             radius;
-    };
-    const auto strips = [&](int kx, int ky, int kz) {
-      return in_strip(x, n, kx) && in_strip(y, n, ky) && in_strip(z, n, kz);
-    };
-    const auto waves = [&](double omega) {
-      return wave(omega, x) + wave(omega, y) + wave(omega, z) > 0;
-    };
-    const auto drawn = [&](float threshold) {
-      return random[static_cast<std::size_t>((x * n + y) * n + z)] < threshold;
-    };
-    switch (number) {  // scenarios.csv, line by line
-      case 1:
-        return true;
-      case 2:
-        return half(x);
-      case 3:
-        return half(z);
-      case 4:
-        return half(y);
-      case 6:
-        return ball(4);
-      case 7:
-        return ball(8);
-      case 8:
-        return ball(16);
-      case 9:
-        return strips(1, 1, 1);
-      case 10:
-        return strips(2, 2, 2);
-      case 11:
-        return strips(3, 3, 3);
-      case 12:
-        return strips(2, 2, 2);
-      case 13:
-        return strips(15, 15, 15);
-      case 14:
-        return waves(2);
-      case 15:
-        return waves(4);
-      case 16:
-        return waves(10);
-      case 17:
-        return (x + y + z) % 2 == 0;
-      case 18:
-        return drawn(0.99f);
-      case 19:
-        return drawn(0.75f);
-      case 20:
-        return drawn(0.5f);
-      case 21:
-        return drawn(0.25f);
-      case 22:
-        return drawn(0.01f);
-      case 23:
-        return strips(0, 15, 0);
-      case 24:
-        return strips(0, 7, 0);
-      case 25:
-        return strips(0, 3, 0);
-      case 26:
-        return strips(0, 2, 0);
-      case 27:
-        return strips(0, 1, 0);
-      case 28:
-        return strips(0, 0, 15);
-      case 29:
-        return strips(0, 0, 7);
-      case 30:
-        return strips(0, 0, 3);
-      case 31:
-        return strips(0, 0, 2);
-      case 32:
-        return strips(0, 0, 1);
-      case 33:
-        return strips(15, 0, 0);
-      case 34:
-        return strips(7, 0, 0);
-      case 35:
-        return strips(3, 0, 0);
-      case 36:
-        return strips(2, 0, 0);
-      case 37:
-        return strips(1, 0, 0);
-      default:
-        std::abort();
-    }
-  };
+  const std::vector<float> random = model.shape == Shape::draws ? draws(n) : std::vector<float>();
   DenseChunk out(Extent::cube(edge));
   for (int x = 0; x < n; ++x) {
     for (int y = 0; y < n; ++y) {
       for (int z = 0; z < n; ++z) {
-        if (solid(x, y, z)) out.set(x, z, y, 1);
+        if (is_solid(model, random, n, x, y, z)) out.set(x, z, y, 1);
       }
     }
   }

@@ -1,4 +1,4 @@
-// A scenario of the thesis as scenes to mesh, and the numbers the thesis has of them.
+// A scenario of the thesis as scenes to mesh, and the thesis' numbers of it.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -10,36 +10,37 @@
 
 namespace runstone::test {
 
-/// Scenario 1 .. 37 as the thesis' 3 x 3 x 3 chunks; scenario 5 is its data and has edge 32 only.
+/// Returns scenario 1 .. 37 as the thesis' 3 x 3 x 3 chunks. Scenario 5 is the thesis' data and has
+/// edge 32 only.
 std::unique_ptr<Generator> scenario_generator(unsigned number, unsigned edge);
 
 /// All solid types of the thesis are opaque.
 const VisibilityTable& scenario_visibility();
 
-/// One chunk of such a world in its cheapest axis order, alone or with those of its six neighbours that are
-/// among the 27.
+/// Returns one chunk of such a world in its cheapest axis order, alone or with those of its six
+/// neighbours that are among the 27.
 MeshScene scenario_scene(const Generator& world, ChunkCoord at, unsigned edge, bool alone);
 
-/// All 27 chunks, as Voxel Plugin would hold them.
+/// Returns all 27 chunks as Voxel Plugin would store them.
 reference::MaterialOctree scenario_octree(const Generator& world, unsigned edge);
 
-/// What the thesis counts of one chunk.
+/// The thesis' counts of one chunk.
 struct ScenarioNumbers {
   std::uint32_t opaque_voxels = 0;
   std::uint32_t runs = 0;           // in its index order, our zyx
-  std::size_t vertices_culled = 0;  // 4 a quad, as all below
+  std::size_t vertices_culled = 0;  // 4 a quad, like all below
   std::size_t vertices_grid = 0;
   std::size_t vertices_rle = 0;
 };
 ScenarioNumbers numbers_of(const MeshScene& scene);
 
-/// Vertices of the culled mesher over samples of an octree.
+/// Returns the vertices of the culled mesher over samples of an octree.
 std::size_t vertices_from_octree(const reference::MaterialOctree& octree, ChunkCoord at,
                                  unsigned edge);
 
-/// Bytes of run storage the thesis logs: 12 for each run its array has room for. The array starts with room
-/// for as many runs as the chunk has solid materials, and grows to m + floor(3 m / 8) + 16 when run m does
-/// not fit.
+/// Returns the bytes of run storage that the thesis logs: 12 for each run for which its array has
+/// room. The array starts with room for as many runs as the chunk has solid materials, and grows to
+/// m + floor(3 m / 8) + 16 when run m does not fit.
 std::uint32_t rle_bytes_logged(const MeshScene& scene);
 
 }  // namespace runstone::test

@@ -1,4 +1,4 @@
-// TempFolder: a folder of its own for one test, gone with it.
+// TempFolder: a folder for one test, removed with the object.
 #pragma once
 #include <stdlib.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ class TempFolder {
     path_ = pattern;
   }
   ~TempFolder() {
-    std::error_code ignored;  // a test that failed half-way may have left anything behind
+    std::error_code ignored;  // a failed test may have left anything behind
     std::filesystem::remove_all(path_, ignored);
   }
   TempFolder(const TempFolder&) = delete;

@@ -12,7 +12,7 @@ namespace {
 
 using Point = std::array<int, 3>;  // by axis
 
-/// Where triangles can cover each other.
+/// A plane in which triangles can cover each other.
 struct Sheet {
   int direction = 0, plane = 0;
   Material material = kEmpty;
@@ -26,11 +26,11 @@ std::string text_of(const Sheet& sheet) {
   return out.str();
 }
 
-/// A piece of an edge between neighbouring lattice points of its line, the same whichever way it is run.
+/// A piece of an edge between neighbouring lattice points of its line, the same in both directions.
 struct Piece {
   Sheet sheet;
   std::array<int, 2> at{}, step{};  // u, v
-  int times = 0;                    // along step, less those against it
+  int times = 0;                    // occurrences along step, minus those against it
   auto place() const { return std::tie(sheet, at, step); }
 };
 
@@ -47,7 +47,7 @@ void add_edge(const Sheet& sheet, std::array<int, 2> from, std::array<int, 2> to
   }
 }
 
-/// The four sides of a unit face, wound outwards, taken away `times` times.
+/// Subtracts the four sides of a unit face, wound outwards, `times` times.
 void add_face(const UnitFace& face, int times, std::vector<Piece>& pieces) {
   const int direction = static_cast<int>(face.direction);
   const auto axis = static_cast<std::size_t>(direction / 2);

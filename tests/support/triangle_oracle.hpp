@@ -1,13 +1,14 @@
-// Triangle oracle: what the face oracle says of quads, said of triangles, exactly and in integers.
+// Triangle oracle: does for triangles what the face oracle does for quads, exactly and in integers.
 //
-// Triangles of one direction, plane and material, all wound outwards, cover every point of the plane some
-// whole number of times. That number is a function of finite extent, and such a function is known entirely by
-// where it jumps and by how much: along the edges of the triangles, each counted with its direction, where
-// what runs both ways cancels. Edges between lattice points are cut at the lattice points they pass, so that
-// parts which lie on each other are equal. If what remains is the boundary of the faces owed, cut and
-// cancelled in the same way, every face is covered once, nothing else is covered, and no two triangles
-// overlap; if it is not, that is not so. Triangles that wind the other way would cover minus once and are
-// refused before.
+// Triangles of one direction, plane and material, all wound outwards, cover every point of the
+// plane some whole number of times. That number is a function of finite extent. Such a function is
+// determined entirely by the places and sizes of its jumps. It jumps along the edges of the
+// triangles, each counted with its direction; edges that run in both directions cancel. Edges
+// between lattice points are cut at the lattice points that they pass, so that parts which lie on
+// each other are equal. If the rest is the boundary of the expected faces, cut and cancelled in the
+// same way, then every face is covered once, nothing else is covered, and no two triangles overlap.
+// Otherwise one of these is false. Triangles that wind the other way would cover -1 times and are
+// rejected before.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,15 +19,17 @@
 
 namespace runstone::test {
 
-/// What is wrong with a mesh of triangles: a vertex that does not exist, is not used, leaves the extent or
-/// serves two directions, planes or materials; a triangle across planes, without area, flipped or of an empty
-/// material; a place covered too often or too seldom against `expected`. Nothing if all is well.
-/// O(n log n) in edges and faces.
+/// Returns the fault of a mesh of triangles, or nullopt if there is none:
+/// - a vertex that does not exist, is not used, leaves the extent or serves two directions, planes
+///   or materials;
+/// - a triangle across planes, without area, flipped or of an empty material;
+/// - a place covered too often or too seldom compared with `expected`.
+/// Cost: O(n log n) in edges and faces.
 std::optional<std::string> triangles_difference(const reference::TriangleMesh& mesh, Extent extent,
                                                 const MaterialTable& materials,
                                                 const std::vector<UnitFace>& expected);
 
-/// The same for a mesh of either kind; nothing may be in both.
+/// Does the same for a mesh of either kind. Only one kind may be present.
 std::optional<std::string> surface_difference(const reference::Surface& surface, Extent extent,
                                               const MaterialTable& materials,
                                               const std::vector<UnitFace>& expected);

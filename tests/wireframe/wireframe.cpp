@@ -13,7 +13,7 @@
 namespace runstone::wireframe {
 namespace {
 
-/// A point of the drawing, y downwards, and how near it is, in voxels.
+/// A point of the drawing, y downwards, with its depth in voxels.
 struct Point {
   float x = 0, y = 0, near = 0;
 };
@@ -23,20 +23,21 @@ constexpr Colour kLine = {40, 44, 52};
 constexpr std::array<Colour, 4> kTints = {
     {{196, 200, 206}, {214, 190, 160}, {176, 210, 150}, {226, 214, 164}}};  // by material
 
-/// x goes right and down, z left and down, y up: all three axes as long as each other.
+/// Projects a corner: x goes right and down, z left and down, y up, with all three axes equally
+/// long.
 Point seen(const Corner& corner) {
   const auto x = static_cast<float>(corner[0]), y = static_cast<float>(corner[1]),
              z = static_cast<float>(corner[2]);
   return {(x - z) * std::numbers::sqrt3_v<float> / 2, (x + z) / 2 - y, x + y + z};
 }
 
-/// A quad that can be seen from there, if nothing lies before it.
+/// A quad that is visible if nothing lies before it.
 struct Side {
   QuadFields fields;
   std::array<Point, 4> corners;
 };
 
-/// In pixels of the panel: as large as it takes them, in its middle.
+/// Returns the visible quads in pixels of the panel, as large as fits, in its middle.
 std::vector<Side> sides_of(std::span<const Quad> quads, const Panel& panel) {
   std::vector<Side> out;
   constexpr float kFar = std::numeric_limits<float>::max();
@@ -71,7 +72,7 @@ class Drawing {
         nearest_(static_cast<std::size_t>(panel.width) * static_cast<std::size_t>(panel.height),
                  -std::numeric_limits<float>::infinity()) {}
 
-  /// A parallelogram by three corners in a row.
+  /// Fills a parallelogram, given by three consecutive corners.
   void fill(const Point& corner, const Point& next, const Point& across, const Colour& colour) {
     const Point u = {next.x - corner.x, next.y - corner.y, next.near - corner.near};
     const Point v = {across.x - next.x, across.y - next.y, across.near - next.near};
@@ -94,7 +95,7 @@ class Drawing {
     }
   }
 
-  /// A line, where nothing lies before it.
+  /// Draws a line where nothing lies before it.
   void line(const Point& from, const Point& to, int thickness) {
     const float dx = to.x - from.x, dy = to.y - from.y;
     const int steps = 1 + static_cast<int>(2 * std::max(std::abs(dx), std::abs(dy)));
@@ -112,7 +113,8 @@ class Drawing {
   }
 
  private:
-  static constexpr float kBefore = 0.25F;  // voxels a line stands before the sides that it bounds
+  // The voxels by which a line lies before the sides that it bounds.
+  static constexpr float kBefore = 0.25F;
 
   float& nearest(int x, int y) {
     return nearest_[static_cast<std::size_t>(y) * static_cast<std::size_t>(panel_.width) +

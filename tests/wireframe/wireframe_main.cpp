@@ -1,4 +1,5 @@
-// runstone-wireframe OUT.png: one hill in the meshes of three meshers, side by side, and their quads.
+// runstone-wireframe OUT.png: draws one hill in the meshes of three meshers, side by side, and
+// their quads.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ namespace {
 using namespace runstone;
 
 constexpr unsigned kEdge = 32;
-constexpr int kFiner = 4;  // pixels drawn for each pixel of the picture, each way; a power of two
+// drawn pixels for each pixel of the image, in each direction; a power of two
+constexpr int kFiner = 4;
 constexpr int kSide = 560, kHeight = 520, kGap = 16;
 
 struct Named {
@@ -23,7 +25,7 @@ struct Named {
   std::vector<Quad> quads;
 };
 
-/// The chunk alone: nothing around it.
+/// Returns the meshes of the chunk without neighbours.
 std::vector<Named> meshes_of(const RunChunk& chunk, const VisibilityTable& visibility) {
   std::vector<Named> out = {{"culled", {}}, {"RLE RDM of the thesis", {}}, {"RDM from runs", {}}};
   reference::DenseGrid grid;

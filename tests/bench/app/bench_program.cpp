@@ -5,7 +5,7 @@
 #include <fstream>
 #include <functional>
 
-#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/app/program_options.hpp"
 #include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/edits/log_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
@@ -20,7 +20,7 @@
 namespace runstone::bench {
 namespace {
 
-/// Nothing if `file` is empty. Returns whether all went well.
+/// Writes a file. Does nothing if the name is empty. Returns false if the file cannot be written.
 bool write_file(const std::string& file, const std::function<void(std::ostream&)>& write,
                 std::ostream& err) {
   if (file.empty()) return true;
@@ -32,8 +32,8 @@ bool write_file(const std::string& file, const std::function<void(std::ostream&)
   return false;
 }
 
-/// Prints a result and writes its CSV, where it has one, and its JSON, to the files that the options name; or says
-/// why there is none. Returns the exit code.
+/// Prints a result and writes its CSV (if it has one) and its JSON to the files that the options
+/// name. Prints the error if there is no result. Returns the exit code.
 template <class T, class Options, class Print>
 int finish(const Result<T, std::string>& result, const Options& options, std::ostream& err,
            Print&& print) {
@@ -125,29 +125,30 @@ int mesh_once(const BenchOptions& options, std::ostream& out, std::ostream& err)
 }  // namespace
 
 int bench_program(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  const ParsedBenchOptions parsed = parse_bench_options(argc, argv, out, err);
+  const ParsedProgramOptions parsed = parse_program_options(argc, argv, out, err);
   if (!parsed.options) return parsed.exit_code;
-  switch (parsed.options->command) {
-    case BenchOptions::Command::mesh:
-      return mesh(*parsed.options, out, err);
-    case BenchOptions::Command::mesh_once:
-      return mesh_once(*parsed.options, out, err);
-    case BenchOptions::Command::storage:
-      return storage(*parsed.options, out, err);
-    case BenchOptions::Command::chunk_edge:
-      return chunk_edge(*parsed.options, out, err);
-    case BenchOptions::Command::bytes:
-      return bytes(*parsed.options, out, err);
-    case BenchOptions::Command::log:
-      return log(*parsed.options, out, err);
-    case BenchOptions::Command::edits:
-      return edits(*parsed.options, out, err);
-    case BenchOptions::Command::report:
-      return run_report(parsed.options->report, out, err);
-    case BenchOptions::Command::net:
-      return net(parsed.options->net, out, err);
-    case BenchOptions::Command::frames:
-      return frames(parsed.options->frames, out, err);
+  const ProgramOptions& options = *parsed.options;
+  switch (options.command) {
+    case Command::mesh:
+      return mesh(options.bench, out, err);
+    case Command::mesh_once:
+      return mesh_once(options.bench, out, err);
+    case Command::storage:
+      return storage(options.bench, out, err);
+    case Command::chunk_edge:
+      return chunk_edge(options.bench, out, err);
+    case Command::bytes:
+      return bytes(options.bench, out, err);
+    case Command::log:
+      return log(options.bench, out, err);
+    case Command::edits:
+      return edits(options.bench, out, err);
+    case Command::report:
+      return run_report(options.report, out, err);
+    case Command::net:
+      return net(options.net, out, err);
+    case Command::frames:
+      return frames(options.frames, out, err);
   }
   return 2;
 }

@@ -1,5 +1,5 @@
-// `runstone-bench edits`: what edits cost. Each case is timed on one core, many times; the medians are set
-// against the bars.
+// `runstone-bench edits`: the costs of edits. Each case is timed on one core, many times. The
+// medians are compared with the targets.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/harness/machine.hpp"
 #include "tests/bench/harness/target.hpp"
 
@@ -16,7 +16,7 @@ namespace runstone::bench {
 
 struct EditRow {
   std::string what;
-  std::size_t chunks = 0, edits = 0;  // touched; applied in one repetition
+  std::size_t chunks = 0, edits = 0;  // touched chunks; edits that one repetition applies
   double median_us = 0, p90_us = 0;   // of one repetition
 };
 

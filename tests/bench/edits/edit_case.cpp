@@ -7,17 +7,17 @@
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
 
 namespace runstone::bench {
 namespace {
 
 struct Samples {
-  std::vector<double> apply, remesh, own, all, full, border_all;
+  std::vector<double> apply, remesh, chunk, all, full, border_all;
 };
 
-/// A chunk with its mesh, before and after edits of it or beside it.
+/// A chunk with its mesh, before and after edits of it or of a neighbour.
 class MeshedChunk {
  public:
   MeshedChunk(const MeshNeighbours& neighbours, const VisibilityTable& visibility)
@@ -32,7 +32,7 @@ class MeshedChunk {
               const std::array<DirtyLayers, kDirectionCount>& beyond) {
     mesh_rdm_layers(chunk, neighbours_, visibility_, dirty, beyond, scratch_, mesh_);
   }
-  /// Aborts if the mesh is not that of `chunk`. Returns how long a full one takes.
+  /// Aborts if the mesh is not that of `chunk`. Returns the ns of a full mesh.
   double check(const RunChunk& chunk) {
     const std::uint64_t start = now_ns();
     mesh_rdm(chunk, neighbours_, visibility_, scratch_, full_);
@@ -49,7 +49,7 @@ class MeshedChunk {
   ChunkMesh mesh_, full_;
 };
 
-/// One chunk that is edited, at the origin, and the six around it.
+/// The edited chunk, at the origin, and its six neighbours.
 class EditedChunk {
  public:
   EditedChunk(const VoxelWorld& world, const Volume& volume)
@@ -57,12 +57,12 @@ class EditedChunk {
         volume_(volume),
         chunk_(volume.scene.chunk),
         digest_(digest_of(chunk_)),
-        own_(volume.scene.pointers(), *world.visibility) {
-    own_.mesh_all(chunk_);
+        meshed_(volume.scene.pointers(), *world.visibility) {
+    meshed_.mesh_all(chunk_);
   }
 
   const RunChunk& chunk() const { return chunk_; }
-  const ChunkMesh& mesh() const { return own_.mesh(); }
+  const ChunkMesh& mesh() const { return meshed_.mesh(); }
 
   void edit(VoxelPos at, Material material, Samples& samples) {
     const EditDescriptor edit{SetVoxel{at}, {}, material};
@@ -70,28 +70,28 @@ class EditedChunk {
     const std::uint64_t start = now_ns();
     apply_stack(chunk_, digest_, {}, std::span(&edit, 1), apply_scratch_, result_);
     const std::uint64_t applied = now_ns();
-    own_.remesh(chunk_, result_.dirty, {});
+    meshed_.remesh(chunk_, result_.dirty, {});
     const std::uint64_t meshed = now_ns();
     for (const Direction d : touched) {
       std::array<DirtyLayers, kDirectionCount> beyond{};
       beyond[static_cast<std::size_t>(opposite(d))] = result_.dirty;
-      beside(d).meshed.remesh(chunk_beside(d), {}, beyond);
+      neighbour_at(d).meshed.remesh(neighbour_chunk(d), {}, beyond);
     }
     const std::uint64_t all = now_ns();
-    samples.full.push_back(own_.check(chunk_));
-    for (const Direction d : touched) beside(d).meshed.check(chunk_beside(d));
+    samples.full.push_back(meshed_.check(chunk_));
+    for (const Direction d : touched) neighbour_at(d).meshed.check(neighbour_chunk(d));
     samples.apply.push_back(static_cast<double>(applied - start));
     samples.remesh.push_back(static_cast<double>(meshed - applied));
-    samples.own.push_back(static_cast<double>(meshed - start));
+    samples.chunk.push_back(static_cast<double>(meshed - start));
     samples.all.push_back(static_cast<double>((touched.empty() ? meshed : all) - start));
     if (!touched.empty()) samples.border_all.push_back(samples.all.back());
   }
 
  private:
-  /// A neighbour, cut with its own neighbours when an edit first touches it.
-  struct Beside {
-    Beside(const VoxelWorld& world, VoxelPos origin, unsigned edge, Direction back,
-           const RunChunk& edited)
+  /// A neighbour. It is cut with its own neighbours when an edit first touches it.
+  struct Neighbour {
+    Neighbour(const VoxelWorld& world, VoxelPos origin, unsigned edge, Direction back,
+              const RunChunk& edited)
         : volume(cut_volume(world, origin, edge)),
           meshed(pointers(back, edited), *world.visibility) {
       meshed.mesh_all(volume.scene.chunk);
@@ -105,22 +105,22 @@ class EditedChunk {
     MeshedChunk meshed;
   };
 
-  Beside& beside(Direction d) { return *beside_[static_cast<std::size_t>(d)]; }
-  const RunChunk& chunk_beside(Direction d) { return beside(d).volume.scene.chunk; }
+  Neighbour& neighbour_at(Direction d) { return *neighbours_[static_cast<std::size_t>(d)]; }
+  const RunChunk& neighbour_chunk(Direction d) { return neighbour_at(d).volume.scene.chunk; }
 
-  /// The neighbours that see a voxel, ready to be meshed.
+  /// Returns the neighbours that see a voxel, after it has made them ready to mesh.
   std::vector<Direction> touched_by(VoxelPos at) {
     const auto side = static_cast<std::int32_t>(volume_.edge);
     std::vector<Direction> out;
-    for (std::size_t i = 0; i < beside_.size(); ++i) {
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
       const auto d = static_cast<Direction>(i);
       const ChunkCoord step = neighbour({}, d);
       if (!volume_.scene.neighbours[i]) continue;
       if (box_of({}, side).contains({at.x + step.x, at.y + step.y, at.z + step.z})) continue;
       out.push_back(d);
-      if (beside_[i]) continue;
+      if (neighbours_[i]) continue;
       const VoxelPos& low = volume_.origin;
-      beside_[i] = std::make_unique<Beside>(
+      neighbours_[i] = std::make_unique<Neighbour>(
           world_, VoxelPos{low.x + step.x * side, low.y + step.y * side, low.z + step.z * side},
           volume_.edge, opposite(d), chunk_);
     }
@@ -133,16 +133,17 @@ class EditedChunk {
   Digest digest_;
   ApplyScratch apply_scratch_;
   ApplyResult result_;
-  MeshedChunk own_;
-  std::array<std::unique_ptr<Beside>, kDirectionCount> beside_;
+  MeshedChunk meshed_;
+  std::array<std::unique_ptr<Neighbour>, kDirectionCount> neighbours_;
 };
 
-/// A voxel with a face, by a random place of a random quad, and the direction it shows.
-struct Shown {
+/// A voxel with a visible face, and the direction of the face. It is drawn from a random place of a
+/// random quad.
+struct VisibleVoxel {
   VoxelPos at;
   Direction direction;
 };
-Shown pick(const ChunkMesh& mesh, SplitMix64& rng) {
+VisibleVoxel pick(const ChunkMesh& mesh, SplitMix64& rng) {
   const std::size_t opaque = mesh.opaque.quads.size();
   const std::size_t i = rng.below(static_cast<std::uint32_t>(mesh.quad_count()));
   const QuadFields q =
@@ -165,17 +166,19 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
     if (edited.mesh().empty()) continue;
     const VoxelBox inside = box_of({}, static_cast<std::int32_t>(volume.edge));
     Samples
-        left_out;  // the first edit of a chunk, and what takes an edit back: its way is known by heart
+        // Not counted: the first edit of a chunk, and the edits that take one back, whose branches
+        // the processor has learned.
+        left_out;
     for (unsigned i = 0; i <= per_volume; ++i) {
-      const Shown shown = pick(edited.mesh(), rng);
+      const VisibleVoxel visible = pick(edited.mesh(), rng);
       const auto local = [&](VoxelPos at) {
         return local_of(at, static_cast<std::int32_t>(volume.edge));
       };
-      const Material solid = material_at(edited.chunk(), local(shown.at));
-      const ChunkCoord step = neighbour({}, shown.direction);
-      const VoxelPos before = {shown.at.x + step.x, shown.at.y + step.y, shown.at.z + step.z};
+      const Material solid = material_at(edited.chunk(), local(visible.at));
+      const ChunkCoord step = neighbour({}, visible.direction);
+      const VoxelPos before = {visible.at.x + step.x, visible.at.y + step.y, visible.at.z + step.z};
       const bool place = rng.below(2) == 0 && inside.contains(before);
-      const VoxelPos at = place ? before : shown.at;
+      const VoxelPos at = place ? before : visible.at;
       const Material old = material_at(edited.chunk(), local(at));
       edited.edit(at, place ? solid : kEmpty, i == 0 ? left_out : samples);
       edited.edit(at, old, left_out);
@@ -184,7 +187,7 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
   if (samples.all.empty()) return {};
   return {samples.all.size(),    samples.border_all.size(),
           median(samples.apply), median(samples.remesh),
-          median(samples.own),   median(samples.all),
+          median(samples.chunk), median(samples.all),
           median(samples.full),  samples.border_all.empty() ? 0 : median(samples.border_all)};
 }
 

@@ -1,7 +1,10 @@
-// The edit case: a builder removes a voxel that shows, or puts one before it. Timed are the splice of the
-// chunk's runs (apply_stack), the remeshing of its dirty layers, and then that of each neighbour whose border
-// the voxel lies at. Each remeshed chunk is held to a full mesh of it. By the monotonic clock: each is too
-// short for the one of the core.
+// The edit case: a builder removes a visible voxel, or puts one before it. Three times are
+// measured:
+// - the splice of the chunk's runs (apply_stack);
+// - the remesh of its dirty layers;
+// - the remesh of each neighbour whose border the voxel lies at.
+// Each remeshed chunk is compared with a full mesh of it. The times are those of the monotonic
+// clock, because each is too short for the clock of the thread's processor time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,17 +16,19 @@ namespace runstone::bench {
 
 struct EditTiming {
   std::size_t edits = 0;
-  std::size_t at_borders = 0;  // of those: a neighbour is meshed as well, up to three
+  std::size_t at_borders = 0;  // those in which one to three neighbours are meshed as well
   // Medians over all edits.
   double apply_ns = 0, remesh_ns = 0;  // of the chunk
-  double own_ns = 0;                   // both
-  double all_ns = 0;                   // both, and the neighbours
+  double chunk_ns = 0;                 // apply_ns and remesh_ns together
+  double all_ns = 0;                   // chunk_ns and the neighbours
   double full_mesh_ns = 0;             // of the chunk
   double border_all_ns = 0;            // as all_ns, over the edits at borders; 0 if there are none
 };
 
-/// Edits each volume that shows anything `per_volume` times, and takes every edit back, which is not among the
-/// timed ones: a processor that has just gone that way is faster than one that follows a builder. Volumes are of `world`; what lies around their neighbours is cut from it. Seeded.
+/// Edits each volume that shows anything `per_volume` times. Takes every edit back and does not
+/// count that, since a processor that has just executed the same branches is faster than one that
+/// follows a builder. The volumes are of `world`, from which the neighbours' neighbours are cut.
+/// Seeded.
 EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& volumes,
                          unsigned per_volume, std::uint64_t seed);
 

@@ -32,13 +32,13 @@ double ms_since(Clock::time_point start) {
 
 Unexpected<std::string> failure(const StoreError& error) { return {error.message()}; }
 
-/// Bytes of the database with all that its WAL holds.
+/// Returns the bytes of the database, with everything that its WAL holds.
 double bytes_of(const std::string& folder) {
   std::error_code ignored;
   return static_cast<double>(std::filesystem::file_size(folder + "/world.sqlite", ignored));
 }
 
-/// Closes the store, so that the WAL is in the file, and opens it again.
+/// Closes the store, so that the file contains the WAL, and opens it again.
 Result<void, std::string> reopen(std::unique_ptr<Store>& store, const std::string& folder) {
   store.reset();
   auto opened = open_sqlite_world(folder, StoreAccess::read_write, {"", false});
@@ -287,13 +287,11 @@ Result<LogBench, std::string> run_log_bench(const BenchOptions& options, std::os
 }
 
 void write_table(const LogBench& bench, std::ostream& out) {
-  fmt::print(
-      out,
-      "{} edits, {:.1f} bytes each, appended in {:.2f} us each; keyframes add {:.1f} bytes an edit "
-      "({} chunks, made in "
-      "{:.1f} s)\n\n",
-      bench.edits, bench.bytes, bench.append_us, bench.keyframe_bytes, bench.keyframe_chunks,
-      bench.keyframes_seconds);
+  fmt::print(out,
+             "{} edits, {:.1f} bytes each, appended in {:.2f} us each; keyframes add {:.1f} bytes "
+             "an edit ({} chunks, made in {:.1f} s)\n\n",
+             bench.edits, bench.bytes, bench.append_us, bench.keyframe_bytes, bench.keyframe_chunks,
+             bench.keyframes_seconds);
   fmt::print(out, "| question | edits found, mean | median ms | slowest ms |\n|---|---|---|---|\n");
   for (const LogQuestion& q : bench.questions) {
     fmt::print(out, "| {} | {:.1f} | {:.2f} | {:.1f} |\n", q.name, q.found, q.median_ms,
@@ -301,9 +299,8 @@ void write_table(const LogBench& bench, std::ostream& out) {
   }
   fmt::print(out,
              "\n| keyframes | moments | edits read, mean | chunks edited, mean | opened, median ms "
-             "| slowest "
-             "| view | slowest | "
-             "all edited chunks | slowest |\n|---|---|---|---|---|---|---|---|---|---|\n");
+             "| slowest | view | slowest | all edited chunks | slowest "
+             "|\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const LogMoments& m : bench.moments) {
     fmt::print(
         out,
@@ -314,8 +311,7 @@ void write_table(const LogBench& bench, std::ostream& out) {
   const LogPreview& p = bench.preview;
   fmt::print(out,
              "\nPreview of one author's last hour: {} edits in {} chunks, {} voxels; selected in "
-             "{:.1f} ms "
-             "(slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
+             "{:.1f} ms (slowest {:.1f}), planned in {:.1f} ms (slowest {:.1f})\n",
              p.edits, p.chunks, p.voxels, p.select_ms, p.select_slowest_ms, p.plan_ms,
              p.plan_slowest_ms);
 }

@@ -15,7 +15,7 @@
 #include "common/runs/reorder.hpp"
 #include "server/replay/replayer.hpp"
 #include "server/store/sqlite_store.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/support/builder_session.hpp"
 
 namespace runstone::bench {
@@ -23,13 +23,13 @@ namespace {
 
 constexpr std::uint16_t kEdge = 32;
 constexpr std::uint64_t kSeed = 7;
-constexpr std::size_t kGroup = 64;  // records a transaction while the log is written
+constexpr std::size_t kGroup = 64;  // records in a transaction while the log is written
 
 double per_second(std::size_t edits, std::uint64_t start_ns) {
   return static_cast<double>(edits) * 1e9 / static_cast<double>(now_ns() - start_ns);
 }
 
-/// Chunks of terrain as they are edited, each with its mesh.
+/// Chunks of terrain during the edits, each with its mesh.
 class Land {
  public:
   Land(const Generator& generator, const VisibilityTable& visibility)
@@ -52,7 +52,7 @@ class Land {
     apply_stack(held.chunk.voxels, held.chunk.digest, origin_of(own, kEdge), std::span(&edit, 1),
                 scratch_, result_);
   }
-  /// The layers that the last edit made dirty.
+  /// Meshes the layers that the last edit made dirty.
   void remesh(VoxelPos at) {
     if (!result_.changed) return;
     const ChunkCoord own = chunk_of(at, kEdge);
@@ -83,7 +83,7 @@ class Land {
       Direction::neg_x, Direction::pos_x, Direction::neg_y,
       Direction::pos_y, Direction::neg_z, Direction::pos_z};
 
-  /// Whether a voxel lies in the layer that touches the chunk.
+  /// Returns true if a voxel lies in the layer that touches the chunk.
   static bool sees(ChunkCoord beside, VoxelPos at) {
     VoxelBox around = box_of(beside, kEdge);
     around.min = {around.min.x - 1, around.min.y - 1, around.min.z - 1};

@@ -1,4 +1,4 @@
-// Replay cases: a log of single voxels as builders make them, over chunks of generated terrain.
+// Replay cases: a log of single voxels as builders set them, over chunks of generated terrain.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -11,13 +11,15 @@ namespace runstone::bench {
 
 struct ReplayTiming {
   std::size_t edits = 0, chunks = 0;
-  // Edits a second, a sample per repetition.
+  // Edits a second; one sample a repetition.
   std::vector<double>
-      from_log;  // all that runstone-replay does: read, verify, apply, compare digests at the end
-  std::vector<double> apply;   // one edit after another, from memory, without generating chunks
-  std::vector<double> remesh;  // the same, each followed by its dirty layers, neighbours included
+      // All that runstone-replay does: read, verify, apply, and compare digests at the end.
+      from_log;
+  std::vector<double> apply;  // one edit after another, from memory, without generating chunks
+  // the same, with the dirty layers of each edit meshed, neighbours included
+  std::vector<double> remesh;
 };
-/// Writes a world of its own below `folder` for from_log.
+/// Measures the replay. Writes a world for from_log below `folder`.
 Result<ReplayTiming, std::string> time_replay(std::size_t edits, unsigned repetitions,
                                               const std::string& folder);
 

@@ -9,7 +9,7 @@
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
 #include "common/edits/apply/edit_stack.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/worlds/seeded_worlds.hpp"
 
 namespace runstone::bench {
@@ -121,7 +121,7 @@ StackTiming time_stack(const Chunk& chunk, const std::vector<EditDescriptor>& ed
     }
     const double one_by_one_us = us_since(second);
     RUNSTONE_ASSERT(stacked == one_by_one);
-    if (i == 0) continue;  // buffers grow
+    if (i == 0) continue;  // the first repetition grows the buffers
     timing.stacked_us.push_back(stacked_us);
     timing.one_by_one_us.push_back(one_by_one_us);
   }

@@ -1,4 +1,5 @@
-// DrawnPicture: what was drawn, and how far another mesher's picture of the same voxels is from it.
+// DrawnPicture: a drawn picture, and its difference from another mesher's picture of the same
+// voxels.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +9,21 @@ namespace runstone::bench {
 
 struct DrawnPicture {
   int width = 0, height = 0;          // pixels
-  std::vector<std::uint32_t> pixels;  // a colour each; 0: nothing was drawn there
+  std::vector<std::uint32_t> pixels;  // a colour each; 0 where nothing was drawn
 };
 
 struct PictureDifference {
   std::size_t seam_pixels = 0;  // of another colour
-  /// Of these, those inside a plane of the other picture: all eight pixels around have its colour there. What
-  /// is left lies where planes meet, and may be no more than another rounding of the line between them.
+  /// The seam pixels inside a plane of the other picture: all eight pixels around have its colour
+  /// there. The others lie where planes meet, and may be a different rounding of the line between
+  /// them.
   std::size_t pinhole_pixels = 0;
 };
 
-/// Pixels with something drawn in them.
+/// Returns the number of pixels with something drawn in them.
 std::size_t covered_pixels(const DrawnPicture& picture);
 
-/// Requires pictures of one size.
+/// Compares two pictures. Requires the same size.
 PictureDifference difference_of(const DrawnPicture& picture, const DrawnPicture& from);
 
 }  // namespace runstone::bench

@@ -55,7 +55,7 @@ std::string title(const Column& column) {
                                   : fmt::format("{}, {}", column.first, column.second);
 }
 
-/// Means over the rows of one mesher.
+/// The means over the rows of one mesher.
 class Means {
  public:
   void add(const FramesRow& row, const FramesRow* culled) {
@@ -80,8 +80,7 @@ class Means {
     fmt::print(
         out,
         "| {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.0f} | {} | {} | {} | {} | {} | {} "
-        "| "
-        "{} | {} | {} |\n",
+        "| {} | {} | {} |\n",
         name, mean(vertices_), mean(triangles_), mean(bytes_) / 1024, mean(ms_), mean(p99_),
         1000 / mean(ms_),
         against_culled_.empty() ? "–" : fmt::format("{:.2f}", geometric_mean(against_culled_)),
@@ -158,11 +157,10 @@ std::optional<FramesFit> FramesResult::fit() const {
 }
 
 void write_csv(const FramesResult& result, std::ostream& out) {
-  fmt::print(
-      out,
-      "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,"
-      "t_junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,seam_pixels,"
-      "pinhole_pixels\n");
+  fmt::print(out,
+             "world,mesher,path,vertices,triangles,upload_bytes,frames,p50_ms,p90_ms,p99_ms,fps,t_"
+             "junctions,thin_16,thin_100,covered_pixels,overdraw,depth_complexity,lanes,seam_"
+             "pixels,pinhole_pixels\n");
   for (const FramesRow& row : result.rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.2f},{},{},{},{},{},{},{},{},{}\n",
                row.world, row.mesher, row.path, row.vertices, row.triangles, row.upload_bytes,

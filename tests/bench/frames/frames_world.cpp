@@ -39,7 +39,8 @@ FramesWorld scenario_block(const std::string& name, unsigned number) {
   return out;
 }
 
-/// The highest voxel of a column of the bounds that is drawn; their lowest if none is.
+/// Returns the highest drawn voxel of a column inside the bounds, or the bounds' lowest if none is
+/// drawn.
 std::int32_t ground_of(const VoxelWorld& world, std::int32_t x, std::int32_t z) {
   std::vector<Material> column(1);
   for (std::int32_t y = world.bounds->max.y - 1; y > world.bounds->min.y; --y) {
@@ -49,8 +50,8 @@ std::int32_t ground_of(const VoxelWorld& world, std::int32_t x, std::int32_t z) 
   return world.bounds->min.y;
 }
 
-/// Where a block of `size` voxels begins along an axis so that `middle` is in its middle and it stays within
-/// the bounds, if they are as wide.
+/// Returns where a block of `size` voxels begins along an axis, so that `middle` is in its middle
+/// and the block stays within the bounds, if they are wide enough.
 std::int32_t begin_around(std::int32_t middle, std::int32_t size, std::int32_t low,
                           std::int32_t high) {
   return std::clamp(middle - size / 2, low, std::max(low, high - size));

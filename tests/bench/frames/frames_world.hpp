@@ -1,5 +1,6 @@
-// FramesWorld: the chunks of one picture. What is drawn is a block of chunks with nothing around it, as the
-// thesis profiled its scenarios: faces towards a chunk of the block are culled, those of its sides are not.
+// FramesWorld: the chunks of one picture. A block of chunks is drawn with nothing around it, as the
+// thesis profiled its scenarios. Faces towards a chunk of the block are culled; those on the
+// block's sides are not.
 #pragma once
 #include <array>
 #include <memory>
@@ -24,16 +25,16 @@ struct FramesWorld {
   std::vector<FramesChunk> chunks;
 };
 
-/// "scenario_1" .. "scenario_37", then "luanti".
+/// Returns "scenario_1" .. "scenario_37", then "luanti".
 std::vector<std::string> frames_world_names();
 
-/// A block of `size` chunks whose lowest voxel is `origin`. O(volume).
+/// Returns a block of `size` chunks whose lowest voxel is `origin`. Cost: O(volume).
 FramesWorld block_of(const VoxelWorld& world, VoxelPos origin, std::array<int, 3> size,
                      unsigned edge);
 
-/// The world of that name at edge 32: a scenario as its 3 x 3 x 3 chunks, or of the Luanti world in `luanti`
-/// the 5 x 3 x 5 chunks around the ground in its middle, or as many as fit its bounds. Requires a name of
-/// the list. Fails with the importer's message.
+/// Returns the world of that name at edge 32: a scenario's 3 x 3 x 3 chunks, or of the Luanti world
+/// in `luanti` the 5 x 3 x 5 chunks around the ground in its middle, or as many as fit its bounds.
+/// Requires a name of the list. Fails with the importer's message.
 Result<FramesWorld, std::string> frames_world(const std::string& name, const std::string& luanti);
 
 }  // namespace runstone::bench

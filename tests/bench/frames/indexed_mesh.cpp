@@ -24,7 +24,8 @@ void index_surface(const reference::Surface& surface, IndexedMesh& out) {
   for (const reference::MeshVertex& v : surface.triangles.vertices) {
     out.vertices.push_back({v.x, v.y, v.z});
   }
-  // A vertex is shared by triangles of one direction and material only, so any of them says what it is like.
+  // Triangles share a vertex only if they have one direction and material, so any of them gives its
+  // attributes.
   for (const reference::MeshTriangle& triangle : surface.triangles.triangles) {
     for (const std::uint32_t vertex : triangle.vertices) {
       out.vertices[first + vertex].direction = triangle.direction;

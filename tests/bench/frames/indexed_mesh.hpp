@@ -1,5 +1,6 @@
-// IndexedMesh: any mesher's polygons as every one of them is uploaded: 8 bytes a vertex and three 4-byte
-// indices a triangle, so that pictures and frame times of two meshers differ by their geometry alone.
+// IndexedMesh: any mesher's polygons in the one form in which all are uploaded: 8 bytes a vertex
+// and three 4-byte indices a triangle. Pictures and frame times of two meshers then differ by their
+// geometry alone.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +10,8 @@
 
 namespace runstone::bench {
 
-/// A corner on the voxel lattice of a chunk, 0 .. 128 on each axis, with what the face is like.
+/// A corner on the voxel lattice of a chunk, 0 .. 128 on each axis, with the attributes of its
+/// face.
 struct IndexedVertex {
   std::uint8_t x = 0, y = 0, z = 0;
   Direction direction = Direction::neg_x;
@@ -28,8 +30,8 @@ struct IndexedMesh {
   }
 };
 
-/// Replaces `out` by a surface: four vertices and two triangles a quad, the vertices of a triangle mesh as it
-/// shares them.
+/// Replaces `out` by a surface: four vertices and two triangles a quad; a triangle mesh keeps its
+/// shared vertices.
 void index_surface(const reference::Surface& surface, IndexedMesh& out);
 
 }  // namespace runstone::bench

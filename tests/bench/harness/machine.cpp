@@ -21,7 +21,7 @@ std::string cpu_name() {
 
 std::string simd_target() {
   const auto usable = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(usable & -usable);  // the lowest bit is the best one
+  return hwy::TargetName(usable & -usable);  // the lowest bit is the best target
 }
 
 }  // namespace

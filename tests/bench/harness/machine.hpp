@@ -1,4 +1,4 @@
-// Machine: what a figure was measured on and with.
+// Machine: the hardware, compiler and commit behind a figure.
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -9,14 +9,13 @@ struct Machine {
   std::string cpu;  // as the system names it
   unsigned cores = 0;
   std::string compiler;
-  std::string
-      commit;        // of the sources the program was built from; "-dirty" if they differed from it
-  std::string simd;  // vector instructions that Highway picks here
+  std::string commit;  // of the sources of the program; ends with "-dirty" if they differed from it
+  std::string simd;    // the vector instructions that Highway selects here
 };
 
 Machine this_machine();
 
-/// One line.
+/// Prints one line.
 void write_machine(const Machine& machine, std::ostream& out);
 
 }  // namespace runstone::bench

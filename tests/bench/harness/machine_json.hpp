@@ -1,4 +1,4 @@
-// The machine as every report in JSON has it.
+// The machine in the form that every JSON report has.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 

@@ -7,7 +7,7 @@
 namespace runstone::bench {
 namespace {
 
-/// Google Benchmark takes its flags from a command line, once in a process.
+/// Sets Google Benchmark's flags. It accepts them only as a command line, once in a process.
 void shuffle_repetitions() {
   static const bool done = [] {
     char name[] = "runstone-bench", flag[] = "--benchmark_enable_random_interleaving=true";
@@ -19,7 +19,7 @@ void shuffle_repetitions() {
   static_cast<void>(done);
 }
 
-/// The samples are taken where they arise; there is nothing to report.
+/// Reports nothing: the cases keep their samples.
 class Silent final : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
@@ -39,7 +39,7 @@ std::vector<std::vector<std::vector<double>>> run_shuffled(std::span<const Shuff
         const std::vector<double> figures = each.repetition();
         of.resize(figures.size());
         for (std::size_t f = 0; f < figures.size(); ++f) of[f].push_back(figures[f]);
-        state.SetIterationTime(1e-9);  // Google Benchmark only decides whose turn it is
+        state.SetIterationTime(1e-9);  // Google Benchmark only orders the repetitions
       }
     };
     benchmark::RegisterBenchmark(cases[c].name.c_str(), measure)

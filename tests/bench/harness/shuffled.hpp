@@ -1,5 +1,5 @@
-// Shuffled repetitions: cases measured in one go by Google Benchmark, each so many times, all in random turns, so
-// that a noisy machine hits all of them alike.
+// Shuffled repetitions: Google Benchmark runs the repetitions of several cases in random order, so
+// that noise of the machine affects all of them alike.
 #pragma once
 #include <functional>
 #include <span>
@@ -10,11 +10,12 @@ namespace runstone::bench {
 
 struct ShuffledCase {
   std::string name;
-  /// One repetition: what it measured, always as many figures.
+  /// Runs one repetition and returns what it measured: the same number of figures each time.
   std::function<std::vector<double>()> repetition;
 };
 
-/// samples[case][figure]: what the repetitions measured. Requires cases of different names, and repetitions > 0.
+/// Runs all cases. Returns samples[case][figure], in the order of the repetitions. Requires
+/// different names of cases, and repetitions > 0.
 std::vector<std::vector<std::vector<double>>> run_shuffled(std::span<const ShuffledCase> cases,
                                                            unsigned repetitions);
 

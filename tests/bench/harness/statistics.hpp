@@ -1,4 +1,4 @@
-// Order statistics and means of samples that are not empty.
+// Order statistics and means. Requires samples that are not empty.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 
 namespace runstone::bench {
 
-/// The sample below which `share` of them lie, 0 .. 1: 0.5 is the median (the upper one of an even number).
+/// Returns the sample below which `share` (0 .. 1) of the samples lie. 0.5 is the median; of an
+/// even number of samples the upper one.
 inline double quantile(std::vector<double> samples, double share) {
   const auto at = std::min(static_cast<std::size_t>(share * static_cast<double>(samples.size())),
                            samples.size() - 1);
@@ -17,7 +18,7 @@ inline double quantile(std::vector<double> samples, double share) {
 }
 inline double median(std::vector<double> samples) { return quantile(std::move(samples), 0.5); }
 
-/// Requires positive samples.
+/// Returns the geometric mean. Requires positive samples.
 inline double geometric_mean(const std::vector<double>& samples) {
   double logs = 0;
   for (const double sample : samples) logs += std::log(sample);

@@ -17,7 +17,7 @@ const char* name_of(Verdict verdict) {
 }
 
 void write_targets(std::span<const Target> targets, std::ostream& out) {
-  fmt::print(out, "| case | bar | measured | |\n|---|---|---|---|\n");
+  fmt::print(out, "| case | target | measured | |\n|---|---|---|---|\n");
   for (const Target& target : targets) {
     fmt::print(out, "| {} | {} | {} | {} |\n", target.what, target.wanted, target.measured,
                name_of(target.verdict));

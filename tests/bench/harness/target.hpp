@@ -1,4 +1,4 @@
-// Bar: what a figure has to reach, and whether it did.
+// Target: a value that a figure must reach, and whether it did.
 #pragma once
 #include <iosfwd>
 #include <span>
@@ -13,7 +13,7 @@ struct Target {
   Verdict verdict = Verdict::not_measured;
 };
 
-/// A table of Markdown.
+/// Prints a table of Markdown.
 void write_targets(std::span<const Target> targets, std::ostream& out);
 
 const char* name_of(Verdict verdict);

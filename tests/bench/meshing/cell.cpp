@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/shuffled.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/support/count_allocations.hpp"
@@ -12,10 +13,10 @@
 namespace runstone::bench {
 namespace {
 
-/// What a repetition measures, in this order: ns of a call, ns of a copy, ns of each phase.
+/// The figures of a repetition, in this order: ns of a call, ns of a copy, ns of each phase.
 enum Figure : std::size_t { kCall, kCopy, kFirstPhase };
 
-/// What this thread needs of its core for each of `calls` calls of `work`.
+/// Returns the thread's processor time for one of `calls` calls of `work`.
 template <class Work>
 double core_ns_per_call(std::uint64_t calls, Work work) {
   const std::uint64_t start = core_ns();
@@ -23,7 +24,7 @@ double core_ns_per_call(std::uint64_t calls, Work work) {
   return static_cast<double>(core_ns() - start) / static_cast<double>(calls);
 }
 
-/// Shares the time of a call out among its phases.
+/// Divides the time of a call among its phases.
 void add_phases(PhaseTimes phases, std::uint64_t wall_ns, double call_ns,
                 std::vector<double>& figures) {
   std::uint64_t before_mesh = 0;
@@ -77,7 +78,8 @@ std::vector<std::optional<Timing>> measure_cell(std::span<MesherCase> mesher_cas
     PhaseTimes unused{};
     mesher_case.mesh(unused);
     Timing timing;
-    double call_ns = 1e18;  // the faster of two calls: others may have the core during one
+    // the faster of two calls, since another program may have the core during one
+    double call_ns = 1e18;
     for (int call = 0; call < 2; ++call) {
       const std::uint64_t start = now_ns();
       timing.allocations = test::allocations_of([&] { mesher_case.mesh(unused); }).count;
@@ -85,7 +87,7 @@ std::vector<std::optional<Timing>> measure_cell(std::span<MesherCase> mesher_cas
           std::min(call_ns, static_cast<double>(std::max<std::uint64_t>(now_ns() - start, 10)));
     }
     const auto calls = static_cast<std::uint64_t>(std::max(1.0, kBlockNs / call_ns));
-    // A repetition: the block twice, and copies that cost no more than the block.
+    // A repetition calls the block twice and makes copies that cost no more than the block.
     if (repetitions * call_ns * 3 * static_cast<double>(calls) > kCellSecondsMax * 1e9) continue;
     mesher_case.surface(surface);
     timing.quads = mesher_case.quads();

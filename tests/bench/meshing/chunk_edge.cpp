@@ -8,9 +8,9 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/bench/edits/edit_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/machine.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
@@ -20,8 +20,8 @@ constexpr std::int32_t kRegionUnit = 64;  // every edge up to here divides the r
 constexpr unsigned kPasses = 31;
 constexpr std::size_t kEdits = 4000;  // about as many for each edge
 
-/// The voxels that are cut: as much of the bounds as whole units cover, or a cube of two units a side around
-/// the ground.
+/// Returns the voxels to cut: the whole units inside the bounds, or a cube of two units a side
+/// around the ground.
 VoxelBox region_of(const VoxelWorld& world) {
   if (!world.bounds) return {{0, -kRegionUnit, 0}, {2 * kRegionUnit, kRegionUnit, 2 * kRegionUnit}};
   VoxelBox box = *world.bounds;
@@ -32,7 +32,7 @@ VoxelBox region_of(const VoxelWorld& world) {
   return box;
 }
 
-/// Core time to mesh all volumes, one after another.
+/// Returns the processor time of meshing all volumes once.
 double mesh_pass_ns(const std::vector<Volume>& volumes, const VisibilityTable& visibility,
                     RdmScratch& scratch, ChunkMesh& mesh, std::size_t& quads) {
   quads = 0;
@@ -44,7 +44,7 @@ double mesh_pass_ns(const std::vector<Volume>& volumes, const VisibilityTable& v
   return static_cast<double>(core_ns() - start);
 }
 
-/// The region of a world cut at one edge.
+/// The region of a world, cut at one edge.
 struct Cut {
   ChunkEdgeRow row;
   std::vector<Volume> volumes;
@@ -79,7 +79,8 @@ void measure_edits_of(Cut& cut, const VoxelWorld& world) {
   cut.row.edit_full_mesh_ns = edits.full_mesh_ns;
 }
 
-/// One world at all edges, pass by pass in turns, so that a noisy machine hits all of them alike.
+/// Measures one world at all edges. The passes of the edges alternate, so that noise of the machine
+/// affects all of them alike.
 void measure(const VoxelWorld& world, const std::vector<unsigned>& edges,
              std::vector<ChunkEdgeRow>& out) {
   std::vector<Cut> cuts;
@@ -129,9 +130,8 @@ Result<std::vector<ChunkEdgeRow>, std::string> run_chunk_edge(const BenchOptions
 void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(out,
              "\n| world | edge | chunks (uniform) | runs | runs B/voxel | memory B/voxel | packed "
-             "B/voxel | "
-             "quads | mesh "
-             "ns/voxel | of a chunk that is not uniform: runs B | full mesh µs | edit µs |\n"
+             "B/voxel | quads | mesh ns/voxel | of a chunk that is not uniform: runs B | full mesh "
+             "µs | edit µs |\n"
              "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const ChunkEdgeRow& row : rows) {
     const auto voxels = static_cast<double>(row.voxels);
@@ -150,8 +150,7 @@ void write_table(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
 void write_csv(const std::vector<ChunkEdgeRow>& rows, std::ostream& out) {
   fmt::print(out,
              "world,edge,chunks,uniform,runs,voxels,run_bytes,mixed_bytes,memory_bytes,packed_"
-             "bytes,quads,mesh_ns,"
-             "edit_ns,edit_full_mesh_ns\n");
+             "bytes,quads,mesh_ns,edit_ns,edit_full_mesh_ns\n");
   for (const ChunkEdgeRow& row : rows) {
     fmt::print(out, "{},{},{},{},{},{},{},{},{},{},{},{:.0f},{:.0f},{:.0f}\n", row.world, row.edge,
                row.chunks, row.uniform, row.runs, row.voxels, row.run_bytes, row.mixed_bytes,

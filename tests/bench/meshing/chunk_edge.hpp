@@ -1,5 +1,5 @@
-// `runstone-bench chunk-edge`: what the edge of world chunks costs and saves, over the same voxels of each
-// landscape cut into chunks of each edge. The table that decides the default.
+// `runstone-bench chunk-edge`: the costs and savings of each edge of world chunks. The same voxels
+// of each landscape are cut into chunks of each edge. This table decides the default edge.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/bench_options.hpp"
 
 namespace runstone::bench {
 
-/// Per voxel means of all voxels of the region, uniform chunks included.
+/// The sums over all chunks of the region, uniform ones included, at one edge.
 struct ChunkEdgeRow {
   std::string world;
   unsigned edge = 0;
@@ -21,8 +21,8 @@ struct ChunkEdgeRow {
   std::size_t mixed_bytes = 0;   // runs of the chunks that are not uniform
   std::size_t memory_bytes = 0;  // runs with their spare capacity and the chunk around them
   std::size_t packed_bytes = 0;  // on the wire
-  double mesh_ns = 0;            // all chunks once: median over passes
-  double edit_ns = 0;            // splice and remesh after one voxel, neighbours included: median
+  double mesh_ns = 0;            // all chunks once: median over the passes
+  double edit_ns = 0;            // splice and remesh of one voxel, neighbours included: median
   double edit_full_mesh_ns = 0;  // a full mesh of the edited chunks: median
 };
 

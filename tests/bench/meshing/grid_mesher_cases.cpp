@@ -22,7 +22,7 @@ using namespace reference;
 template <class Scratch, class Out>
 using GridMesher = void (*)(const DenseGrid&, const VisibilityTable&, Scratch&, Out&);
 
-/// By what a mesher makes: the name of the member says it to contestant_of().
+/// The buffers of a grid mesher. The name of the member tells case_over() what the mesher makes.
 template <class Out>
 struct GridState {
   DenseGrid grid;
@@ -45,7 +45,7 @@ MesherCase of_grid(const Volume& volume, const VisibilityTable& visibility,
   auto state = std::make_shared<State>();
   std::vector<Material> layer;
   decode(volume.scene.chunk, volume.scene.pointers(), layer, state->grid);
-  MesherCase out = contestant_of(state, state->grid.byte_size());
+  MesherCase out = case_over(state, state->grid.byte_size());
   out.mesh = [state, mesh, &visibility](PhaseTimes&) {
     mesh(state->grid, visibility, state->scratch, state->out());
   };
@@ -67,8 +67,8 @@ void run_strips(const DenseGrid& grid, const VisibilityTable& visibility, RunStr
 
 }  // namespace
 
-MesherCase grid_contestant(std::string_view name, const Volume& volume,
-                           const VisibilityTable& visibility) {
+MesherCase grid_mesher_case(std::string_view name, const Volume& volume,
+                            const VisibilityTable& visibility) {
   const auto of = [&](auto mesh) { return of_grid(volume, visibility, mesh); };
   if (name == "simple") return of(simple);
   if (name == "greedy") return of(mesh_greedy);

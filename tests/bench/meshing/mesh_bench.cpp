@@ -6,6 +6,7 @@
 
 #include "common/runs/reorder.hpp"
 #include "tests/bench/edits/edit_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/meshing/mesh_targets.hpp"
 #include "tests/bench/meshing/order_name.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
@@ -18,7 +19,7 @@ struct RankedOrder {
   std::string rank;
 };
 
-/// The orders that were asked for, without repeating one.
+/// Returns the wanted orders, each once.
 std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std::string>& wanted) {
   const auto asked = [&](const char* what) {
     return std::find(wanted.begin(), wanted.end(), what) != wanted.end();
@@ -47,7 +48,7 @@ std::vector<std::string_view> meshers_of(const BenchOptions& options) {
   return out;
 }
 
-/// All meshers on one volume in one order.
+/// Measures all meshers on one volume in one order.
 void measure_volume(const BenchOptions& options, const Volume& volume,
                     const VisibilityTable& visibility, const MeshRow& shared, MeshResult& result) {
   const std::size_t first = result.rows.size();

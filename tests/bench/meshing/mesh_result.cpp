@@ -47,14 +47,14 @@ nlohmann::ordered_json json_of(const MeshRow& row) {
   return out;
 }
 
-/// Sums of rows of one mesher over the volumes of a world.
+/// The sums of one mesher over the volumes of a world.
 struct Total {
   std::size_t volumes = 0, runs = 0, quads = 0, storage = 0, allocations = 0;
   std::size_t vertices = 0, triangles = 0, t_junctions = 0, thin_16 = 0, thin_100 = 0;
   double median = 0, min = 0, p90 = 0, copy = 0;
   std::array<double, kPhaseCount> phase{};
   std::vector<double> against_decode, against_grid;
-  double decode = 0, grid = 0;  // medians of the two baselines, over the rows that have ratios
+  double decode = 0, grid = 0;  // medians of the two baselines, over the rows with ratios
 
   void add(const MeshRow& row) {
     ++volumes;
@@ -83,7 +83,7 @@ struct Total {
   }
 };
 
-/// Geometric mean, and ratio of sums where that is another figure.
+/// Returns the geometric mean, and the ratio of sums if it differs.
 std::string ratios(const std::vector<double>& each, double sum, double ours) {
   if (each.empty()) return "–";
   const std::string mean = fmt::format("{:.2f}", geometric_mean(each));
@@ -138,12 +138,11 @@ std::string MeshRow::cell() const {
 }
 
 void write_csv(const MeshResult& result, std::ostream& out) {
-  fmt::print(out,
-             "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,"
-             "mask_ns,mesh_ns,"
-             "ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,"
-             "mesh_bytes,"
-             "storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
+  fmt::print(
+      out,
+      "world,part,edge,order,rank,mesher,runs,median_ns,min_ns,p90_ns,decode_ns,octree_ns,mask_ns,"
+      "mesh_ns,ns_per_run,quads,vertices,triangles,t_junctions,t_junction_edges,thin_16,thin_100,"
+      "mesh_bytes,storage_bytes,allocations,copy_ns,against_decode,against_grid\n");
   for (const MeshRow& row : result.rows) {
     const Timing& t = row.timing;
     fmt::print(out, "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.1f},", row.world, row.part, row.edge,
@@ -182,10 +181,8 @@ void write_tables(const MeshResult& result, std::ostream& out) {
                one ? "" : " on average");
     fmt::print(out,
                "| mesher | median µs | min | p90 | decode | octree | mask | mesh | ns/run | quads "
-               "| vertices | "
-               "triangles | T-junctions | thin 1:16 | 1:100 | storage B | allocations | x decode + "
-               "binary | x grid "
-               "ready | copies |\n");
+               "| vertices | triangles | T-junctions | thin 1:16 | 1:100 | storage B | allocations "
+               "| x decode + binary | x grid ready | copies |\n");
     fmt::print(
         out, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const auto& [mesher, total] : group.meshers) write_total(mesher, total, out);
@@ -195,9 +192,7 @@ void write_tables(const MeshResult& result, std::ostream& out) {
 void write_overview(const MeshResult& result, std::ostream& out) {
   fmt::print(out,
              "| world | edge | order | volumes | runs | quads | median µs | ns/run | x decode + "
-             "binary | x "
-             "grid ready "
-             "| copies |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+             "binary | x grid ready | copies |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Group& group : groups_of(result.rows)) {
     for (const auto& [mesher, total] : group.meshers) {
       if (mesher != "rdm") continue;

@@ -1,5 +1,5 @@
-// MeshResult: everything that `runstone-bench mesh` measured, a row for each mesher in each cell, as CSV,
-// JSON and tables of Markdown.
+// MeshResult: everything that `runstone-bench mesh` measures, a row for each mesher in each cell,
+// as CSV, JSON and tables of Markdown.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -15,18 +15,20 @@ namespace runstone::bench {
 
 struct MeshRow {
   std::string world;
-  std::string part;  // which volume of the world
+  std::string part;  // name of the volume in the world
   unsigned edge = 0;
   std::string order;  // axes, fastest first
-  std::string rank;   // "best", "worst": fewest and most runs of the six orders; "between"
+  // "best" and "worst": the fewest and the most runs of the six orders; or "between"
+  std::string rank;
   std::string mesher;
   std::size_t runs = 0;
   Timing timing;
-  /// Median of decode_binary, grid_binary in the same cell divided by ours: above 1 is faster.
+  /// The median of decode_binary or grid_binary in the same cell, divided by this row's median.
+  /// Above 1 this row is faster.
   std::optional<double> against_decode, against_grid;
 
   double ns_per_run() const { return timing.median_ns / static_cast<double>(runs); }
-  std::string cell() const;  // world, part, edge and order in words
+  std::string cell() const;  // world, part, edge and order as text
 };
 
 struct MeshResult {
@@ -37,15 +39,15 @@ struct MeshResult {
   std::vector<Target> targets;
 };
 
-/// One line of names, then one a row. Times in ns.
+/// Writes a line of names, then a line for each row. Times are in ns.
 void write_csv(const MeshResult& result, std::ostream& out);
 void write_json(const MeshResult& result, std::ostream& out);
 
-/// A table for each world, edge and rank of order: means over its volumes, ratios as geometric mean and as
-/// ratio of sums.
+/// Prints a table for each world, edge and rank of order: means over its volumes, and ratios as
+/// geometric mean and as ratio of sums.
 void write_tables(const MeshResult& result, std::ostream& out);
 
-/// The product alone, a line for each of those tables.
+/// Prints one table with a line of the product for each of those tables.
 void write_overview(const MeshResult& result, std::ostream& out);
 
 }  // namespace runstone::bench

@@ -11,7 +11,7 @@
 namespace runstone::bench {
 namespace {
 
-/// Rows of the product in best order, of one world and edge.
+/// Returns the rows of a mesher in best order, of one world and edge.
 std::vector<const MeshRow*> product_rows(const std::vector<MeshRow>& rows, const std::string& world,
                                          unsigned edge, const std::string& mesher = "rdm") {
   std::vector<const MeshRow*> out;
@@ -33,7 +33,7 @@ Target unknown(std::string what, std::string wanted) {
   return {std::move(what), std::move(wanted), "–", Verdict::not_measured};
 }
 
-/// One volume against decode + binary greedy and against the grid ready.
+/// Judges one volume against decode + binary greedy and against the grid ready.
 Target landscape(const std::vector<MeshRow>& rows, const std::string& world, double decode,
                  double grid) {
   const std::string what =
@@ -50,7 +50,7 @@ Target landscape(const std::vector<MeshRow>& rows, const std::string& world, dou
   return judged(what, wanted, measured, a >= decode && b >= grid);
 }
 
-/// Ratios mean something only if the baseline is good.
+/// Judges the baseline: ratios have a meaning only if the baseline is good.
 Target baseline(const std::vector<MeshRow>& rows) {
   const std::string what = "our binary greedy itself: hills, 62³, its mask ready";
   for (const MeshRow& row : rows) {
@@ -108,7 +108,8 @@ Target scenarios(const std::vector<MeshRow>& rows) {
                 mean >= 3 && twice >= 25);
 }
 
-/// The lowest ratio of all cells, whatever the world and the axis order, and whether or not borders are kept.
+/// Judges the lowest ratio of all cells, for every world and axis order, with borders kept and not
+/// kept.
 Target never_below(const std::vector<MeshRow>& rows) {
   const std::string what = "anything, against decode + binary greedy: the lowest";
   const MeshRow* lowest = nullptr;
@@ -126,8 +127,8 @@ Target never_below(const std::vector<MeshRow>& rows) {
       *lowest->against_decode >= 0.95);
 }
 
-/// Quads of ours by those of binary greedy: the highest over a world's volumes together, and of one volume.
-/// Both are judged.
+/// Judges the quads of the product divided by those of binary greedy: the highest ratio of a
+/// world's volumes together, and of one volume.
 Target quads(const std::vector<MeshRow>& rows) {
   const std::string what =
       "quads against binary greedy, a world's volumes together: the highest; of a single volume";
@@ -186,15 +187,14 @@ Target edit(const EditTiming& edits) {
       "mesh";
   if (edits.edits == 0) return unknown(what, "5 µs; a fifth");
   const double share = edits.all_ns / edits.full_mesh_ns;
-  return judged(
-      fmt::format("{} ({} edits, {} at a border)", what, edits.edits, edits.at_borders),
-      "5 µs; a fifth",
-      fmt::format(
-          "{:.2f} µs ({:.2f} its own chunk: {:.2f} splice, {:.2f} remesh; {:.2f} at a border); "
-          "{:.2f} of {:.2f} µs",
-          edits.all_ns / 1000, edits.own_ns / 1000, edits.apply_ns / 1000, edits.remesh_ns / 1000,
-          edits.border_all_ns / 1000, share, edits.full_mesh_ns / 1000),
-      edits.all_ns <= 5000 && share <= 0.2);
+  return judged(fmt::format("{} ({} edits, {} at a border)", what, edits.edits, edits.at_borders),
+                "5 µs; a fifth",
+                fmt::format("{:.2f} µs ({:.2f} its own chunk: {:.2f} splice, {:.2f} remesh; {:.2f} "
+                            "at a border); {:.2f} of {:.2f} µs",
+                            edits.all_ns / 1000, edits.chunk_ns / 1000, edits.apply_ns / 1000,
+                            edits.remesh_ns / 1000, edits.border_all_ns / 1000, share,
+                            edits.full_mesh_ns / 1000),
+                edits.all_ns <= 5000 && share <= 0.2);
 }
 
 Target storage(const std::vector<MeshRow>& rows) {

@@ -1,5 +1,5 @@
-// The bars of meshing, and what rows say about them. All are of chunks in their best axis order, which is how
-// holders keep them.
+// The targets of meshing, judged from the rows. All of them are for chunks in their best axis
+// order, in which holders keep them.
 #pragma once
 #include <vector>
 

@@ -1,16 +1,14 @@
 #include "tests/bench/meshing/mesher_case.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <memory>
 #include <vector>
 
 #include "common/core/assert.hpp"
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/reorder.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/meshing/grid_mesher_cases.hpp"
 #include "tests/bench/meshing/mesher_case_state.hpp"
 #include "tests/reference/binary_greedy.hpp"
@@ -41,7 +39,7 @@ constexpr std::array<std::string_view, 17> kNames = {"rdm",
                                                      "grid_rdm",
                                                      "rle_rdm"};
 
-/// Adds the time since `start` to a phase; returns the time now.
+/// Adds the time since `start` to a phase. Returns the present time.
 std::uint64_t book(PhaseTimes& phases, Phase phase, std::uint64_t start) {
   const std::uint64_t now = now_ns();
   phases[static_cast<std::size_t>(phase)] += now - start;
@@ -55,26 +53,26 @@ MesherCase rdm(std::string_view name, const Volume& volume, const VisibilityTabl
     MeshNeighbours neighbours;
     std::array<ChunkBorders, kDirectionCount> kept;
     MeshBorders borders{};
-    ChunkBorders own;
+    ChunkBorders chunk_borders;
   };
   auto state = std::make_shared<State>();
   state->scratch.use_plain_path(name == "rdm_plain");
   state->neighbours = volume.scene.pointers();
-  MesherCase out = contestant_of(state, volume.scene.chunk.runs.byte_size());
-  ChunkBorders* own = nullptr;
+  MesherCase out = case_over(state, volume.scene.chunk.runs.byte_size());
+  ChunkBorders* chunk_borders = nullptr;
   if (name == "rdm_kept") {
     for (std::size_t d = 0; d < kDirectionCount; ++d) {
       if (state->neighbours[d] == nullptr) continue;
       state->kept[d].read(*state->neighbours[d], visibility);
       state->borders[d] = &state->kept[d];
     }
-    own = &state->own;
-    own->read(volume.scene.chunk, visibility);
-    out.storage_bytes += own->byte_size();
+    chunk_borders = &state->chunk_borders;
+    chunk_borders->read(volume.scene.chunk, visibility);
+    out.storage_bytes += chunk_borders->byte_size();
   }
-  out.mesh = [state, own, &volume, &visibility](PhaseTimes&) {
+  out.mesh = [state, chunk_borders, &volume, &visibility](PhaseTimes&) {
     mesh_rdm(volume.scene.chunk, state->neighbours, state->borders, visibility, state->scratch,
-             state->mesh, own);
+             state->mesh, chunk_borders);
   };
   return out;
 }
@@ -93,7 +91,7 @@ MesherCase binary(std::string_view name, const Volume& volume, const VisibilityT
   const RunChunk& chunk = volume.scene.chunk;
   decode(chunk, state->neighbours, state->layer, state->grid);
   occupancy_of(state->grid, visibility, state->mask);
-  MesherCase out = contestant_of(state, state->grid.byte_size());
+  MesherCase out = case_over(state, state->grid.byte_size());
   if (name == "mask_binary") {
     out.storage_bytes += (state->mask.opaque.size() + state->mask.transparent.size()) * 8;
     out.mesh = [state](PhaseTimes&) {
@@ -120,7 +118,7 @@ MesherCase binary(std::string_view name, const Volume& volume, const VisibilityT
   return out;
 }
 
-/// An octree deep enough for a cube of `side` voxels.
+/// Returns an empty octree that is deep enough for a cube of `side` voxels.
 MaterialOctree octree_over(VoxelPos origin, std::int32_t side) {
   const auto bricks =
       static_cast<unsigned>((side + MaterialOctree::kBrickSide - 1) / MaterialOctree::kBrickSide);
@@ -134,7 +132,7 @@ MesherCase culled(const Volume& volume, const VisibilityTable& visibility) {
     std::vector<Quad> quads;
   };
   const auto side = static_cast<std::int32_t>(volume.edge);
-  // The chunk at 0 0 0, what is next to it around.
+  // The chunk lies at 0 0 0, and its neighbours around it.
   auto state = std::make_shared<State>(State{octree_over({-side, -side, -side}, 3 * side), {}, {}});
   MaterialOctree alone = octree_over({}, side);
   state->octree.insert({}, volume.scene.chunk);
@@ -146,7 +144,7 @@ MesherCase culled(const Volume& volume, const VisibilityTable& visibility) {
   }
   state->octree.compact();
   alone.compact();
-  MesherCase out = contestant_of(state, alone.byte_size());
+  MesherCase out = case_over(state, alone.byte_size());
   out.mesh = [state, &volume, &visibility](PhaseTimes& phases) {
     const CulledPhases spent = mesh_culled(state->octree, {}, volume.scene.chunk.extent, visibility,
                                            now_ns, state->grid, state->quads);
@@ -161,7 +159,7 @@ MesherCase rle_rdm(const Volume& volume, const VisibilityTable& visibility) {
     std::vector<Quad> quads;
   };
   auto state = std::make_shared<State>(State{reorder(volume.scene.chunk, AxisOrder::zyx), {}});
-  MesherCase out = contestant_of(state, state->chunk.runs.byte_size());
+  MesherCase out = case_over(state, state->chunk.runs.byte_size());
   out.mesh = [state, &visibility](PhaseTimes&) {
     mesh_rle_rdm(state->chunk, visibility, state->quads);
   };
@@ -173,23 +171,10 @@ MesherCase of_name(std::string_view name, const Volume& volume, const Visibility
   if (name.ends_with("_binary")) return binary(name, volume, visibility);
   if (name == "culled") return culled(volume, visibility);
   if (name == "rle_rdm") return rle_rdm(volume, visibility);
-  return grid_contestant(name, volume, visibility);
+  return grid_mesher_case(name, volume, visibility);
 }
 
 }  // namespace
-
-std::uint64_t now_ns() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
-}
-
-std::uint64_t core_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 +
-         static_cast<std::uint64_t>(now.tv_nsec);
-}
 
 std::span<const std::string_view> mesher_case_names() { return kNames; }
 

@@ -1,8 +1,8 @@
-// MesherCase: a mesher set before one volume, with its input made ready and its buffers warm, so that calling
-// it times what the name says and nothing else.
+// MesherCase: a mesher in front of one volume. Its input is ready and its buffers are warm, so that
+// a call times exactly what the name says.
 //   rdm               the product, from runs; borders are read from the neighbours' runs
-//   rdm_kept          the same with the borders of all neighbours kept from when they were meshed; those of the
-//                     chunk itself are made in the time (ChunkBorders)
+//   rdm_kept          the same with the borders of all neighbours kept (ChunkBorders); those of the
+//                     chunk itself are made inside the time
 //   rdm_plain         rdm without vector instructions
 //   decode_binary     binary greedy from runs: decode, mask (from the runs), mesh
 //   grid_binary       binary greedy with the dense grid ready: mask, mesh
@@ -12,8 +12,8 @@
 //   greedy            greedy meshing, dense grid ready: mesh
 //   naive_greedy      naive greedy meshing, dense grid ready: mesh
 //   run_strips        Sector's Edge's runs, ended by hidden faces, dense grid ready: mesh
-//   run_strips_hidden the same as the game has them: runs go on over hidden faces and draw them
-//   optimal_greedy    as few rectangles as there can be, dense grid ready: mesh
+//   run_strips_hidden the same as in the game: runs continue over hidden faces and draw them
+//   optimal_greedy    the fewest possible rectangles, dense grid ready: mesh
 //   monotone          outlines cut into monotone polygons, then triangles, dense grid ready: mesh
 //   poly2tri          outlines and their constrained Delaunay triangulation, dense grid ready: mesh
 //   grid_rdm          the thesis' Grid RDM, dense grid ready: mesh
@@ -37,28 +37,24 @@ inline constexpr std::size_t kPhaseCount = 4;
 inline constexpr std::array<std::string_view, kPhaseCount> kPhaseNames = {"decode", "octree",
                                                                           "mask", "mesh"};
 
-/// Nanoseconds by Phase. Whoever has phases before `mesh` adds to them; the rest of a call is `mesh`.
+/// Nanoseconds by Phase. A mesher with phases before `mesh` adds to them; the rest of a call is
+/// `mesh`.
 using PhaseTimes = std::array<std::uint64_t, kPhaseCount>;
-
-/// Monotonic, ns.
-std::uint64_t now_ns();
-/// What this thread has had of a core, ns: time that others have it does not count. A system call.
-std::uint64_t core_ns();
 
 struct MesherCase {
   std::string_view name;
-  std::function<void(PhaseTimes&)> mesh;  // one mesh into its own buffers
-  std::function<std::size_t()> quads;     // of the last mesh; 0 if it is of triangles
+  std::function<void(PhaseTimes&)> mesh;  // makes one mesh in the case's buffers
+  std::function<std::size_t()> quads;     // of the last mesh; 0 if it consists of triangles
   /// Replaces a surface by the last mesh.
   std::function<void(reference::Surface&)> surface;
-  std::size_t storage_bytes = 0;  // voxels as it keeps them between meshes
+  std::size_t storage_bytes = 0;  // of the voxels as the mesher keeps them between meshes
 };
 
-/// All names, in the order above.
+/// Returns all names, in the order above.
 std::span<const std::string_view> mesher_case_names();
 
-/// None if the mesher cannot take the volume: binary greedy stops at sides of 64. `volume` and `visibility`
-/// must outlive it. Aborts on an unknown name.
+/// Returns a mesher case, or nullopt if the mesher cannot take the volume: binary greedy requires
+/// sides of at most 64. `volume` and `visibility` must outlive it. Aborts on an unknown name.
 std::optional<MesherCase> make_mesher_case(std::string_view name, const Volume& volume,
                                            const VisibilityTable& visibility);
 

@@ -1,4 +1,5 @@
-// What all mesher_cases share: their buffers, and how the last mesh in them is counted and copied out.
+// The shared part of all mesher cases: the buffers, the count of the last mesh's quads, and its
+// copy as a surface.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -8,10 +9,11 @@
 
 namespace runstone::bench {
 
-/// A mesher_case whose last mesh lies in `state`, as a ChunkMesh `mesh`, a list `quads` or a TriangleMesh
-/// `triangles`, and which keeps it alive. Name and mesher come later.
+/// Returns a mesher case that keeps `state` alive. Its last mesh is a member of `state`: a
+/// ChunkMesh `mesh`, a list `quads` or a TriangleMesh `triangles`. The caller sets the name and the
+/// mesher.
 template <class State>
-MesherCase contestant_of(std::shared_ptr<State> state, std::size_t storage_bytes) {
+MesherCase case_over(std::shared_ptr<State> state, std::size_t storage_bytes) {
   const auto quads = [state]() -> std::size_t {
     if constexpr (requires { state->mesh; })
       return state->mesh.quad_count();

@@ -5,7 +5,7 @@
 
 namespace runstone::bench {
 
-/// The axes of an order, fastest first: "zyx".
+/// Returns the axes of an order, fastest first: "zyx".
 inline std::string name_of(AxisOrder order) {
   std::string out;
   for (const Axis axis : axes_of(order)) out += "xyz"[static_cast<std::size_t>(axis)];

@@ -1,5 +1,5 @@
-// Attack: what hostile clients do to a server: a name, and how one connection of it behaves. Each is bounded in connections
-// and time and ends by itself.
+// Attack: a way in which hostile clients misuse a server: a name, and the behaviour of one
+// connection. Each attack is bounded in connections and time and ends by itself.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -10,20 +10,21 @@
 
 namespace runstone::bench {
 
-class HostileFleet;
+class AttackThread;
 
 struct Attack {
   const char* name;
-  const char* what;                   // for people
-  void (*play)(HostileFleet& fleet);  // one thread of the attack, until its time is over
+  const char* what;                    // a description for readers
+  void (*play)(AttackThread& thread);  // one thread of the attack, until its time is over
 };
-/// All of them, by name.
+/// Returns all attacks, by name.
 std::span<const Attack> all_attacks();
 
-/// What the server says, without what differs from one connection to the next: where in the stream it was, numbers that were sent.
+/// Returns a server's message without the parts that differ between connections: stream offsets and
+/// numbers that were sent.
 std::string alike(const std::string& reason);
 
-/// What became of an attack's connections.
+/// The outcome of an attack's connections.
 struct AttackOutcome {
   std::map<std::string, std::uint64_t> endings;  // what the server said or did, and how often
   std::uint64_t connections = 0;
@@ -33,18 +34,20 @@ struct AttackOutcome {
   void merge(const AttackOutcome& other);
 };
 
-/// An attack under way, by so many clients from threads of their own. They have the lowest priority: what others feel is what the
-/// server does, not that an attacker on the same machine takes the core which it would have had elsewhere.
+/// A running attack by several clients, each on a thread of its own. The threads have the lowest
+/// priority. So the bots feel what the server does, and not that an attacker on the same machine
+/// takes a core which it would have elsewhere.
 class RunningAttack {
  public:
-  /// `clients` threads with a connection each, or many where that is the attack.
+  /// Starts `clients` threads with a connection each, or many where the attack needs many.
   RunningAttack(const Attack& attack, std::uint16_t port, unsigned clients, double seconds,
                 std::uint64_t seed);
-  /// Waits for its end.
+  /// Waits for the end of the attack.
   ~RunningAttack();
   RunningAttack(const RunningAttack&) = delete;
   RunningAttack& operator=(const RunningAttack&) = delete;
-  /// Waits for its end, which comes soon after the seconds are over or the lab is interrupted. Once.
+  /// Waits for the end of the attack, which comes soon after its seconds are over or the testbed is
+  /// interrupted. Call it once.
   AttackOutcome finish();
 
  private:

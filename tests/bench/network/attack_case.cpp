@@ -23,17 +23,20 @@ constexpr std::array<const char*, 3> kPhases = {"before", "during", "after"};
 
 struct AttackResult {
   std::string name;
-  std::array<FleetSight, 3> seen;  // by phase
+  std::array<FleetReport, 3> seen;  // by phase
   JoinProbe::Joins joins;
   AttackOutcome outcome;
   std::map<std::string, std::uint64_t>
-      logged;  // reasons that the server's log gives, as far as it is not too many lines
-  std::array<double, 3> resident_mb{};  // at the end of the phase; during: the peak
+      // The reasons in the server's log, as far as the log does not drop lines.
+      logged;
+  // At the end of the phase; during the attack: the peak.
+  std::array<double, 3> resident_mb{};
   std::array<double, 3> server_cores{};
   double attacker_cores = 0;
 };
 
-/// The reasons of the lines by which a server says whom it sent away: "timed_out: no message for too long".
+/// Returns the reasons in the log lines for ended sessions, such as "timed_out: no message for too
+/// long".
 std::map<std::string, std::uint64_t> reasons_in(const std::string& log) {
   const auto quoted = [](const std::string& line, std::string_view name) {
     const std::size_t at = line.find(name);
@@ -56,15 +59,15 @@ std::map<std::string, std::uint64_t> reasons_in(const std::string& log) {
 
 class AttackRun {
  public:
-  AttackRun(Lab& lab, LabLink& link, const Attack& attack)
-      : lab_(lab), link_(link), attack_(attack) {}
+  AttackRun(Testbed& testbed, TestbedLink& link, const Attack& attack)
+      : testbed_(testbed), link_(link), attack_(attack) {}
 
   Result<AttackResult, std::string> run() {
-    // A peer that says nothing is sent away within the attack, not a minute after it.
+    // The server ends a silent session within the attack, not a minute after it.
     constexpr const char* kIdleSeconds = "5";
     auto server =
-        lab_.start_server(link_, lab_.fresh("world"),
-                          {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
+        testbed_.start_server(link_, testbed_.fresh("world"),
+                              {"--generator", "terrain", "--seed", "7", "--idle-s", kIdleSeconds});
     if (!server) return Unexpected<std::string>{server.error()};
     server_ = *std::move(server);
     AttackResult out;
@@ -72,7 +75,7 @@ class AttackRun {
     for (const Phase phase : {before, during, after}) {
       if (const auto done = play(phase, out); !done) return Unexpected<std::string>{done.error()};
     }
-    if (const auto ended = lab_.stop_server(server_); !ended)
+    if (const auto ended = testbed_.stop_server(server_); !ended)
       return Unexpected<std::string>{ended.error()};
     out.logged = reasons_in(server_.program->log());
     return out;
@@ -80,16 +83,17 @@ class AttackRun {
 
  private:
   Done play(Phase phase, AttackResult& out) {
-    const double seconds = lab_.options().attack_seconds;
-    // Bots without a replica verify all that comes.
-    auto fleet = Fleet::join(lab_, link_, server_.address, lab_.options().attack_bots, seconds,
-                             {"--replicas", "0"});
+    const double seconds = testbed_.options().attack_seconds;
+    // Bots without a replica verify everything they receive.
+    auto fleet = Fleet::join(testbed_, link_, server_.address, testbed_.options().attack_bots,
+                             seconds, {"--replicas", "0"});
     if (!fleet) return Unexpected<std::string>{fleet.error()};
     const double cores_before = server_.program->core_seconds();
     std::optional<RunningAttack> attack;
     std::optional<JoinProbe> probe;
     if (phase == during) {
-      attack.emplace(attack_, server_.port, lab_.options().attackers, seconds, lab_.options().seed);
+      attack.emplace(attack_, server_.port, testbed_.options().attackers, seconds,
+                     testbed_.options().seed);
       probe.emplace(server_.port);
     }
     double& resident_mb = out.resident_mb[phase];
@@ -104,16 +108,16 @@ class AttackRun {
       out.outcome = attack->finish();
       out.attacker_cores = out.outcome.core_seconds / seconds;
     }
-    const auto seen = fleet->finish(lab_);
+    const auto seen = fleet->finish(testbed_);
     if (!seen) return Unexpected<std::string>{seen.error()};
     out.seen[phase] = *seen;
     return {};
   }
 
-  Lab& lab_;
-  LabLink& link_;
+  Testbed& testbed_;
+  TestbedLink& link_;
   const Attack& attack_;
-  LabServer server_;
+  TestbedServer server_;
 };
 
 void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
@@ -121,7 +125,7 @@ void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
     figures.push_back({"attack", "loopback", "loopback", result.name, std::move(name), value});
   };
   for (const Phase phase : {before, during, after}) {
-    const FleetSight& seen = result.seen[phase];
+    const FleetReport& seen = result.seen[phase];
     const std::string when = kPhases[phase];
     add(when + "_p50_ms", seen.p50_ms);
     add(when + "_p99_ms", seen.p99_ms);
@@ -142,7 +146,7 @@ void add_figures(const AttackResult& result, std::vector<Figure>& figures) {
   add("attacker_received_mb", static_cast<double>(result.outcome.bytes_received) / 1e6);
   const auto add_reasons = [&](const char* where,
                                const std::map<std::string, std::uint64_t>& reasons) {
-    std::map<std::string, std::uint64_t> sums;  // by reason, without the text behind it
+    std::map<std::string, std::uint64_t> sums;  // by reason, without its details
     for (const auto& [reason, count] : reasons) sums[reason.substr(0, reason.find(':'))] += count;
     for (const auto& [reason, count] : sums) {
       add(fmt::format("{} {}", where, reason), static_cast<double>(count));
@@ -162,27 +166,25 @@ std::string list_of(const std::map<std::string, std::uint64_t>& reasons) {
 
 void write_rows(const AttackResult& result, std::string& latencies, std::string& answers) {
   const auto& seen = result.seen;
-  const auto times = [](const FleetSight& of) {
+  const auto times = [](const FleetReport& of) {
     return fmt::format("{}, {}, {}", number_text(of.p50_ms), number_text(of.p99_ms),
                        number_text(of.max_ms));
   };
   double samples = 0, never = 0, disconnects = 0, violations = 0;
-  for (const FleetSight& phase : seen) {
+  for (const FleetReport& phase : seen) {
     samples += phase.samples;
     never += phase.never;
     disconnects += phase.disconnects;
     violations += phase.violations;
   }
-  fmt::format_to(
-      std::back_inserter(latencies),
-      "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, {:.0f}, "
-      "{:.0f} | {:.2f}, "
-      "{:.2f} | {:.2f} |\n",
-      result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples, never,
-      disconnects, violations, result.joins.open, result.joins.tried,
-      number_text(result.joins.slowest_ms), result.resident_mb[before], result.resident_mb[during],
-      result.resident_mb[after], result.server_cores[before], result.server_cores[during],
-      result.attacker_cores);
+  fmt::format_to(std::back_inserter(latencies),
+                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, "
+                 "{:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
+                 result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples,
+                 never, disconnects, violations, result.joins.open, result.joins.tried,
+                 number_text(result.joins.slowest_ms), result.resident_mb[before],
+                 result.resident_mb[during], result.resident_mb[after], result.server_cores[before],
+                 result.server_cores[during], result.attacker_cores);
   fmt::format_to(std::back_inserter(answers), "| {} | {} | {}, {} | {} | {} |\n", result.name,
                  result.outcome.connections,
                  number_text(static_cast<double>(result.outcome.bytes_sent) / 1e6),
@@ -192,40 +194,34 @@ void write_rows(const AttackResult& result, std::string& latencies, std::string&
 
 }  // namespace
 
-Done measure_attacks(Lab& lab, LabFindings& findings) {
-  auto link = lab.make_link(test::link_profiles().front());
+Done measure_attacks(Testbed& testbed, NetFindings& findings) {
+  auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return Unexpected<std::string>{link.error()};
   std::string latencies, answers;
   for (const Attack& attack : all_attacks()) {
-    const auto& asked = lab.options().attacks;
+    const auto& asked = testbed.options().attacks;
     if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end())
       continue;
-    const auto result = AttackRun(lab, **link, attack).run();
+    const auto result = AttackRun(testbed, **link, attack).run();
     if (!result)
       return Unexpected<std::string>{fmt::format("attack {}: {}", attack.name, result.error())};
     add_figures(*result, findings.figures);
     write_rows(*result, latencies, answers);
-    fmt::print(lab.progress(), "attack {}\n", attack.name);
-    lab.progress().flush();
+    fmt::print(testbed.progress(), "attack {}\n", attack.name);
+    testbed.progress().flush();
   }
   findings.tables += fmt::format(
       "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, "
-      "during and "
-      "after an attack of "
-      "{} clients; a server for each attack. Latency from when an edit was due until each bot that "
-      "sees it "
-      "had received and "
-      "verified it.\n\n"
+      "during and after an attack of {} clients; a server for each attack. Latency from when an "
+      "edit was due until each bot that sees it had received and verified it.\n\n"
       "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, "
-      "rules "
-      "broken | newcomers let in, "
-      "slowest ms | server MB before, peak, after | server cores before, during | attackers' cores "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n{}"
-      "\n| attack | connections | MB sent, received | what attackers were told | what the server "
-      "logged "
-      "|\n|---|---|---|---|---|\n{}",
-      lab.options().attack_bots, kFleetEditsPerSecond, lab.options().attack_seconds,
-      lab.options().attackers, latencies, answers);
+      "rules broken | newcomers accepted, slowest ms | server MB before, peak, after | server "
+      "cores "
+      "before, during | attackers' cores |\n|---|---|---|---|---|---|---|---|---|---|\n{}\n| "
+      "attack | connections | MB sent, received | answers to the attackers | reasons in "
+      "the server's log |\n|---|---|---|---|---|\n{}",
+      testbed.options().attack_bots, kFleetEditsPerSecond, testbed.options().attack_seconds,
+      testbed.options().attackers, latencies, answers);
   findings.tables += "\n";
   for (const Attack& attack : all_attacks()) {
     findings.tables += fmt::format("- {}: {}\n", attack.name, attack.what);

@@ -1,10 +1,11 @@
-// Attacks: bots in one place edit on loopback while hostile clients do their worst to the same server: how late edits are for the
-// bots before, during and after, what the server says to the attackers, and what it needs of memory and cores.
+// Attacks: bots in one place edit on loopback while hostile clients attack the same server.
+// Measured are the latency of the bots' edits before, during and after the attack, the server's
+// answers to the attackers, and its memory and processor time.
 #pragma once
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-Done measure_attacks(Lab& lab, LabFindings& findings);
+Done measure_attacks(Testbed& testbed, NetFindings& findings);
 
 }  // namespace runstone::bench

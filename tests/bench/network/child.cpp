@@ -31,13 +31,14 @@ void on_signal(int signal) {
   ::signal(signal, SIG_DFL);
 }
 
-/// In the new process, after fork(): nothing but system calls.
+/// Runs in the new process after fork(): system calls only.
 [[noreturn]] void become(char* const* words, const char* log) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::signal(SIGINT, SIG_IGN);  // of the terminal: the lab ends its programs itself
+  // Of the terminal: the testbed ends its programs itself.
+  ::signal(SIGINT, SIG_IGN);
   const int in = ::open("/dev/null", O_RDONLY);
   const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
   if (in >= 0 && out >= 0) {
@@ -45,7 +46,7 @@ void on_signal(int signal) {
     ::dup2(out, STDOUT_FILENO);
     ::dup2(out, STDERR_FILENO);
     ::close_range(STDERR_FILENO + 1, ~0U, 0);
-    allow_open_files(std::numeric_limits<std::size_t>::max());  // a crowd has many sockets
+    allow_open_files(std::numeric_limits<std::size_t>::max());  // a fleet has many sockets
     ::execv(words[0], words);
   }
   ::_exit(127);
@@ -119,7 +120,8 @@ double Child::core_seconds() const {
   std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
   std::string text;
   std::getline(file, text);
-  // Behind the name, which may hold anything but is in brackets, utime and stime are the 12th and 13th words.
+  // The name is in brackets and may contain anything. After it utime and stime are the 12th and
+  // 13th words.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return 0;
   std::istringstream words(text.substr(name_end + 1));

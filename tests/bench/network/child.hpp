@@ -1,4 +1,5 @@
-// Child: a program that the lab started in a place, its output in a file. It dies with its Child, and with us.
+// Child: a program that the testbed starts in a place, with its output in a file. It ends with its
+// Child and with this process.
 #pragma once
 #include <sys/types.h>
 
@@ -15,23 +16,25 @@ namespace runstone::bench {
 
 class Child {
  public:
-  /// `words`: the program's file and its arguments. `log` takes its standard output and error.
+  /// Starts a program. `words` are the program's file and its arguments. `log` receives its
+  /// standard output and error.
   static Result<std::unique_ptr<Child>, std::string> start(Place& place,
                                                            std::vector<std::string> words,
                                                            std::string log);
-  /// Kills it if it still runs.
+  /// Kills the program if it still runs.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Waits until it ended, at most so long or until the lab is interrupted. Its status as of waitpid().
+  /// Waits until the program ends, at most `seconds` or until the testbed is interrupted. Returns
+  /// its status in the form of waitpid(), or nullopt if it still runs.
   std::optional<int> wait(double seconds);
   void terminate();
-  /// What it and its threads had of the cores so far, seconds. 0 once it ended.
+  /// Returns the processor time of the program and its threads so far, in seconds; 0 after its end.
   double core_seconds() const;
   std::uint64_t resident_bytes() const;
   const std::string& log() const { return log_; }
-  /// "NAME did WHAT; the end of its output: ...".
+  /// Returns "NAME did WHAT; the end of its output: ...".
   std::string explain(const std::string& what) const;
 
  private:
@@ -41,16 +44,16 @@ class Child {
   std::optional<int> status_;
 };
 
-/// The lab was interrupted or terminated: everything that waits gives up. Set by a signal.
+/// Returns true if a signal interrupted or terminated the testbed. Every wait then ends.
 bool interrupted();
-/// From now on SIGINT and SIGTERM interrupt the lab, until the next such signal ends the process.
+/// Makes SIGINT and SIGTERM interrupt the testbed. The next such signal ends the process.
 void take_interrupts();
 
-/// Until `holds`, looking every few milliseconds, at most so long or until the lab is interrupted. Returns whether it
-/// does.
+/// Waits until `holds` returns true. It looks every few milliseconds, at most `seconds` or until
+/// the testbed is interrupted. Returns whether it holds.
 template <class F>
 bool wait_until(double seconds, F&& holds);
-/// Sleeps; false if the lab was interrupted.
+/// Sleeps. Returns false if the testbed was interrupted.
 bool pause_for(double seconds);
 
 template <class F>

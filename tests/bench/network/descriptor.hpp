@@ -1,4 +1,4 @@
-// Descriptor: an open file, closed with it.
+// Descriptor: owns an open file descriptor and closes it.
 #pragma once
 #include <unistd.h>
 

@@ -22,10 +22,10 @@ using asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 using Message = std::array<std::uint8_t, EchoProbe::kMessageBytes>;
 
-/// Sends back what comes, message by message.
+/// Sends every received message back.
 class Answerer {
  public:
-  Answerer(LabLink& link, asio::error_code& error) {
+  Answerer(TestbedLink& link, asio::error_code& error) {
     link.server_side().run([&] { acceptor_.open(tcp::v4(), error); });
     if (!error) acceptor_.bind({asio::ip::make_address(link.server_address()), 0}, error);
     if (!error) acceptor_.listen(1, error);
@@ -67,7 +67,7 @@ class Answerer {
 }  // namespace
 
 struct EchoProbe::Parts {
-  Parts(LabLink& link, double rate, asio::error_code& error)
+  Parts(TestbedLink& link, double rate, asio::error_code& error)
       : server(link, error), interval(std::chrono::duration<double>(1 / rate)) {}
 
   void begin() {
@@ -113,7 +113,7 @@ struct EchoProbe::Parts {
   asio::io_context io{1};
   tcp::socket socket{io};
   asio::steady_timer timer{io};
-  // The thread's own until it ended.
+  // Belongs to the thread until the thread ends.
   Clock::time_point began;
   std::uint64_t sent = 0;
   std::deque<Clock::time_point> under_way;
@@ -129,7 +129,7 @@ EchoProbe::~EchoProbe() {
   if (parts_->thread.joinable()) stop();
 }
 
-Result<std::unique_ptr<EchoProbe>, std::string> EchoProbe::start(LabLink& link, double rate) {
+Result<std::unique_ptr<EchoProbe>, std::string> EchoProbe::start(TestbedLink& link, double rate) {
   asio::error_code error;
   auto parts = std::make_unique<Parts>(link, rate, error);
   if (error) return Unexpected<std::string>{"the echo cannot listen: " + error.message()};

@@ -1,6 +1,7 @@
-// EchoProbe: how long the bare minimum takes beside what is measured: a message that a plain Asio server sends back.
-// Open loop, on a connection of its own through the link, so that the same busy machine and the same link are in
-// both. A round trip of it is what an edit needs from one client over the server to another.
+// EchoProbe: the round trip of a message that a plain Asio server sends back, as a lower bound
+// beside a measurement. It sends at a fixed rate that does not depend on answers, on a connection
+// of its own through the link. So the same busy machine and the same link are in both. An edit from
+// one client over the server to another takes at least one such round trip.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/network/lab_link.hpp"
+#include "tests/bench/network/testbed_link.hpp"
 
 namespace runstone::bench {
 
@@ -16,14 +17,14 @@ class EchoProbe {
  public:
   static constexpr std::size_t kMessageBytes = 128;
 
-  /// Sends `rate` messages a second from now on. The error says what failed.
-  static Result<std::unique_ptr<EchoProbe>, std::string> start(LabLink& link, double rate);
+  /// Starts to send `rate` messages a second. Fails with the reason.
+  static Result<std::unique_ptr<EchoProbe>, std::string> start(TestbedLink& link, double rate);
   ~EchoProbe();
   EchoProbe(const EchoProbe&) = delete;
   EchoProbe& operator=(const EchoProbe&) = delete;
 
-  /// Sends no more, waits a second for the rest, and returns in ms, from when each message was due to when it was back.
-  /// What did not come back is infinite.
+  /// Stops sending and waits a second for the answers. Returns the times from when each message was
+  /// due to when it was back, in ms; infinite if it did not come back.
   std::vector<double> stop();
 
  private:

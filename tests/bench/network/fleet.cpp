@@ -10,7 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kPatience = 300;  // seconds until all have joined, and until all is on disk
+// Seconds until all bots have joined, and until all edits are on disk.
+constexpr double kPatience = 300;
 constexpr double kLook = 0.05;
 
 double number_at(const json& object, const char* name) {
@@ -20,11 +21,11 @@ double number_at(const json& object, const char* name) {
 
 }  // namespace
 
-FleetSight sight_of(const json& report) {
+FleetReport fleet_report(const json& report) {
   const json none = json::object();
-  FleetSight out;
-  out.own_only = !report.contains("seen_us");
-  const json& seen = report.value(out.own_only ? "own_us" : "seen_us", none);
+  FleetReport out;
+  out.local_only = !report.contains("seen_us");
+  const json& seen = report.value(out.local_only ? "own_us" : "seen_us", none);
   out.p50_ms = number_at(seen, "p50") / 1000;
   out.p90_ms = number_at(seen, "p90") / 1000;
   out.p99_ms = number_at(seen, "p99") / 1000;
@@ -32,7 +33,7 @@ FleetSight sight_of(const json& report) {
   out.never = number_at(seen, "infinite");
   out.rows = sample_rows(seen);
   const json& edits = report.value("edits", none);
-  out.samples = out.own_only ? number_at(edits, "confirmed") : number_at(seen, "count");
+  out.samples = out.local_only ? number_at(edits, "confirmed") : number_at(seen, "count");
   out.rejected = number_at(edits, "rejected") + number_at(edits, "refused");
   const json& losses = report.value("losses", none);
   for (const auto& [reason, count] : losses.items()) out.disconnects += number_in(count);
@@ -43,22 +44,22 @@ FleetSight sight_of(const json& report) {
   return out;
 }
 
-Result<Fleet, std::string> Fleet::join(Lab& lab, LabLink& link, const std::string& address,
-                                       unsigned clients, double seconds,
+Result<Fleet, std::string> Fleet::join(Testbed& testbed, TestbedLink& link,
+                                       const std::string& address, unsigned clients, double seconds,
                                        const std::vector<std::string>& flags) {
   Fleet out;
-  out.report_ = lab.fresh("report.json");
+  out.report_ = testbed.fresh("report.json");
   std::vector<std::string> words = {"--connect",   address,
                                     "--count",     fmt::to_string(clients),
                                     "--sites",     "1",
                                     "--behaviour", "build",
                                     "--rate",      fmt::to_string(kFleetEditsPerSecond),
                                     "--duration",  fmt::to_string(seconds),
-                                    "--seed",      fmt::to_string(lab.options().seed),
+                                    "--seed",      fmt::to_string(testbed.options().seed),
                                     "--patience",  fmt::to_string(kPatience),
                                     "--report",    out.report_};
   words.insert(words.end(), flags.begin(), flags.end());
-  auto bots = lab.start_client(link, "runstone-bot", std::move(words));
+  auto bots = testbed.start_client(link, "runstone-bot", std::move(words));
   if (!bots) return Unexpected<std::string>{bots.error()};
   out.bots_ = *std::move(bots);
   for (; out.joined_s_ < kPatience && !out.bots_->wait(kLook); out.joined_s_ += kLook) {
@@ -68,11 +69,11 @@ Result<Fleet, std::string> Fleet::join(Lab& lab, LabLink& link, const std::strin
   return Unexpected<std::string>{out.bots_->explain("did not join")};
 }
 
-Result<FleetSight, std::string> Fleet::finish(Lab& lab) {
-  const auto ended = lab.finish(*bots_, 2 * kPatience);
+Result<FleetReport, std::string> Fleet::finish(Testbed& testbed) {
+  const auto ended = testbed.finish(*bots_, 2 * kPatience);
   const auto report = read_report(report_);
   if (!report) return Unexpected<std::string>{ended ? report.error() : ended.error()};
-  const FleetSight out = sight_of(*report);
+  const FleetReport out = fleet_report(*report);
   const bool broke_rules = out.violations != 0 || out.drifted != 0;
   if (!ended && !broke_rules) return Unexpected<std::string>{ended.error()};
   return out;

@@ -1,46 +1,49 @@
-// Crowd: bots in one place, all subscribed to the same chunks, each with 2 edits a second, open loop: one runstone-bot, and what
-// it reports.
+// Fleet: bots in one place, all subscribed to the same chunks, with 2 edits a second each at fixed
+// times. It is one runstone-bot program and its report.
 #pragma once
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "tests/bench/network/lab.hpp"
 #include "tests/bench/network/sample_row.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-inline constexpr double kFleetEditsPerSecond = 2;  // of each
+inline constexpr double kFleetEditsPerSecond = 2;  // of each bot
 
-/// What its bots saw. No sample is dropped.
-struct FleetSight {
+/// The bots' measurements. No sample is dropped.
+struct FleetReport {
   double p50_ms = 0, p90_ms = 0, p99_ms = 0,
-         max_ms = 0;  // due to received and verified, all subscribers
+         // From due to received and verified, over all subscribers.
+      max_ms = 0;
   double samples = 0, never = 0;
-  std::vector<SampleRow> rows;  // of the samples but those that never came
-  bool own_only = false;        // the bots' report knew only of own edits
+  std::vector<SampleRow> rows;  // all samples except those that never arrived
+  bool local_only = false;      // the report contains only the bots' own edits
   double disconnects = 0, rejected = 0;
   double drifted = 0,
          violations =
-             0;  // chunks with other voxels than the server's; broken rules of the protocol
-  double bytes_received = 0;  // by all of them, from start to end
+             // Chunks whose voxels differ from the server's; broken rules of the protocol.
+         0;
+  double bytes_received = 0;  // by all bots, from start to end
 };
 
-/// From a report of runstone-bot; what it lacks is 0.
-FleetSight sight_of(const nlohmann::json& report);
+/// Reads a report of runstone-bot. Missing values are 0.
+FleetReport fleet_report(const nlohmann::json& report);
 
 class Fleet {
  public:
-  /// Starts so many bots that edit for so many seconds and waits until all of them see the world. `flags`: further ones of
-  /// runstone-bot.
-  static Result<Fleet, std::string> join(Lab& lab, LabLink& link, const std::string& address,
-                                         unsigned clients, double seconds,
+  /// Starts `clients` bots that edit for `seconds`, and waits until all of them have the world.
+  /// `flags` are further flags of runstone-bot.
+  static Result<Fleet, std::string> join(Testbed& testbed, TestbedLink& link,
+                                         const std::string& address, unsigned clients,
+                                         double seconds,
                                          const std::vector<std::string>& flags = {});
   double joined_s() const { return joined_s_; }
   Child& bots() { return *bots_; }
-  /// Waits for their end. Broken rules are no error: they are part of what was seen.
-  Result<FleetSight, std::string> finish(Lab& lab);
+  /// Waits for the end of the bots. Broken rules are no error: they are part of the report.
+  Result<FleetReport, std::string> finish(Testbed& testbed);
 
  private:
   std::unique_ptr<Child> bots_;

@@ -12,14 +12,14 @@ namespace runstone::bench {
 namespace {
 
 constexpr unsigned kSpareSessions = 16;
-constexpr unsigned kBigFleet = 1000;  // the bar's
+constexpr unsigned kBigFleet = 1000;  // the size that the target names
 constexpr double kBigFleetMsMax = 100;
 constexpr double kEnqueueUsMax = 1;
 
 struct FleetResult {
   unsigned clients = 0;
-  double joined_s = 0;  // until the last one saw the world
-  FleetSight seen;
+  double joined_s = 0;  // until the last bot had the world
+  FleetReport seen;
   double kb_s_each = 0;                    // received by each client, from its start to its end
   double server_cores = 0, bot_cores = 0;  // while edits were due
   double server_mb = 0;                    // resident
@@ -27,18 +27,18 @@ struct FleetResult {
   double enqueue_us = 0;  // of a commit, for each receiver
 };
 
-Result<FleetResult, std::string> run_fleet(Lab& lab, unsigned clients) {
+Result<FleetResult, std::string> run_fleet(Testbed& testbed, unsigned clients) {
   const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
-  const double seconds = lab.options().fleet_seconds;
-  auto link = lab.make_link(test::link_profiles().front());
+  const double seconds = testbed.options().fleet_seconds;
+  auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return failed(link);
   auto server =
-      lab.start_server(**link, lab.fresh("world"),
-                       {"--generator", "terrain", "--seed", "7", "--sessions-max",
-                        fmt::to_string(clients + kSpareSessions), "--handshakes-per-address",
-                        fmt::to_string(clients + kSpareSessions)});
+      testbed.start_server(**link, testbed.fresh("world"),
+                           {"--generator", "terrain", "--seed", "7", "--sessions-max",
+                            fmt::to_string(clients + kSpareSessions), "--handshakes-per-address",
+                            fmt::to_string(clients + kSpareSessions)});
   if (!server) return failed(server);
-  auto fleet = Fleet::join(lab, **link, server->address, clients, seconds);
+  auto fleet = Fleet::join(testbed, **link, server->address, clients, seconds);
   if (!fleet) return failed(fleet);
   FleetResult out;
   out.clients = clients;
@@ -49,11 +49,11 @@ Result<FleetResult, std::string> run_fleet(Lab& lab, unsigned clients) {
   out.server_cores = (server->program->core_seconds() - server_before) / seconds;
   out.bot_cores = (fleet->bots().core_seconds() - bots_before) / seconds;
   out.server_mb = static_cast<double>(server->program->resident_bytes()) / 1e6;
-  const auto seen = fleet->finish(lab);
+  const auto seen = fleet->finish(testbed);
   if (!seen) return failed(seen);
   out.seen = *seen;
   out.kb_s_each = seen->bytes_received / 1000 / clients / (out.joined_s + seconds);
-  if (const auto ended = lab.stop_server(*server); !ended) return failed(ended);
+  if (const auto ended = testbed.stop_server(*server); !ended) return failed(ended);
   out.edits = counter_in(server->program->log(), "edits_ordered");
   out.commits = counter_in(server->program->log(), "commits");
   const double send_ms = counter_in(server->program->log(), "commit_send_ms");
@@ -79,7 +79,7 @@ void add_figures(const FleetResult& result, std::vector<Figure>& figures) {
   for (const SampleRow& row : result.seen.rows) {
     add(fmt::format("samples_{:.3f}_to_{:.3f}_ms", row.from_ms, row.below_ms), row.samples);
   }
-  add("own_edits_only", result.seen.own_only ? 1 : 0);
+  add("own_edits_only", result.seen.local_only ? 1 : 0);
   add("received_kb_s_each", result.kb_s_each);
   add("server_cores", result.server_cores);
   add("bot_cores", result.bot_cores);
@@ -95,37 +95,36 @@ void add_figures(const FleetResult& result, std::vector<Figure>& figures) {
 }
 
 void write_row(const FleetResult& result, std::string& out) {
-  fmt::format_to(
-      std::back_inserter(out),
-      "| {} | {} | {}, {}, {}, {} | {:.0f}, {:.0f} | {} | {:.2f} | {:.2f} | {} | {} | {} | {:.2f} "
-      "| {:.0f} |\n",
-      result.clients, number_text(result.joined_s), number_text(result.seen.p50_ms),
-      number_text(result.seen.p90_ms), number_text(result.seen.p99_ms),
-      number_text(result.seen.max_ms), result.seen.samples, result.seen.never,
-      number_text(result.kb_s_each), result.server_cores, result.bot_cores,
-      number_text(result.server_mb),
-      result.commits == 0 ? "–" : number_text(result.edits / result.commits),
-      number_text(result.send_us_per_commit), result.enqueue_us, result.seen.disconnects);
+  fmt::format_to(std::back_inserter(out),
+                 "| {} | {} | {}, {}, {}, {} | {:.0f}, {:.0f} | {} | {:.2f} | {:.2f} | {} | {} | "
+                 "{} | {:.2f} | {:.0f} |\n",
+                 result.clients, number_text(result.joined_s), number_text(result.seen.p50_ms),
+                 number_text(result.seen.p90_ms), number_text(result.seen.p99_ms),
+                 number_text(result.seen.max_ms), result.seen.samples, result.seen.never,
+                 number_text(result.kb_s_each), result.server_cores, result.bot_cores,
+                 number_text(result.server_mb),
+                 result.commits == 0 ? "–" : number_text(result.edits / result.commits),
+                 number_text(result.send_us_per_commit), result.enqueue_us,
+                 result.seen.disconnects);
 }
 
 }  // namespace
 
-Done measure_fleets(Lab& lab, LabFindings& findings) {
+Done measure_fleets(Testbed& testbed, NetFindings& findings) {
   std::string rows;
   FleetResult largest;
-  bool own_only = false;
-  for (const unsigned clients : lab.options().clients) {
-    const auto result = run_fleet(lab, clients);
+  bool local_only = false;
+  for (const unsigned clients : testbed.options().clients) {
+    const auto result = run_fleet(testbed, clients);
     if (!result)
-      return Unexpected<std::string>{fmt::format("crowd of {}: {}", clients, result.error())};
-    own_only = own_only || result->seen.own_only;
+      return Unexpected<std::string>{fmt::format("fleet of {}: {}", clients, result.error())};
+    local_only = local_only || result->seen.local_only;
     add_figures(*result, findings.figures);
     write_row(*result, rows);
     if (clients == kBigFleet) {
       findings.targets.push_back(
           {"1,000 clients in one place, 2 edits/s each: due to received and verified, all "
-           "subscribers: p99; "
-           "disconnects",
+           "subscribers: p99; disconnects",
            fmt::format("under {} ms; 0", kBigFleetMsMax),
            fmt::format("{} ms; {:.0f}", number_text(result->seen.p99_ms), result->seen.disconnects),
            result->seen.p99_ms < kBigFleetMsMax && result->seen.disconnects == 0
@@ -137,21 +136,18 @@ Done measure_fleets(Lab& lab, LabFindings& findings) {
            result->enqueue_us < kEnqueueUsMax ? Verdict::met : Verdict::missed});
     }
     if (clients >= largest.clients) largest = *result;
-    fmt::print(lab.progress(), "crowd of {}\n", clients);
-    lab.progress().flush();
+    fmt::print(testbed.progress(), "fleet of {}\n", clients);
+    testbed.progress().flush();
   }
   findings.tables += fmt::format(
       "\n### Crowds\n\nLoopback, {} edits a second each for {} s. Latency from when an edit was "
-      "due until "
-      "{}.\n\n"
+      "due until {}.\n\n"
       "| clients | joined in s | p50, p90, p99, max ms | samples, never | received KB/s each | "
-      "server cores "
-      "| bots' cores "
-      "| server MB | edits a commit | send µs a commit | enqueue µs a receiver | disconnects "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-      kFleetEditsPerSecond, lab.options().fleet_seconds,
-      own_only ? "its own bot had it confirmed"
-               : "each bot that sees it had received and verified it");
+      "server cores | bots' cores | server MB | edits a commit | send µs a commit | enqueue µs a "
+      "receiver | disconnects |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      kFleetEditsPerSecond, testbed.options().fleet_seconds,
+      local_only ? "its own bot had it confirmed"
+                 : "each bot that sees it had received and verified it");
   findings.tables += rows;
   findings.tables += fmt::format("\nThese latencies of {} clients:\n\n", largest.clients);
   findings.tables += histogram_table(largest.seen.rows, largest.seen.never);

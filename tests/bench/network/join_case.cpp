@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned kViewRadius = 6, kViewRadiusV = 3;  // chunks
 constexpr double kWaitSeconds = 120;
-constexpr double kNearMostMsMax = 1000;  // the bar, on broadband
+constexpr double kNearMostMsMax = 1000;  // the target on broadband
 
 struct Part {
   const char* part;
@@ -31,16 +31,16 @@ constexpr std::array<Part, 6> kParts = {{{"near", "first_ms", "first chunk"},
 constexpr std::size_t kNearMost = 1, kBytes = 5;
 using Join = std::array<double, kParts.size()>;
 
-Result<Join, std::string> join_once(Lab& lab, LabLink& link, const std::string& address,
+Result<Join, std::string> join_once(Testbed& testbed, TestbedLink& link, const std::string& address,
                                     const std::string& script) {
-  const std::string report_file = lab.fresh("report.json");
-  auto client =
-      lab.start_client(link, "runstone-client",
-                       {"--connect", address, "--name", "newcomer", "--no-render", "--view",
-                        fmt::to_string(kViewRadius), "--view-vertical",
-                        fmt::to_string(kViewRadiusV), "--script", script, "--report", report_file});
+  const std::string report_file = testbed.fresh("report.json");
+  auto client = testbed.start_client(
+      link, "runstone-client",
+      {"--connect", address, "--name", "newcomer", "--no-render", "--view",
+       fmt::to_string(kViewRadius), "--view-vertical", fmt::to_string(kViewRadiusV), "--script",
+       script, "--report", report_file});
   if (!client) return Unexpected<std::string>{client.error()};
-  if (const auto ended = lab.finish(**client, 2 * kWaitSeconds); !ended) {
+  if (const auto ended = testbed.finish(**client, 2 * kWaitSeconds); !ended) {
     return Unexpected<std::string>{ended.error()};
   }
   const auto report = read_report(report_file);
@@ -56,44 +56,44 @@ Result<Join, std::string> join_once(Lab& lab, LabLink& link, const std::string& 
   return out;
 }
 
-/// All joins of one profile, without the one that warms the server.
-Result<std::vector<Join>, std::string> joins_of(Lab& lab, const test::LinkProfile& profile,
+/// Measures all joins of one profile, except the one that warms the server.
+Result<std::vector<Join>, std::string> joins_of(Testbed& testbed, const test::LinkProfile& profile,
                                                 const std::string& world) {
   const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
-  auto link = lab.make_link(profile);
+  auto link = testbed.make_link(profile);
   if (!link) return failed(link);
-  auto server = lab.start_server(**link, world, {});
+  auto server = testbed.start_server(**link, world, {});
   if (!server) return failed(server);
-  const std::string script = lab.fresh("script.txt");
+  const std::string script = testbed.fresh("script.txt");
   write_text(script, fmt::format("wait loaded {}\nquit\n", kWaitSeconds));
   std::vector<Join> out;
-  for (unsigned i = 0; i <= lab.options().repetitions; ++i) {
-    const auto join = join_once(lab, **link, server->address, script);
+  for (unsigned i = 0; i <= testbed.options().repetitions; ++i) {
+    const auto join = join_once(testbed, **link, server->address, script);
     if (!join) return failed(join);
     if (i != 0) out.push_back(*join);
   }
-  if (const auto ended = lab.stop_server(*server); !ended) return failed(ended);
+  if (const auto ended = testbed.stop_server(*server); !ended) return failed(ended);
   return out;
 }
 
 }  // namespace
 
-Done measure_joins(Lab& lab, LabFindings& findings) {
-  const auto world = lab.imported_world();
+Done measure_joins(Testbed& testbed, NetFindings& findings) {
+  const auto world = testbed.imported_world();
   if (!world) return Unexpected<std::string>{world.error()};
   std::string& table = findings.tables;
   const auto into = std::back_inserter(table);
   fmt::format_to(
       into,
       "\n### Joins\n\nms from the start of the connection, median and slowest of {}:\n\n| link |",
-      lab.options().repetitions);
+      testbed.options().repetitions);
   for (const Part& part : kParts) fmt::format_to(into, " {} |", part.title);
   fmt::format_to(into, "\n|---|---|---|---|---|---|---|\n");
-  for (const test::LinkProfile& profile : lab.profiles()) {
-    const auto joins = joins_of(lab, profile, *world);
+  for (const test::LinkProfile& profile : testbed.profiles()) {
+    const auto joins = joins_of(testbed, profile, *world);
     if (!joins)
       return Unexpected<std::string>{fmt::format("join, {}: {}", profile.name, joins.error())};
-    const char* link = name_of(profile.passes_all() ? LinkKind::loopback : lab.kind());
+    const char* link = name_of(profile.passes_all() ? LinkKind::loopback : testbed.kind());
     fmt::format_to(into, "| {} ({}) |", profile.name, link);
     for (std::size_t i = 0; i < kParts.size(); ++i) {
       std::vector<double> samples;
@@ -114,8 +114,8 @@ Done measure_joins(Lab& lab, LabFindings& findings) {
       }
     }
     fmt::format_to(into, "\n");
-    fmt::print(lab.progress(), "join {}\n", profile.name);
-    lab.progress().flush();
+    fmt::print(testbed.progress(), "join {}\n", profile.name);
+    testbed.progress().flush();
   }
   return {};
 }

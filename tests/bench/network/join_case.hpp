@@ -1,11 +1,12 @@
-// How soon a client that joins has a picture: from when it begins to connect until 80 % and all of the chunks around it
-// are meshed, of the near view (within 3 chunks) and of the whole (6 chunks horizontally, 3 vertically). The world is
-// the imported one, the server has its chunks in memory, the client is new each time.
+// Joins: the time until a joining client has the world around it: from the start of the connection
+// until 80 % and all of the chunks are meshed, of the near view (within 3 chunks) and of the whole
+// view (6 chunks horizontally, 3 vertically). The world is the imported one, the server has its
+// chunks in memory, and the client is new each time.
 #pragma once
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-Done measure_joins(Lab& lab, LabFindings& findings);
+Done measure_joins(Testbed& testbed, NetFindings& findings);
 
 }  // namespace runstone::bench

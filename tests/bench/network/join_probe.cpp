@@ -4,13 +4,13 @@
 #include <chrono>
 
 #include "common/core/hash.hpp"
+#include "tests/bench/network/attack_client.hpp"
 #include "tests/bench/network/child.hpp"
-#include "tests/bench/network/hostile_client.hpp"
 
 namespace runstone::bench {
 namespace {
 
-constexpr std::uint32_t kAddress = 0x7F020202;  // 127.2.2.2: nobody else's
+constexpr std::uint32_t kAddress = 0x7F020202;  // 127.2.2.2, which nobody else uses
 constexpr int kJoinMsMax = 5'000;
 constexpr double kPauseSeconds = 0.1;
 
@@ -32,7 +32,7 @@ JoinProbe::Joins JoinProbe::finish() {
 void JoinProbe::run(std::uint16_t port) {
   for (std::uint64_t who = 0; !is_over_ && !interrupted(); ++who) {
     const auto began = std::chrono::steady_clock::now();
-    HostileClient newcomer(port, kAddress);
+    AttackClient newcomer(port, kAddress);
     ++joins_.tried;
     if (newcomer.open_session(mix64(~who), kJoinMsMax)) {
       ++joins_.open;

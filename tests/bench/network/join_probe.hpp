@@ -1,5 +1,5 @@
-// JoinProbe: a newcomer with honest intentions that joins and leaves again and again while something else goes on: whether, and
-// how soon, a server lets it in. From an address of its own, on a thread of its own.
+// JoinProbe: an honest client that joins and leaves again and again during another measurement. It
+// measures whether, and how soon, a server accepts it. It has an address and a thread of its own.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -16,9 +16,9 @@ class JoinProbe {
 
   struct Joins {
     unsigned tried = 0, open = 0;
-    double slowest_ms = 0;  // of the open ones, to the end of the handshake
+    double slowest_ms = 0;  // of the accepted ones, to the end of the handshake
   };
-  /// Ends it. Once.
+  /// Ends the probe. Call it once.
   Joins finish();
 
  private:

@@ -23,12 +23,13 @@ constexpr double kEditsPerSecond = 50;
 constexpr unsigned kViewRadius = 8, kViewRadiusV = 4;  // chunks
 constexpr int kRoamVoxels = 128;                       // well inside the view
 constexpr int kRoamSpeed = 640;                        // voxels a second
-constexpr unsigned kBots = 18;                         // with the two clients twenty
+constexpr unsigned kBots = 18;                         // twenty clients together with the two
 constexpr double kBotEditsPerSecond = 2;
 constexpr double kWaitSeconds = 180;  // for worlds to load and edits to arrive
 
-/// A client whose own edits are through gives the server this command; the answer is in its output. Then the bots leave,
-/// while it still watches: an edit that is on its way when a client ends would count as never seen.
+/// A client gives this command after its last edit, and the answer appears in its output. Then the
+/// bots leave while the client still watches. An edit that is in flight when a client ends would
+/// count as never seen.
 constexpr const char* kDoneCommand = "help";
 constexpr const char* kDoneAnswer = "undo";
 constexpr int kBotsLeaveSeconds = 10;
@@ -47,22 +48,22 @@ struct Stage {
   const char* title;
 };
 constexpr std::array<Stage, 12> kStages = {{
-    {"own_predicted", "applied", "own, predicted: applied"},
-    {"own_predicted", "meshed", "own, predicted: meshed"},
-    {"own_confirmed", "ordered", "own, confirmed: ordered"},
-    {"own_confirmed", "received", "own, confirmed: received"},
-    {"own_confirmed", "unpacked", "own, confirmed: unpacked"},
-    {"own_confirmed", "applied", "own, confirmed: applied"},
-    {"remote", "ordered", "another client's: ordered"},
-    {"remote", "received", "another client's: received"},
-    {"remote", "unpacked", "another client's: unpacked"},
-    {"remote", "applied", "another client's: applied"},
-    {"remote", "meshed", "another client's: meshed"},
-    {"own_durable", "", "own: durable on disk"},
+    {"own_predicted", "applied", "local edit, predicted: applied"},
+    {"own_predicted", "meshed", "local edit, predicted: meshed"},
+    {"own_confirmed", "ordered", "local edit, confirmed: ordered"},
+    {"own_confirmed", "received", "local edit, confirmed: received"},
+    {"own_confirmed", "unpacked", "local edit, confirmed: unpacked"},
+    {"own_confirmed", "applied", "local edit, confirmed: applied"},
+    {"remote", "ordered", "remote edit: ordered"},
+    {"remote", "received", "remote edit: received"},
+    {"remote", "unpacked", "remote edit: unpacked"},
+    {"remote", "applied", "remote edit: applied"},
+    {"remote", "meshed", "remote edit: meshed"},
+    {"own_durable", "", "local edit: durable on disk"},
 }};
 constexpr std::array<const char*, 4> kRanks = {"p50", "p90", "p99", "max"};
 
-/// Milliseconds by rank; the worse of both clients.
+/// Milliseconds by rank: the greater of both clients.
 using Ranks = std::array<double, kRanks.size()>;
 
 struct CaseResult {
@@ -71,10 +72,10 @@ struct CaseResult {
   const Load* load = nullptr;
   std::map<std::string, Ranks> stages;  // by title
   Ranks echo{};
-  double edits = 0, never = 0;  // remote ones due at the two clients, and never meshed
-  double clock_error_ms = 0;    // of either client, as it really was
-  double terrain_kb = 0;        // to each client, from the start
-  double terrain_kb_s = 0;      // and while the edits were made
+  double edits = 0, never = 0;  // remote edits due at the two clients; those never meshed
+  double clock_error_ms = 0;    // of either client, measured against the true offset
+  double terrain_kb = 0;        // received by each client, from the start
+  double terrain_kb_s = 0;      // received by each client while the edits were made
   double drifted = 0;
   std::optional<TunCounts> passed;
 };
@@ -101,7 +102,7 @@ void take_report(const json& report, CaseResult& result) {
     result.edits += number_in(meshed["count"]);
     result.never += number_in(meshed["infinite"]);
   }
-  // Server and clients read one clock here: what a client believes of the difference is all error.
+  // Server and clients read one clock here, so a client's estimate of the offset is its error.
   const json& clock = report["clock"];
   if (!clock.is_null()) {
     result.clock_error_ms =
@@ -111,32 +112,32 @@ void take_report(const json& report, CaseResult& result) {
   result.terrain_kb += number_in(report["net"]["chunk_bytes"]) / 1000 / 2;
 }
 
-std::string script_of(const Lab& lab, const Load& load, unsigned client) {
-  const unsigned edits = lab.options().edits;
-  // The move ends the roaming: who flies on and on never has all of the view.
+std::string script_of(const Testbed& testbed, const Load& load, unsigned client) {
+  const unsigned edits = testbed.options().edits;
+  // The move ends the roaming: a client that keeps flying never has the whole view.
   return fmt::format(
       "wait loaded {0}\nmove 0 ^+4 -20\nwait loaded {0}\nwait 5\n{1}burst {2} {3} 8 {4} wool_red\n"
       "move ~ ~ ~\nwait synced\nwait durable\ncommand {5}\nwait {6}\nwait synced\n",
       kWaitSeconds, load.streams ? fmt::format("roam ~{} ~ ~ {}\n", kRoamVoxels, kRoamSpeed) : "",
-      edits, kEditsPerSecond, lab.options().seed * 2 + client, kDoneCommand,
+      edits, kEditsPerSecond, testbed.options().seed * 2 + client, kDoneCommand,
       load.bots == 0 ? 2 : kBotsLeaveSeconds);
 }
 
-Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& profile,
+Result<CaseResult, std::string> run_case(Testbed& testbed, const test::LinkProfile& profile,
                                          const Load& load) {
   const auto failed = [](const auto& what) { return Unexpected<std::string>{what.error()}; };
-  auto link = lab.make_link(profile);
+  auto link = testbed.make_link(profile);
   if (!link) return failed(link);
-  auto server =
-      lab.start_server(**link, lab.fresh("world"), {"--generator", "terrain", "--seed", "7"});
+  auto server = testbed.start_server(**link, testbed.fresh("world"),
+                                     {"--generator", "terrain", "--seed", "7"});
   if (!server) return failed(server);
   std::unique_ptr<Child> bots;
   if (load.bots != 0) {
     auto started =
-        lab.start_client(**link, "runstone-bot",
-                         {"--connect", server->address, "--count", fmt::to_string(load.bots),
-                          "--behaviour", "build", "--rate", fmt::to_string(kBotEditsPerSecond),
-                          "--duration", "3600", "--patience", fmt::to_string(kWaitSeconds)});
+        testbed.start_client(**link, "runstone-bot",
+                             {"--connect", server->address, "--count", fmt::to_string(load.bots),
+                              "--behaviour", "build", "--rate", fmt::to_string(kBotEditsPerSecond),
+                              "--duration", "3600", "--patience", fmt::to_string(kWaitSeconds)});
     if (!started) return failed(started);
     bots = *std::move(started);
   }
@@ -148,9 +149,9 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
   };
   std::vector<Running> clients;
   for (unsigned i = 0; i < 2; ++i) {
-    const std::string script = lab.fresh("script.txt"), report = lab.fresh("report.json");
-    write_text(script, script_of(lab, load, i));
-    auto client = lab.start_client(
+    const std::string script = testbed.fresh("script.txt"), report = testbed.fresh("report.json");
+    write_text(script, script_of(testbed, load, i));
+    auto client = testbed.start_client(
         **link, "runstone-client",
         {"--connect", server->address, "--name", i == 0 ? "carol" : "dave", "--no-render",
          "--workers", "1", "--view", fmt::to_string(kViewRadius), "--view-vertical",
@@ -159,21 +160,21 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
     clients.push_back({*std::move(client), report});
   }
   if (bots) {
-    wait_until(lab.options().edits / kEditsPerSecond + 3 * kWaitSeconds, [&] {
+    wait_until(testbed.options().edits / kEditsPerSecond + 3 * kWaitSeconds, [&] {
       return std::all_of(clients.begin(), clients.end(), [](const Running& client) {
         return output_has(client.program->log(), kDoneAnswer) || client.program->wait(0);
       });
     });
     bots->terminate();
-    if (const auto ended = lab.finish(*bots, kWaitSeconds); !ended) return failed(ended);
+    if (const auto ended = testbed.finish(*bots, kWaitSeconds); !ended) return failed(ended);
   }
   CaseResult out;
   out.profile = profile;
   out.link = (*link)->kind();
   out.load = &load;
-  const double edit_seconds = lab.options().edits / kEditsPerSecond;
+  const double edit_seconds = testbed.options().edits / kEditsPerSecond;
   for (Running& client : clients) {
-    if (const auto ended = lab.finish(*client.program, edit_seconds + 3 * kWaitSeconds); !ended)
+    if (const auto ended = testbed.finish(*client.program, edit_seconds + 3 * kWaitSeconds); !ended)
       return failed(ended);
     const auto report = read_report(client.report);
     if (!report) return failed(report);
@@ -184,12 +185,13 @@ Result<CaseResult, std::string> run_case(Lab& lab, const test::LinkProfile& prof
     out.echo = {quantile(echoes, 0.5), quantile(echoes, 0.9), quantile(echoes, 0.99),
                 *std::max_element(echoes.begin(), echoes.end())};
   }
-  if (const auto ended = lab.stop_server(*server); !ended) return failed(ended);
+  if (const auto ended = testbed.stop_server(*server); !ended) return failed(ended);
   out.passed = (*link)->stop();
   return out;
 }
 
-/// What the issue allows: one network delay, and room for what is on the line.
+/// Returns the allowed latency: one network delay, the transmission of what is on the line, and 10
+/// ms.
 double allowed_ms(const test::LinkProfile& profile) {
   constexpr std::uint64_t kFrameBytes = 16 * 1024;
   constexpr double kOwnMs = 10;
@@ -208,7 +210,7 @@ std::string what_of(const CaseResult& result) {
   return fmt::format("{} {}", result.profile.name, result.load->name);
 }
 
-void add_figures(const CaseResult& result, LabFindings& findings) {
+void add_figures(const CaseResult& result, NetFindings& findings) {
   const auto add = [&](const std::string& name, double value) {
     findings.figures.push_back({"latency", std::string(result.profile.name), name_of(result.link),
                                 result.load->bots == 0 ? result.load->name : "streaming 20 clients",
@@ -245,8 +247,8 @@ void add_targets(const CaseResult& result, std::vector<Target>& targets) {
     targets.push_back({std::move(what), std::move(wanted), std::move(measured),
                        met ? Verdict::met : Verdict::missed});
   };
-  const Ranks* remote = find(result, "another client's: meshed");
-  const Ranks* own = find(result, "own, predicted: meshed");
+  const Ranks* remote = find(result, "remote edit: meshed");
+  const Ranks* own = find(result, "local edit, predicted: meshed");
   if (remote == nullptr || own == nullptr) return;
   if (result.profile.passes_all() && !result.load->streams) {
     judged("remote edit, loopback, idle, submit to meshed: p50", "1 ms",
@@ -261,21 +263,21 @@ void add_targets(const CaseResult& result, std::vector<Target>& targets) {
            number_text(allowed_ms(result.profile)) + " ms", number_text((*remote)[2]) + " ms",
            (*remote)[2] <= allowed_ms(result.profile));
   }
-  judged(fmt::format("own edit, submit to meshed, {}: p99", what_of(result)), "2 ms",
+  judged(fmt::format("local edit, submit to meshed, {}: p99", what_of(result)), "2 ms",
          number_text((*own)[2]) + " ms", (*own)[2] <= 2);
 }
 
-/// A row a case: what was there, and the ends of the way.
+/// Writes a row for each case: its load, and the first and the last stage.
 void write_overview(const std::vector<CaseResult>& results, std::string& out) {
   const auto into = std::back_inserter(out);
-  fmt::format_to(into,
-                 "| link | load | terrain KB/s each | echo p50, p99 | own meshed p50, p99 | "
-                 "another's meshed p50, p99, "
-                 "max | never | clocks off by | forwarder late p99, max µs "
-                 "|\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::format_to(
+      into,
+      "| link | load | terrain KB/s each | echo p50, p99 | local edit meshed p50, p99 | "
+      "remote edit meshed p50, p99, max | never | clocks off by | forwarder late p99, max "
+      "µs |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const CaseResult& result : results) {
-    const Ranks* remote = find(result, "another client's: meshed");
-    const Ranks* own = find(result, "own, predicted: meshed");
+    const Ranks* remote = find(result, "remote edit: meshed");
+    const Ranks* own = find(result, "local edit, predicted: meshed");
     if (remote == nullptr || own == nullptr) continue;
     fmt::format_to(
         into, "| {} ({}) | {} | {} | {}, {} | {}, {} | {}, {}, {} | {:.0f} of {:.0f} | {} | {} |\n",
@@ -290,7 +292,7 @@ void write_overview(const std::vector<CaseResult>& results, std::string& out) {
   }
 }
 
-/// A table a load: stages down, links across.
+/// Writes a table for each load: a row for each stage, a column for each link.
 void write_stages(const std::vector<CaseResult>& results, std::string& out) {
   const auto into = std::back_inserter(out);
   for (const Load& load : kLoads) {
@@ -325,23 +327,25 @@ void write_stages(const std::vector<CaseResult>& results, std::string& out) {
 
 }  // namespace
 
-Done measure_latency(Lab& lab, LabFindings& findings) {
+Done measure_latency(Testbed& testbed, NetFindings& findings) {
   std::vector<CaseResult> results;
-  for (const test::LinkProfile& profile : lab.profiles()) {
+  for (const test::LinkProfile& profile : testbed.profiles()) {
     double join_kb = 0;
     for (const Load& load : kLoads) {
-      auto result = run_case(lab, profile, load);
+      auto result = run_case(testbed, profile, load);
       if (!result) {
         return Unexpected<std::string>{
             fmt::format("latency, {} {}: {}", profile.name, load.name, result.error())};
       }
-      // Terrain while the edits were made: all but that of the join, which is the idle case's.
+      // The terrain during the edits is all terrain without that of the join, which is what the
+      // idle case receives.
       if (!load.streams) join_kb = result->terrain_kb;
-      result->terrain_kb_s = (result->terrain_kb - join_kb) * kEditsPerSecond / lab.options().edits;
+      result->terrain_kb_s =
+          (result->terrain_kb - join_kb) * kEditsPerSecond / testbed.options().edits;
       add_figures(*result, findings);
       add_targets(*result, findings.targets);
-      fmt::print(lab.progress(), "latency {}\n", what_of(*result));
-      lab.progress().flush();
+      fmt::print(testbed.progress(), "latency {}\n", what_of(*result));
+      testbed.progress().flush();
       results.push_back(*std::move(result));
     }
   }

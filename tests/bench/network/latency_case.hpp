@@ -1,13 +1,14 @@
-// The way of an edit to another client's mesh, stage by stage, under each link: idle, while terrain streams, and among
-// twenty clients while terrain streams; with a bare Asio echo beside it.
-// Two clients (no drawing, one mesh worker) edit the same place open loop, 50 edits a second each, from when they were
-// due. While terrain streams both fly to and fro, so that chunks go out of view and come in again all the time, and the
-// place of the edits stays in view. Each figure is that of the client for which it is worse.
+// The latency of an edit until it is meshed by another client, stage by stage, on each link: idle,
+// while terrain streams, and while terrain streams among twenty clients, with a plain Asio echo
+// beside it. Two clients (no drawing, one mesh worker) edit the same place with 50 edits a second
+// each at fixed times; latency counts from those times. While terrain streams both clients fly to
+// and fro, so that chunks leave and enter the view all the time, and the place of the edits stays
+// in view. Each figure is that of the client for which it is worse.
 #pragma once
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-Done measure_latency(Lab& lab, LabFindings& findings);
+Done measure_latency(Testbed& testbed, NetFindings& findings);
 
 }  // namespace runstone::bench

@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned kCells = 10'000;  // of the real world's bounds, at least
 constexpr unsigned kCellsQuick = 1'000;
-constexpr double kAllKbMax = 7, kMixedKbMax = 9;  // the bars
+constexpr double kAllKbMax = 7, kMixedKbMax = 9;  // the targets
 constexpr double kLoadSeconds = 300;
 constexpr double kSettleSeconds = 2;
 constexpr double kKb = 1024;
@@ -23,7 +23,7 @@ constexpr double kKb = 1024;
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 Unexpected<std::string> failure(const StoreError& error) { return {error.message()}; }
 
-/// The cells that the base chunks of a world lie in.
+/// The range of cells that contains the base chunks of a world.
 struct Bounds {
   ChunkCoord min, max;  // both inclusive
   std::int32_t x() const { return max.x - min.x + 1; }
@@ -41,7 +41,7 @@ Bounds bounds_of(const std::vector<StoredChunk>& chunks) {
   return out;
 }
 
-/// A world of copies: how much of it there is, and the view that holds it all.
+/// A world of copies: its size, and the view that contains all of it.
 struct Copies {
   std::string world;
   std::size_t cells = 0, mixed = 0;  // mixed: of several materials
@@ -92,33 +92,33 @@ Result<Copies, std::string> lay_copies(const std::string& from, const std::strin
   return out;
 }
 
-/// What a server's resident set grew by while a client loaded a view.
+/// The growth of a server's resident set while a client loaded a view.
 struct Growth {
   double bytes = 0, chunks = 0;
 };
 
-Result<Growth, std::string> load_view(Lab& lab, const std::string& world,
+Result<Growth, std::string> load_view(Testbed& testbed, const std::string& world,
                                       std::vector<std::string> flags, const Copies& copies) {
-  auto link = lab.make_link(test::link_profiles().front());
+  auto link = testbed.make_link(test::link_profiles().front());
   if (!link) return failure(link.error());
   flags.insert(flags.end(), {"--view-radius-max", "64"});
-  auto server = lab.start_server(**link, world, flags);
+  auto server = testbed.start_server(**link, world, flags);
   if (!server) return failure(server.error());
   if (!pause_for(kSettleSeconds)) return failure("interrupted");
   const auto before = static_cast<double>(server->program->resident_bytes());
-  const std::string script = lab.fresh("script.txt");
+  const std::string script = testbed.fresh("script.txt");
   write_text(script, fmt::format("wait loaded {}\nquit\n", kLoadSeconds));
-  auto client = lab.start_client(**link, "runstone-client",
-                                 {"--connect", server->address, "--no-render", "--no-cache",
-                                  "--view", fmt::to_string(copies.radius_h), "--view-vertical",
-                                  fmt::to_string(copies.radius_v), "--script", script});
+  auto client = testbed.start_client(**link, "runstone-client",
+                                     {"--connect", server->address, "--no-render", "--no-cache",
+                                      "--view", fmt::to_string(copies.radius_h), "--view-vertical",
+                                      fmt::to_string(copies.radius_v), "--script", script});
   if (!client) return failure(client.error());
-  if (const auto ended = lab.finish(**client, 2 * kLoadSeconds); !ended)
+  if (const auto ended = testbed.finish(**client, 2 * kLoadSeconds); !ended)
     return failure(ended.error());
   if (!pause_for(kSettleSeconds)) return failure("interrupted");
   Growth out;
   out.bytes = static_cast<double>(server->program->resident_bytes()) - before;
-  if (const auto ended = lab.stop_server(*server); !ended) return failure(ended.error());
+  if (const auto ended = testbed.stop_server(*server); !ended) return failure(ended.error());
   out.chunks = counter_in(server->program->log(), "chunks_resident");
   if (out.chunks < static_cast<double>(copies.cells)) {
     return failure(fmt::format("{} of {} chunks were in memory", out.chunks, copies.cells));
@@ -128,34 +128,31 @@ Result<Growth, std::string> load_view(Lab& lab, const std::string& world,
 
 }  // namespace
 
-Done measure_memory(Lab& lab, LabFindings& findings) {
-  const auto imported = lab.imported_world();
+Done measure_memory(Testbed& testbed, NetFindings& findings) {
+  const auto imported = testbed.imported_world();
   if (!imported) return failure(imported.error());
-  const auto copies =
-      lay_copies(*imported, lab.fresh("copies"), lab.options().quick ? kCellsQuick : kCells);
+  const auto copies = lay_copies(*imported, testbed.fresh("copies"),
+                                 testbed.options().quick ? kCellsQuick : kCells);
   if (!copies) return failure(copies.error());
-  const auto real = load_view(lab, copies->world, {}, *copies);
+  const auto real = load_view(testbed, copies->world, {}, *copies);
   if (!real) return failure(real.error());
-  const auto empty = load_view(lab, lab.fresh("empty"), {"--generator", "empty"}, *copies);
+  const auto empty = load_view(testbed, testbed.fresh("empty"), {"--generator", "empty"}, *copies);
   if (!empty) return failure(empty.error());
 
   const auto cells = static_cast<double>(copies->cells), mixed = static_cast<double>(copies->mixed);
   const double uniform_kb = empty->bytes / kKb / empty->chunks;
   const double all_kb = (real->bytes / kKb - (real->chunks - cells) * uniform_kb) / cells;
   const double mixed_kb = (real->bytes / kKb - (real->chunks - mixed) * uniform_kb) / mixed;
-  fmt::format_to(
-      std::back_inserter(findings.tables),
-      "\n### Memory of the server\n\nResident set, before and after a client loaded the real "
-      "world, laid side by "
-      "side, and as large a view of an empty world.\n\n| cells of the real world | of several "
-      "materials | chunks "
-      "loaded | grew by MB | empty: chunks loaded | grew by MB | KB an empty chunk | KB a cell | "
-      "KB a chunk of several "
-      "materials |\n|---|---|---|---|---|---|---|---|---|\n| {} | {} | {:.0f} | {} | {:.0f} | {} "
-      "| {} | {} | {} |\n",
-      copies->cells, copies->mixed, real->chunks, number_text(real->bytes / 1e6), empty->chunks,
-      number_text(empty->bytes / 1e6), number_text(uniform_kb), number_text(all_kb),
-      number_text(mixed_kb));
+  fmt::format_to(std::back_inserter(findings.tables),
+                 "\n### Memory of the server\n\nResident set, before and after a client loaded the "
+                 "real world, laid side by side, and as large a view of an empty world.\n\n| cells "
+                 "of the real world | of several materials | chunks loaded | grew by MB | empty: "
+                 "chunks loaded | grew by MB | KB an empty chunk | KB a cell | KB a chunk of "
+                 "several materials |\n|---|---|---|---|---|---|---|---|---|\n| {} | {} | {:.0f} | "
+                 "{} | {:.0f} | {} | {} | {} | {} |\n",
+                 copies->cells, copies->mixed, real->chunks, number_text(real->bytes / 1e6),
+                 empty->chunks, number_text(empty->bytes / 1e6), number_text(uniform_kb),
+                 number_text(all_kb), number_text(mixed_kb));
   const auto add = [&](const char* name, double value) {
     findings.figures.push_back({"memory", "loopback", "loopback", "real world", name, value});
   };
@@ -165,7 +162,7 @@ Done measure_memory(Lab& lab, LabFindings& findings) {
   add("grown_bytes", real->bytes);
   add("empty_loaded", empty->chunks);
   add("empty_grown_bytes", empty->bytes);
-  if (lab.options().quick) return {};
+  if (testbed.options().quick) return {};
   const auto target = [&](const char* name, double kb, double most) {
     findings.targets.push_back({name, number_text(most) + " KB", number_text(kb) + " KB",
                                 kb <= most ? Verdict::met : Verdict::missed});

@@ -1,12 +1,12 @@
-// Memory: what a server's resident set grows by while it loads 10,000 chunks of the real world, a chunk. The imported
-// world, which is smaller, is laid side by side until it is large enough; no two copies share memory. One client asks for
-// all of it and leaves. What is around the copies is empty and is loaded too; what that takes, a server with nothing but
-// empty chunks tells.
+// Memory: the growth of a server's resident set while it loads 10,000 chunks of the real world,
+// divided by the chunks. The imported world is smaller and is repeated side by side until it is
+// large enough; no two copies share memory. One client loads all of it and leaves. The empty chunks
+// around the copies are loaded, too. A server with nothing but empty chunks shows their cost.
 #pragma once
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-Done measure_memory(Lab& lab, LabFindings& findings);
+Done measure_memory(Testbed& testbed, NetFindings& findings);
 
 }  // namespace runstone::bench

@@ -18,7 +18,7 @@ namespace {
 
 struct Experiment {
   const char* name;
-  Done (*measure)(Lab&, LabFindings&);
+  Done (*measure)(Testbed&, NetFindings&);
 };
 constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency},
                                                      {"join", measure_joins},
@@ -27,7 +27,7 @@ constexpr std::array<Experiment, 6> kExperiments = {{{"latency", measure_latency
                                                      {"attack", measure_attacks},
                                                      {"memory", measure_memory}}};
 
-/// How TCP of this machine, and of namespaces made on it, answers loss and delay.
+/// Returns TCP's congestion control of this machine, which namespaces on it inherit.
 std::string congestion_control() {
   std::ifstream in("/proc/sys/net/ipv4/tcp_congestion_control");
   std::string out = "unknown";
@@ -46,17 +46,15 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   out.link = real ? "real packets between two network namespaces, joined by a forwarder of ours "
                     "over TUN devices"
                   : "a TCP proxy on loopback, in which loss is a segment that comes a round trip "
-                    "later and slows "
-                    "nobody "
-                    "down";
+                    "later and slows nobody down";
   if (!real && !why.empty()) out.link += " (" + why + ")";
   out.link += "; congestion control " + congestion_control();
   take_interrupts();
-  Lab lab(options, real ? LinkKind::namespaces : LinkKind::shaper, progress);
+  Testbed testbed(options, real ? LinkKind::namespaces : LinkKind::shaper, progress);
   for (const Experiment& experiment : kExperiments) {
     const auto& asked = options.experiments;
     if (std::find(asked.begin(), asked.end(), experiment.name) == asked.end()) continue;
-    if (const auto done = experiment.measure(lab, out.findings); !done)
+    if (const auto done = experiment.measure(testbed, out.findings); !done)
       return Unexpected<std::string>{done.error()};
   }
   return out;

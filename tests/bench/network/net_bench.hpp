@@ -1,23 +1,24 @@
-// `runstone-bench net`: the network lab.
+// `runstone-bench net`: experiments with the network.
 #pragma once
 #include <iosfwd>
 
 #include "common/core/result.hpp"
 #include "tests/bench/harness/machine.hpp"
-#include "tests/bench/network/lab.hpp"
 #include "tests/bench/network/net_options.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
 struct NetResult {
   Machine machine;
-  std::string link;  // which kind was used, and why not a better one
-  LabFindings findings;
+  std::string link;  // the kind of link, and the reason if it is not the better one
+  NetFindings findings;
 };
 
-/// Runs the experiments that were asked for, one after another. Starts programs of ours, which have to lie beside this
-/// one; with the rights to do so it makes network namespaces, which are gone with it. Progress goes to `progress`.
-/// Fails if namespaces were asked for and cannot be had, if a program fails, or if it is interrupted.
+/// Runs the wanted experiments one after another. Starts programs of the product, which must lie
+/// beside this one. Makes network namespaces if it has the rights; they disappear with it. Prints
+/// progress to `progress`. Fails if namespaces are wanted and cannot be made, if a program fails,
+/// or if it is interrupted.
 Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ostream& progress);
 
 void write_tables(const NetResult& result, std::ostream& out);

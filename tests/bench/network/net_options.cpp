@@ -7,12 +7,24 @@
 #include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
+namespace {
+
+/// Sets the options that --quick changes and the command line does not name.
+void apply_quick(const CLI::App& command, NetOptions& options) {
+  if (!options.quick) return;
+  if (command.count("--edits") == 0) options.edits = 100;
+  if (command.count("--min-runs") == 0) options.repetitions = 1;
+  if (command.count("--clients") == 0) options.clients = {1, 20};
+  if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
+  if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
+}
+
+}  // namespace
 
 CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
-  CLI::App* net =
-      app.add_subcommand("net",
-                         "the network lab: edits, joins, transfers and crowds over links with "
-                         "delay, jitter, rate and loss, and memory");
+  CLI::App* net = app.add_subcommand("net",
+                                     "edits, joins, transfers and fleets over "
+                                     "links with delay, jitter, rate and loss, and memory");
   std::set<std::string> profiles;
   for (const test::LinkProfile& profile : test::link_profiles()) profiles.emplace(profile.name);
   net->add_option("--experiments", options.experiments, "which; all by default")
@@ -38,11 +50,11 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
   net->add_option("--min-runs", options.repetitions, "joins and transfers of each sort")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  net->add_option("--clients", options.clients, "sizes of crowds")
+  net->add_option("--clients", options.clients, "sizes of fleets")
       ->capture_default_str()
       ->delimiter(',')
       ->check(CLI::Range(1, 10'000));
-  net->add_option("--crowd-seconds", options.fleet_seconds, "for which a crowd edits")
+  net->add_option("--crowd-seconds", options.fleet_seconds, "for which a fleet edits")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
   std::set<std::string> attacks;
@@ -64,21 +76,12 @@ CLI::App* add_net_command(CLI::App& app, NetOptions& options) {
                   "draws losses, jitter, places of edits and what attackers do")
       ->capture_default_str();
   net->add_option("--csv", options.csv, "write all figures to this file");
-  net->add_option("--json", options.json, "write all figures and bars to this file");
-  net->add_flag(
-      "--quick", options.quick,
-      "100 edits, one join and transfer, crowds of 1 and 20 for 3 seconds, attacks of 2, unless "
-      "said otherwise");
+  net->add_option("--json", options.json, "write all figures and targets to this file");
+  net->add_flag("--quick", options.quick,
+                "100 edits, one join and transfer, fleets of 1 and 20 for 3 seconds, attacks of 2, "
+                "unless said otherwise");
+  net->callback([net, &options] { apply_quick(*net, options); });
   return net;
-}
-
-void finish_net_options(const CLI::App& command, NetOptions& options) {
-  if (!options.quick) return;
-  if (command.count("--edits") == 0) options.edits = 100;
-  if (command.count("--min-runs") == 0) options.repetitions = 1;
-  if (command.count("--clients") == 0) options.clients = {1, 20};
-  if (command.count("--crowd-seconds") == 0) options.fleet_seconds = 3;
-  if (command.count("--attack-seconds") == 0) options.attack_seconds = 2;
 }
 
 }  // namespace runstone::bench

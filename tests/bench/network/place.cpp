@@ -14,7 +14,7 @@
 namespace runstone::bench {
 namespace {
 
-/// Empty if all went well.
+/// Returns an empty text, or the reason of a failure.
 std::string enter_new_namespace() {
   const auto failed = [](const char* what) {
     return std::string(what) + ": " + std::strerror(errno);

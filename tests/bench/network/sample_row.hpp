@@ -1,4 +1,5 @@
-// SampleRow: how many samples of a latency lie between two limits, as a histogram in a report of runstone-bot has them.
+// SampleRow: the number of samples of a latency between two limits, from a histogram in a report of
+// runstone-bot.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -13,11 +14,11 @@ struct SampleRow {
   friend bool operator==(const SampleRow&, const SampleRow&) = default;
 };
 
-/// The rows of such a histogram, ascending; none if it has none.
+/// Returns the rows of such a histogram, ascending; none if it has none.
 std::vector<SampleRow> sample_rows(const nlohmann::json& histogram);
 
-/// A table in Markdown: a line each row and, if there are, one of the samples that `never` came. Shares are of all samples, these
-/// included. Every line with samples has a bar.
+/// Returns a table in Markdown: a line for each row and, if there are any, one for the samples that
+/// `never` arrived. Shares are of all samples, these included. Every line with samples has a bar.
 std::string histogram_table(std::span<const SampleRow> rows, double never);
 
 }  // namespace runstone::bench

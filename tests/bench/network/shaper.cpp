@@ -15,7 +15,7 @@
 
 #include "common/core/assert.hpp"
 #include "common/core/hash.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 
 namespace runstone::bench {
 namespace {
@@ -28,8 +28,8 @@ using test::TimeNs;
 constexpr std::size_t kSegmentBytes = 1448;  // of a TCP packet of 1,500 bytes with timestamps
 constexpr std::size_t kHeaderBytes = 52;
 constexpr std::size_t kReadBytes = 11 * kSegmentBytes;
-constexpr int kSocketBytes = 16 * 1024;  // the link's queue is the model's, not the kernel's
-constexpr TimeNs kFullNs = 200'000;      // until the next look at a queue that was full
+constexpr int kSocketBytes = 16 * 1024;  // the queue is the model's, not the kernel's
+constexpr TimeNs kFullNs = 200'000;      // until the next look at a full queue
 
 TimeNs now() { return static_cast<TimeNs>(now_ns()); }
 std::chrono::steady_clock::time_point at(TimeNs ns) {
@@ -48,7 +48,7 @@ struct Pair {
   tcp::socket client, server;
 };
 
-/// One direction of a connection. Lives until nothing waits for it any more.
+/// One direction of a connection. It lives until nothing waits for it.
 class Pipe : public std::enable_shared_from_this<Pipe> {
  public:
   Pipe(std::shared_ptr<Pair> pair, tcp::socket& from, tcp::socket& to,
@@ -81,10 +81,10 @@ class Pipe : public std::enable_shared_from_this<Pipe> {
  private:
   struct Piece {
     TimeNs due_ns = 0;
-    std::vector<std::uint8_t> bytes;  // none: the end of the stream
+    std::vector<std::uint8_t> bytes;  // empty: the end of the stream
   };
 
-  /// Bytes that surely find room.
+  /// Returns the number of bytes that certainly have room.
   std::uint64_t room_now() const {
     const test::LinkProfile& profile = model_.profile();
     if (profile.bits_per_second == 0) return buffer_.size();

@@ -1,9 +1,11 @@
-// Shaper: a link without privileges: a TCP proxy on loopback that lets bytes pass through a LinkModel both ways, each
-// connection through a link of its own. Bytes count in segments of an Ethernet packet, headers included.
-// What differs from a real link: a lost segment comes a round trip later, and all behind it wait for it, but nobody
-// slows down for it (no congestion control sees the loss); nothing is dropped for want of room, the proxy stops
-// reading instead; and the kernel's buffers before and behind it hold up to some tens of KB more.
-// One thread of its own.
+// Shaper: a link without privileges: a TCP proxy on loopback. Bytes pass through a LinkModel in
+// both directions, and each connection has a link of its own. Bytes count in segments of an
+// Ethernet packet, headers included. It differs from a real link in three ways:
+// - A lost segment arrives one round trip later, and all behind it wait for it, but nobody slows
+//   down: no congestion control sees the loss.
+// - Nothing is dropped for lack of room; the proxy stops reading instead.
+// - The kernel's buffers before and behind it hold up to some tens of KB more.
+// It has one thread of its own.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,7 +18,8 @@ namespace runstone::bench {
 
 class Shaper {
  public:
-  /// Passes everything that comes to a free port of loopback on to `server_port` there. The error says what failed.
+  /// Forwards connections from a free port of loopback to `server_port` there. Fails with the
+  /// reason.
   static Result<std::unique_ptr<Shaper>, std::string> start(const test::LinkProfile& profile,
                                                             std::uint64_t seed,
                                                             std::uint16_t server_port);

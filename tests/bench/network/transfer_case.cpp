@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "common/generate/scenarios/scenario_model.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
-#include "tests/bench/network/picture.hpp"
+#include "tests/bench/network/transfer_scene.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
 #include "tests/support/scenario_scene.hpp"
 
@@ -27,10 +27,10 @@ using asio::ip::tcp;
 
 constexpr unsigned kEdge = 32;
 constexpr std::int32_t kSide = 4;        // chunks of a world's scene along each axis
-constexpr double kSecondsPerCell = 3;    // repetitions end when they took so long
-constexpr double kWinningMargin = 1.02;  // less is a draw
+constexpr double kSecondsPerCell = 3;    // repetitions end after this time
+constexpr double kWinningMargin = 1.02;  // a smaller difference is a draw
 
-/// Median times of one scene, form and link; ms.
+/// The median times of one scene, form and link, in ms.
 struct Cell {
   std::string profile, link, scene;
   Transfer transfer = Transfer::dense;
@@ -39,8 +39,8 @@ struct Cell {
   double transfer_ms = 0, unpack_ms = 0, mesh_ms = 0, complete_ms = 0;
 };
 
-PictureScene scenario_of(unsigned number) {
-  PictureScene out;
+TransferScene scenario_of(unsigned number) {
+  TransferScene out;
   out.name = fmt::format("scenario {}", number);
   out.edge = kEdge;
   out.visibility = std::make_shared<const VisibilityTable>(test::scenario_visibility());
@@ -55,9 +55,9 @@ PictureScene scenario_of(unsigned number) {
   return out;
 }
 
-/// The chunks around the origin, or in the middle of a world with bounds.
-PictureScene scene_of(const VoxelWorld& world) {
-  PictureScene out;
+/// Returns the chunks around the origin, or in the middle of a world with bounds.
+TransferScene scene_of(const VoxelWorld& world) {
+  TransferScene out;
   out.name = world.name;
   out.edge = kEdge;
   out.visibility = world.visibility;
@@ -78,14 +78,14 @@ PictureScene scene_of(const VoxelWorld& world) {
   return out;
 }
 
-/// Where a sender of ours listens, and by which port the receiver finds it.
+/// The place where a sender listens, and the port by which the receiver reaches it.
 struct Source {
   asio::io_context io;
   std::optional<tcp::acceptor> acceptor;
   std::uint16_t entrance = 0;
 };
 
-Done listen(LabLink& link, Source& source) {
+Done listen(TestbedLink& link, Source& source) {
   link.server_side().run([&] {
     source.acceptor.emplace(source.io,
                             tcp::endpoint(asio::ip::make_address(link.server_address()), 0));
@@ -96,7 +96,7 @@ Done listen(LabLink& link, Source& source) {
   return {};
 }
 
-/// Waits for a connection and for a byte on it, and sends all.
+/// Waits for a connection and for a byte on it, and sends all bytes.
 void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   asio::error_code error;
   tcp::socket socket = acceptor.accept(error);
@@ -107,17 +107,20 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
     socket.read_some(asio::buffer(&asked, 1),
-                     error);  // until the receiver has all of it, and closes
+                     // Until the receiver has all bytes and closes.
+                     error);
 }
 
 struct Received {
   double transfer_ms = 0,
-         complete_ms = 0;  // last byte read, last chunk meshed, since it was asked for
-  PictureTimes times;
+         // Last byte read, and last chunk meshed, since the request.
+      complete_ms = 0;
+  TransferTimes times;
 };
 
-Result<Received, std::string> receive_once(LabLink& link, Source& source, const PictureScene& scene,
-                                           Transfer transfer, const Bytes& bytes) {
+Result<Received, std::string> receive_once(TestbedLink& link, Source& source,
+                                           const TransferScene& scene, Transfer transfer,
+                                           const Bytes& bytes) {
   asio::error_code error;
   tcp::socket socket(source.io);
   link.client_side().run([&] { socket.open(tcp::v4(), error); });
@@ -126,7 +129,7 @@ Result<Received, std::string> receive_once(LabLink& link, Source& source, const 
   if (!error) socket.set_option(tcp::no_delay(true), error);
   if (error) return Unexpected<std::string>{"cannot connect: " + error.message()};
   std::thread sender([&] { serve_once(*source.acceptor, bytes); });
-  PictureReceiver receiver(scene, transfer);
+  SceneReceiver receiver(scene, transfer);
   Received out;
   Done fed;
   const std::uint64_t start = now_ns();
@@ -151,17 +154,19 @@ Result<Received, std::string> receive_once(LabLink& link, Source& source, const 
   return out;
 }
 
-/// One scene in one form through one link, until there are enough repetitions or they took long enough.
-Result<Cell, std::string> measure_cell(Lab& lab, LabLink& link, const PictureScene& scene,
-                                       Transfer transfer, std::uint64_t& faces) {
-  const Bytes bytes = encode_picture(scene, transfer);
+/// Measures one scene in one form on one link, until there are enough repetitions or their time is
+/// over.
+Result<Cell, std::string> measure_cell(Testbed& testbed, TestbedLink& link,
+                                       const TransferScene& scene, Transfer transfer,
+                                       std::uint64_t& faces) {
+  const Bytes bytes = encode_scene(scene, transfer);
   Source source;
   if (const auto listens = listen(link, source); !listens)
     return Unexpected<std::string>{listens.error()};
   std::array<std::vector<double>, 4> samples;
   Cell out;
   const std::uint64_t start = now_ns();
-  while (out.repetitions < lab.options().repetitions &&
+  while (out.repetitions < testbed.options().repetitions &&
          (out.repetitions == 0 || static_cast<double>(now_ns() - start) < kSecondsPerCell * 1e9)) {
     const auto once = receive_once(link, source, scene, transfer, bytes);
     if (!once) return Unexpected<std::string>{once.error()};
@@ -189,8 +194,8 @@ Result<Cell, std::string> measure_cell(Lab& lab, LabLink& link, const PictureSce
   return out;
 }
 
-Result<std::vector<PictureScene>, std::string> scenes_of(const NetOptions& options) {
-  std::vector<PictureScene> out;
+Result<std::vector<TransferScene>, std::string> scenes_of(const NetOptions& options) {
+  std::vector<TransferScene> out;
   const auto worlds = MeasuredWorlds::open(options.worlds, options.luanti);
   if (!worlds) return Unexpected<std::string>{worlds.error()};
   for (std::size_t w = 0; w < worlds->size(); ++w) {
@@ -206,7 +211,7 @@ Result<std::vector<PictureScene>, std::string> scenes_of(const NetOptions& optio
   return out;
 }
 
-/// The four forms of one scene over one link.
+/// The four forms of one scene on one link.
 using Four = std::array<const Cell*, kTransfers.size()>;
 
 const Cell& of(const Four& four, Transfer transfer) {
@@ -223,13 +228,13 @@ std::string millis(const std::vector<Four>& rows, Transfer transfer, double Cell
   return number_text(median(samples));
 }
 
-/// A row a link, world and form; of the scenarios medians.
+/// Writes a row for each link, world and form; for the scenarios, medians.
 void write_rows(const std::vector<Four>& all, std::string& out) {
   const auto into = std::back_inserter(out);
-  fmt::format_to(into,
-                 "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture "
-                 "complete ms | packed + RDM "
-                 "is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::format_to(
+      into,
+      "| link | scene | form | KB | transfer ms | unpack ms | mesh ms | picture complete ms | "
+      "packed + RDM is faster by |\n|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     std::vector<Four> rows = {all[i++]};
     while (is_scenario(rows[0]) && i < all.size() && is_scenario(all[i]) &&
@@ -253,15 +258,13 @@ void write_rows(const std::vector<Four>& all, std::string& out) {
   }
 }
 
-/// When packed runs with RDM have the picture first, by how much, and when not.
+/// Writes when packed runs with RDM complete a scene first, by how much, and when they do not.
 void write_answer(const std::vector<Four>& all, std::string& out) {
   const auto into = std::back_inserter(out);
   fmt::format_to(into,
                  "\nTime to the complete picture against packed runs and RDM, all scenes alike "
-                 "(geometric mean; lowest, "
-                 "highest; how often packed is first, draws within 2 % apart):\n\n| link | dense | "
-                 "dense_zstd | raw "
-                 "|\n|---|---|---|---|\n");
+                 "(geometric mean; lowest, highest; how often packed is first, draws within 2 % "
+                 "apart):\n\n| link | dense | dense_zstd | raw |\n|---|---|---|---|\n");
   for (std::size_t i = 0; i < all.size();) {
     const std::string& profile = all[i][0]->profile;
     std::vector<Four> rows;
@@ -299,18 +302,18 @@ void add_figures(const Cell& cell, std::vector<Figure>& figures) {
 
 }  // namespace
 
-Done measure_transfers(Lab& lab, LabFindings& findings) {
-  const auto scenes = scenes_of(lab.options());
+Done measure_transfers(Testbed& testbed, NetFindings& findings) {
+  const auto scenes = scenes_of(testbed.options());
   if (!scenes) return Unexpected<std::string>{scenes.error()};
   std::vector<std::array<Cell, kTransfers.size()>> cells;
-  for (const test::LinkProfile& profile : lab.profiles()) {
-    for (const PictureScene& scene : *scenes) {
-      auto link = lab.make_link(profile);
+  for (const test::LinkProfile& profile : testbed.profiles()) {
+    for (const TransferScene& scene : *scenes) {
+      auto link = testbed.make_link(profile);
       if (!link) return Unexpected<std::string>{link.error()};
       auto& row = cells.emplace_back();
       std::uint64_t faces = 0;
       for (const Transfer transfer : kTransfers) {
-        auto cell = measure_cell(lab, **link, scene, transfer, faces);
+        auto cell = measure_cell(testbed, **link, scene, transfer, faces);
         if (!cell)
           return Unexpected<std::string>{
               fmt::format("transfer, {}: {}", profile.name, cell.error())};
@@ -320,15 +323,15 @@ Done measure_transfers(Lab& lab, LabFindings& findings) {
         row[static_cast<std::size_t>(transfer)] = *std::move(cell);
       }
     }
-    fmt::print(lab.progress(), "transfer {}\n", profile.name);
-    lab.progress().flush();
+    fmt::print(testbed.progress(), "transfer {}\n", profile.name);
+    testbed.progress().flush();
   }
   std::vector<Four> all;
   for (const auto& row : cells) all.push_back({&row[0], &row[1], &row[2], &row[3]});
   findings.tables += fmt::format(
       "\n### Transfers\n\nMedians of up to {} repetitions. Dense forms are meshed by binary greedy "
       "meshing, runs by RDM.\n\n",
-      lab.options().repetitions);
+      testbed.options().repetitions);
   write_rows(all, findings.tables);
   write_answer(all, findings.tables);
   return {};

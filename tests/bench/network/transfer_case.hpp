@@ -1,12 +1,12 @@
-// The thesis' question: when does compressed transfer plus RDM win, by how much, and when not? Each scene (the 37
-// scenarios as 27 chunks, and 64 chunks of each world) goes in each form through each link over a fresh TCP connection
-// from a sender to a receiver of ours; the receiver unpacks and meshes chunks as they come. Encoding is not in the
-// time: a server does it once.
+// The thesis' question: when does compressed transfer plus RDM win, by how much, and when not? Each
+// scene (the 37 scenarios as 27 chunks, and 64 chunks of each world) is sent in each form over each
+// link, on a fresh TCP connection. The receiver unpacks and meshes chunks as they arrive. Encoding
+// is not in the time, because a server does it once.
 #pragma once
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 namespace runstone::bench {
 
-Done measure_transfers(Lab& lab, LabFindings& findings);
+Done measure_transfers(Testbed& testbed, NetFindings& findings);
 
 }  // namespace runstone::bench

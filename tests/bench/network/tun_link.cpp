@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "common/core/hash.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/network/descriptor.hpp"
 
 namespace runstone::bench {
@@ -34,16 +34,18 @@ using test::LinkModel;
 using test::TimeNs;
 
 constexpr const char* kDevice = "rs0";
-constexpr int kBatch = 64;  // packets read from one side before the other has its turn
+constexpr int kBatch = 64;  // packets read from one side before the other side is read
 constexpr std::size_t kLatesMax = 1'000'000;
 constexpr int kKernelPackets =
-    20'000;  // that wait for the forwarder: all waiting is to be the model's
+    // Packets that wait for the forwarder: all waiting is to be the model's.
+    20'000;
 
 TimeNs now() { return static_cast<TimeNs>(now_ns()); }
 
 std::string failed(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
 
-/// A TUN device in the calling thread's namespace, with its address, up. Not valid if `why` was set.
+/// Opens a TUN device in the calling thread's namespace, with its address, and brings it up. Sets
+/// `why` and returns an invalid descriptor if that fails.
 Descriptor open_tun(const char* address, std::string& why) {
   Descriptor tun(::open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC));
   const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -86,7 +88,7 @@ Descriptor open_tun(const char* address, std::string& why) {
   it.ifr_flags = IFF_UP | IFF_RUNNING;
   tell(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
   if (!why.empty()) return {};
-  // Connections do not inherit what earlier ones learned of the path.
+  // A connection does not inherit what earlier ones learned about the path.
   const Descriptor metrics(::open("/proc/sys/net/ipv4/tcp_no_metrics_save", O_WRONLY | O_CLOEXEC));
   if (!metrics || ::write(metrics.get(), "1", 1) != 1) {
     why = failed("cannot set tcp_no_metrics_save");
@@ -97,7 +99,7 @@ Descriptor open_tun(const char* address, std::string& why) {
 
 enum Side : std::size_t { kServer = 0, kClient = 1 };
 
-/// The client's TCP port of a packet that came from `side`; 0 of anything else.
+/// Returns the client's TCP port of a packet from `side`, or 0 for any other packet.
 std::uint16_t connection_of(const std::uint8_t* packet, std::size_t bytes, Side side) {
   constexpr std::size_t kIpv4HeaderMin = 20;
   if (bytes < kIpv4HeaderMin || packet[0] >> 4 != 4 || packet[9] != IPPROTO_TCP) return 0;
@@ -134,7 +136,7 @@ struct TunLink::Forwarder {
 
   void start() {
     thread = std::thread([this] { forward(); });
-    // A packet is handed over when it is due, however busy the programs that are measured keep the cores.
+    // A packet is forwarded when it is due, however busy the measured programs keep the cores.
     sched_param first{};
     first.sched_priority = 1;
     counts.real_time = ::pthread_setschedparam(thread.native_handle(), SCHED_RR, &first) == 0;
@@ -146,7 +148,7 @@ struct TunLink::Forwarder {
     counts.busy = static_cast<double>(core_ns()) / static_cast<double>(now_ns() - began_ns);
   }
 
-  /// Returns whether it is over.
+  /// Returns true when the link ends.
   bool read_and_send() {
     for (const Side from : {kServer, kClient}) {
       for (int i = 0; i < kBatch && read(from); ++i) {
@@ -219,8 +221,9 @@ struct TunLink::Forwarder {
   std::array<std::unique_ptr<Place>, 2> places;
   std::array<Descriptor, 2> tuns;
   Descriptor stopped;
-  std::array<std::unordered_map<std::uint16_t, LinkModel>, 2> links;  // by where packets come from
-  std::vector<Packet> under_way;  // a heap, the next one due in front
+  // by the side from which packets come
+  std::array<std::unordered_map<std::uint16_t, LinkModel>, 2> links;
+  std::vector<Packet> under_way;  // a heap, the next packet due at the front
   std::vector<std::vector<std::uint8_t>> spare;
   std::vector<double> lates_us;
   std::uint64_t next_number = 0;

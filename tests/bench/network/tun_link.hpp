@@ -1,7 +1,9 @@
-// TunLink: two network namespaces joined by a link of ours: what leaves one through its TUN device passes a LinkModel
-// and enters the other when it is due. Every TCP connection has an access link of its own, both ways, as clients in
-// different homes do: connections share no queue. Loss and drops hit real packets, and real TCP answers them.
-// Nothing of it has a name, and nothing outlives the process (Place). Needs CAP_NET_ADMIN and /dev/net/tun.
+// TunLink: two network namespaces joined by a simulated link. A packet that leaves one namespace
+// through its TUN device passes a LinkModel and enters the other when it is due. Every TCP
+// connection has an access link of its own in both directions, like clients in different homes:
+// connections share no queue. Loss and drops hit real packets, and real TCP answers them. The link
+// has no name, and nothing of it outlives the process (Place). Requires CAP_NET_ADMIN and
+// /dev/net/tun.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,20 +18,20 @@ namespace runstone::bench {
 
 struct TunCounts {
   test::LinkCounts to_client, to_server;
-  std::uint64_t refused = 0;  // packets that the kernel did not take
-  double late_us_p99 = 0;     // by how much packets were handed over after they were due
+  std::uint64_t refused = 0;  // packets that the kernel did not accept
+  double late_us_p99 = 0;     // delay of forwarding after packets were due
   double late_us_max = 0;
   double busy = 0;         // share of a core that the forwarder used
-  bool real_time = false;  // it ran ahead of all ordinary threads
+  bool real_time = false;  // the forwarder had a priority above all ordinary threads
 };
 
 class TunLink {
  public:
   static constexpr const char* kServerAddress = "10.77.0.1";
   static constexpr const char* kClientAddress = "10.77.0.2";
-  static constexpr int kMtu = 1500;  // bytes, as everywhere on the internet
+  static constexpr int kMtu = 1500;  // bytes, as usual on the internet
 
-  /// The error says what failed.
+  /// Fails with the reason.
   static Result<std::unique_ptr<TunLink>, std::string> make(const test::LinkProfile& profile,
                                                             std::uint64_t seed);
   ~TunLink();
@@ -38,7 +40,7 @@ class TunLink {
 
   Place& server_side();
   Place& client_side();
-  /// Ends the forwarding and says what passed. Later calls say the same.
+  /// Ends the forwarding and returns the counts. Later calls return the same counts.
   TunCounts stop();
 
  private:

@@ -16,7 +16,8 @@ namespace {
 using chart::format_value;
 using chart::Role;
 
-/// Worlds across, a column a mesher: geometric means of the times over each world's volumes.
+/// Draws the worlds across, with a column for each mesher: geometric means of the times over each
+/// world's volumes.
 ReportFigure worlds(const Evidence& evidence, const char* step, const char* title) {
   const Rows rows = evidence.findings.rows(step);
   chart::BarChart chart{
@@ -70,8 +71,8 @@ ReportFigure orders(const Evidence& evidence) {
   std::vector<double> fewer, faster;
   for (const std::string& world : runs.categories) {
     const Rows in = rows.where("world", world);
-    // A volume whose orders all cost the same has no dearest one: then the cheapest is that, too, so that both means
-    // are of the same volumes.
+    // If all orders of a volume cost the same, none is the worst. The best then counts as the
+    // worst, too, so that both means are over the same volumes.
     const auto mean = [&](const char* rank, const char* mesher, const char* column) {
       std::vector<double> values;
       for (const std::string& part : in.kinds("part")) {
@@ -100,10 +101,8 @@ ReportFigure orders(const Evidence& evidence) {
   out.title = "Axis orders: compression rotation (9.2)";
   out.sentence = fmt::format(
       "The cheapest of the six orders has {} times fewer runs than the dearest (geometric mean "
-      "over these "
-      "worlds) and meshes {} "
-      "times faster; which one it is differs by chunk, so each holder picks it when a chunk is "
-      "made.",
+      "over these worlds) and meshes {} times faster; which one it is differs by chunk, so each "
+      "holder picks it when a chunk is made.",
       format_value(geometric_mean_of(fewer)), format_value(geometric_mean_of(faster)));
   out.steps = {"orders"};
   out.picture = chart::frame_of(runs) + chart::frame_of(time);
@@ -131,9 +130,7 @@ ReportFigure dirty_layers(const Evidence& evidence) {
   out.title = "Dirty layers: what an edit costs to mesh";
   out.sentence = fmt::format(
       "After one voxel changed, the runs are spliced and only the layers it touched are meshed, "
-      "neighbours "
-      "included: {} µs on average "
-      "where meshing the chunks whole takes {} µs.",
+      "neighbours included: {} µs on average where meshing the chunks whole takes {} µs.",
       format_value(mean_of(chart.series[0].values)), format_value(mean_of(chart.series[1].values)));
   out.steps = {"dirty-layers"};
   out.picture = chart::frame_of(chart);
@@ -169,8 +166,7 @@ ReportFigure stacks(const Evidence& evidence) {
   out.title = "Stacked edits (9.2): one sweep instead of many";
   out.sentence = fmt::format(
       "A thousand edits of one chunk by hand take {} µs as one stack and {} µs one by one; by "
-      "brush {} and "
-      "{}.",
+      "brush {} and {}.",
       format_value(at("mixed edits by hand as a stack", 1000)),
       format_value(at("mixed edits by hand one by one", 1000)),
       format_value(at("mixed edits by brush as a stack", 1000)),

@@ -1,4 +1,4 @@
-// DataTable: the numbers behind a figure, as CSV that a spreadsheet reads.
+// DataTable: the numbers of a figure, as CSV for spreadsheets.
 #pragma once
 #include <string>
 #include <variant>
@@ -14,7 +14,8 @@ struct DataTable {
   void add(std::vector<Value> row) { rows.push_back(std::move(row)); }
 };
 
-/// A line of names, then one a row, after RFC 4180. What was not measured (NaN) is an empty field.
+/// Returns a line of names, then a line for each row, in the form of RFC 4180. A missing value
+/// (NaN) is an empty field.
 std::string csv_of(const DataTable& table);
 
 }  // namespace runstone::bench

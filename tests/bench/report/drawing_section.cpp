@@ -18,8 +18,8 @@ namespace {
 using chart::format_value;
 using chart::Role;
 
-/// Of plain frames. Means are of the worlds that all of these meshers drew; one that drew fewer than most, since its meshes
-/// are too large, is left out of them.
+/// Means of plain frames, over the worlds that all of these meshers drew. A mesher that drew fewer
+/// worlds than most, since its meshes are too large, is left out.
 class Frames {
  public:
   explicit Frames(const Findings& findings)
@@ -108,8 +108,8 @@ ReportFigure frame_times(const Evidence& evidence, const Frames& frames) {
   out.title = "Frame time by mesher (8.5)";
   out.sentence = fmt::format(
       "The same chunks, shader and vertex format: only the polygons differ. A frame takes {} ms "
-      "(geometric mean of {} worlds) with "
-      "our mesh, {} with culled faces, {} with the thesis' RLE RDM.",
+      "(geometric mean of {} worlds) with our mesh, {} with culled faces, {} with the thesis' RLE "
+      "RDM.",
       format_value(ms("rdm")), frames.worlds().size(), format_value(ms("culled")),
       format_value(ms("rle_rdm")));
   out.steps = {"frames"};
@@ -163,9 +163,8 @@ ReportFigure thesis_frames(const Evidence& evidence, const Frames& frames) {
   out.title = "Frames a second in the thesis' four scenarios (figure 8.14)";
   out.sentence = fmt::format(
       "Scenario 23 shows what merging and culling buy: {} frames a second with our mesh, {} with "
-      "the rebuilt "
-      "Grid RDM, {} with culled "
-      "faces; the thesis has {} with Grid RDM and {} with its RLE RDM.",
+      "the rebuilt Grid RDM, {} with culled faces; the thesis has {} with Grid RDM and {} with its "
+      "RLE RDM.",
       format_value(fps(23, "rdm")), format_value(fps(23, "grid_rdm")),
       format_value(fps(23, "culled")), format_value(evidence.thesis.value(23, "Grid", "fps_mean")),
       format_value(evidence.thesis.value(23, "RLE", "fps_mean")));
@@ -192,12 +191,8 @@ ReportFigure seams(const Evidence& evidence, const Frames& frames) {
   out.title = "What T-junctions and thin triangles do on screen (4.2.1, 4.2.2)";
   out.sentence = fmt::format(
       "Pixels inside a plane that differ from the picture of culled faces: {} a picture with our "
-      "mesh, {} "
-      "with Poly2Tri. A GPU shades "
-      "in blocks of 2 x 2, so it shades more lanes than fragments along every edge: {} lanes a "
-      "fragment with "
-      "our mesh, {} with culled "
-      "faces.",
+      "mesh, {} with Poly2Tri. A GPU shades in blocks of 2 x 2, so it shades more lanes than "
+      "fragments along every edge: {} lanes a fragment with our mesh, {} with culled faces.",
       format_value(mean("rdm", "pinhole_pixels")), format_value(mean("poly2tri", "pinhole_pixels")),
       format_value(mean("rdm", "lanes")), format_value(mean("culled", "lanes")));
   out.steps = {"frames"};

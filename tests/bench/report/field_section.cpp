@@ -21,7 +21,7 @@ namespace {
 
 using chart::format_value;
 
-/// Short enough for a cell: "1.9k" of 1,940.
+/// Returns a text that is short enough for a cell: "1.9k" for 1,940.
 std::string cell_text(double us) {
   return us < 1000 ? format_value(us) : fmt::format("{:.2g}k", us / 1000);
 }
@@ -48,11 +48,8 @@ class FieldFigures {
                               {"µs of a chunk of 32³, geometric mean of 37 scenarios", true}, "us");
     out.sentence = fmt::format(
         "From compressed runs ours takes {}. The fastest dense mesher takes {} from the same runs, "
-        "and {} "
-        "where somebody has already "
-        "made it a dense grid. By the sum of all scenarios, in which the slowest weigh most, it is "
-        "{} "
-        "against {}.",
+        "and {} where somebody has already made it a dense grid. By the sum of all scenarios, in "
+        "which the slowest weigh most, it is {} against {}.",
         time_text(ours), time_text(total_of(totals_, "decode_binary").mean_ns),
         time_text(total_of(totals_, "grid_binary").mean_ns),
         time_text(total_of(totals_, "rdm").sum_ns),
@@ -114,9 +111,7 @@ class FieldFigures {
         count_text(optimum), ratio_text(total_of(totals_, "rdm").triangles / optimum));
     out.marks = {
         "Monotone and Poly2Tri draw polygons, not rectangles, and run strips over hidden faces "
-        "draw more "
-        "than is exposed: the "
-        "optimum does not bind them."};
+        "draw more than is exposed: the optimum does not bind them."};
     return out;
   }
 
@@ -130,9 +125,8 @@ class FieldFigures {
     };
     out.sentence = fmt::format(
         "A vertex inside another polygon's edge can flicker as a seam. Merging makes them: ours "
-        "{}, the "
-        "culled mesher {}; "
-        "monotone ({}) and Poly2Tri ({}) lessen them within a plane and keep them between planes.",
+        "{}, the culled mesher {}; monotone ({}) and Poly2Tri ({}) lessen them within a plane and "
+        "keep them between planes.",
         of("rdm"), of("culled"), of("monotone"), of("poly2tri"));
     return out;
   }
@@ -167,7 +161,8 @@ ReportSection field_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "The whole field";
   out.introduction =
-      "Every algorithm of the thesis' chapter 4.2, rebuilt and held to the same oracle, on the "
+      "Every algorithm of the thesis' chapter 4.2, rebuilt and checked with the same oracle, on "
+      "the "
       "same chunks.";
   out.figures = {figures.time(), figures.map(), figures.triangles(), figures.t_junctions()};
   return out;

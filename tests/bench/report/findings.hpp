@@ -1,4 +1,4 @@
-// Findings: all that lies in a report's folder, and what about it a reader must be told.
+// Findings: everything in a report's folder, and the warnings that a reader needs.
 #pragma once
 #include <map>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace runstone::bench {
 
-/// Why steps of this run failed, by their names.
+/// The errors of steps that failed in this run, by their names.
 using StepFailures = std::map<std::string, std::string>;
 
 class Findings {
@@ -21,25 +21,28 @@ class Findings {
   static Findings read(const std::string& folder, const std::vector<std::string>& steps,
                        const StepFailures& failures);
 
-  /// Null if there is none.
+  /// Returns null if there is none.
   const Finding* find(const std::string& step) const;
-  /// Of the step's result: of its member of that name, or of an array itself. None if there is none.
+  /// Returns rows of the step's result: its member of that name, or the result itself if it is an
+  /// array; none if there are none.
   Rows rows(const std::string& step, const char* member = "rows") const;
-  /// An object that is a member of the step's result, or the result itself (""), as one row. None if there is none.
+  /// Returns one row: a member of the step's result, or the result itself (""); no row if there is
+  /// none.
   Rows object(const std::string& step, const std::string& member) const;
-  /// Joins the figures of the network lab of several steps.
+  /// Joins the figures of several network steps.
   Rows figures(const std::vector<std::string>& steps) const;
 
-  /// What most findings were measured on; null if nothing was measured.
+  /// Returns the finding whose machine most findings share, or null if nothing was measured.
   const Finding* common() const { return common_; }
-  /// Why a figure of these steps is not what it should be, one sentence each: missing, failed, broken, or of
-  /// another machine, commit or length of run than the others. Empty if all is well.
+  /// Returns the warnings for a figure of these steps, one sentence each: missing, failed, broken,
+  /// or from another machine, commit or length of run than the others. Returns an empty list if
+  /// there are none.
   std::vector<std::string> doubts(const std::vector<std::string>& steps) const;
   bool is_missing(const std::vector<std::string>& steps) const;
 
  private:
   std::map<std::string, Finding> found_;
-  std::map<std::string, std::string> missing_;  // why, by step
+  std::map<std::string, std::string> missing_;  // reason by step
   StepFailures failed_;
   const Finding* common_ = nullptr;
 };

@@ -4,7 +4,7 @@
 
 namespace runstone::bench {
 
-/// Text as it may stand in HTML, in attributes too.
+/// Returns text for HTML, valid in attributes, too.
 inline std::string html_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

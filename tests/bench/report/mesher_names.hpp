@@ -1,4 +1,4 @@
-// What mesher_cases are called on the page, and what they are to its reader.
+// The names of mesher cases on the page, and their roles.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,12 +7,13 @@
 
 namespace runstone::bench {
 
-/// "decode + binary greedy" of "decode_binary"; an unknown name with blanks for underscores.
+/// Returns "decode + binary greedy" for "decode_binary"; for an unknown name, the name with blanks
+/// for underscores.
 std::string long_name_of(std::string_view mesher);
-/// As it stands in a narrow table.
+/// Returns the name for a narrow table.
 std::string short_name_of(std::string_view mesher);
 chart::Role role_of(std::string_view mesher);
-/// The same polygons as another mesher_case's, by another way.
+/// Returns true if the case makes the same polygons as another one in another way.
 bool is_variant(std::string_view mesher);
 
 }  // namespace runstone::bench

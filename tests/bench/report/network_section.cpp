@@ -28,7 +28,7 @@ std::vector<std::string> steps_of(const char* experiment) {
   return out;
 }
 
-/// All that a lab's figures hold, as they are.
+/// Returns all figures unchanged.
 DataTable table_of(const Rows& rows) {
   DataTable out{{"link", "case", "figure", "value"}, {}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -69,9 +69,7 @@ ReportFigure bytes(const Evidence& evidence) {
   const auto of = [&](const char* form) { return rows.where("form", form).number("bytes"); };
   out.sentence = fmt::format(
       "Packed runs take {} % of dense voxels under zstd, {} % of Luanti's form and {} % of "
-      "Minecraft's; "
-      "dense and plain "
-      "they would be 65,536 bytes.",
+      "Minecraft's; dense and plain they would be 65,536 bytes.",
       format_value(100 * of("packed") / of("dense_zstd")),
       format_value(100 * of("packed") / of("luanti")),
       format_value(100 * of("packed") / of("minecraft")));
@@ -121,9 +119,8 @@ ReportFigure transfers(const Evidence& evidence) {
   out.title = "Send, unpack, mesh: under each link (9.2)";
   out.sentence = fmt::format(
       "Until everything is meshed, dense voxels under zstd take this many times as long as packed "
-      "runs "
-      "(geometric mean of five "
-      "worlds): {}. On slow links bytes decide, on fast ones the meshing.",
+      "runs (geometric mean of five worlds): {}. On slow links bytes decide, on fast ones the "
+      "meshing.",
       ratios.empty() ? "not measured" : ratios);
   out.steps = steps;
   out.data = table_of(evidence.findings.figures(steps));
@@ -151,8 +148,9 @@ ReportFigure latency(const Evidence& evidence) {
     chart.ranges.push_back({value("p50"), value("p50"), value("p99"), value("max")});
   };
   for (const char* profile : kProfiles) {
-    add(profile, "idle", "own_predicted_meshed", fmt::format("{}: own edit", profile), Role::ours);
-    add(profile, "idle", "remote_meshed", fmt::format("{}: another's", profile), Role::other);
+    add(profile, "idle", "own_predicted_meshed", fmt::format("{}: local edit", profile),
+        Role::ours);
+    add(profile, "idle", "remote_meshed", fmt::format("{}: remote edit", profile), Role::other);
     add(profile, "streaming 20 clients", "remote_meshed",
         fmt::format("{}: beside terrain, 20 clients", profile), Role::baseline);
   }
@@ -166,10 +164,8 @@ ReportFigure latency(const Evidence& evidence) {
         .number("value");
   };
   out.sentence = fmt::format(
-      "The own edit is predicted, so it is meshed after {} ms on loopback and {} on broadband "
-      "alike (p50); "
-      "another player's takes the "
-      "network's delay besides: {} and {}.",
+      "The local edit is predicted, so it is meshed after {} ms on loopback and {} on broadband "
+      "alike (p50); a remote edit takes the network's delay in addition: {} and {}.",
       format_value(p("loopback", "idle", "own_predicted_meshed_p50_ms")),
       format_value(p("broadband", "idle", "own_predicted_meshed_p50_ms")),
       format_value(p("loopback", "idle", "remote_meshed_p50_ms")),
@@ -180,7 +176,7 @@ ReportFigure latency(const Evidence& evidence) {
   return out;
 }
 
-ReportFigure crowds(const Evidence& evidence) {
+ReportFigure fleets(const Evidence& evidence) {
   std::vector<std::string> steps;
   const std::array<unsigned, 5> sizes = {1, 10, 100, 300, 1000};
   for (const unsigned clients : sizes) steps.push_back(fmt::format("crowd-{}", clients));
@@ -193,7 +189,7 @@ ReportFigure crowds(const Evidence& evidence) {
   chart::LineChart chart;
   chart.x = {"clients in one place, two edits a second each", true};
   chart.y = {"ms until the others have an edit", true};
-  chart.title = "crowds";
+  chart.title = "fleets";
   const std::array<std::tuple<const char*, Role, const char*>, 3> lines = {
       {{"p50", Role::ours, "seen_p50_ms"},
        {"p99", Role::baseline, "seen_p99_ms"},
@@ -216,9 +212,7 @@ ReportFigure crowds(const Evidence& evidence) {
   out.title = "Crowds: 1 to 1,000 clients";
   out.sentence = fmt::format(
       "{} clients on one server beside their bots on {} cores see each other's edits after {} ms "
-      "(p50), {} "
-      "(p99); {} samples, {} never "
-      "arrived, {} disconnects.",
+      "(p50), {} (p99); {} samples, {} never arrived, {} disconnects.",
       most, evidence.findings.common() == nullptr ? 0 : evidence.findings.common()->machine.cores,
       format_value(value(most, "seen_p50_ms")), format_value(value(most, "seen_p99_ms")),
       count_text(value(most, "samples")), format_value(value(most, "never")),
@@ -236,10 +230,9 @@ ReportSection network_section(const Evidence& evidence) {
   ReportSection out;
   out.title = "Under networked conditions";
   out.introduction =
-      "Real programs, links made by the lab: delay, jitter, rate and loss. Nothing here was asked "
-      "of the "
-      "thesis' prototype.";
-  out.figures = {bytes(evidence), transfers(evidence), latency(evidence), crowds(evidence)};
+      "Real programs, simulated links: delay, jitter, rate and loss. Nothing here was asked "
+      "of the thesis' prototype.";
+  out.figures = {bytes(evidence), transfers(evidence), latency(evidence), fleets(evidence)};
   return out;
 }
 

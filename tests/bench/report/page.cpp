@@ -25,7 +25,7 @@ Result<void, std::string> write_text_file(const std::string& file, const std::st
   return {};
 }
 
-/// For a link that carries its file.
+/// Returns the address of a link that contains its file.
 std::string data_uri(const std::string& csv) {
   std::string out = "data:text/csv;charset=utf-8,";
   for (const char c : csv) {
@@ -88,8 +88,7 @@ std::string provenance(const Findings& findings) {
   const Machine& m = common->machine;
   return fmt::format(
       "<p class=\"quiet\">{}, {} cores; {}; vectors {}; commit {}; real world {}; {}. Medians; the "
-      "machine "
-      "may be shared.</p>\n",
+      "machine may be shared.</p>\n",
       html_text(m.cpu), m.cores, html_text(m.compiler), html_text(m.simd), html_text(m.commit),
       html_text(common->luanti),
       common->is_quick ? "a quick run: few repetitions, wide errors" : "a full run");
@@ -155,8 +154,7 @@ Result<WrittenPage, std::string> write_page(const ReportOptions& options,
   const std::string page = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<meta "
-      "name=\"color-scheme\" "
-      "content=\"light dark\">\n"
+      "name=\"color-scheme\" content=\"light dark\">\n"
       "<title>Runstone: the evaluation</title>\n<style>\n{}\n{}</style>\n</head>\n<body>\n"
       "<h1>Meshing voxels from compressed runs: the "
       "evaluation</h1>\n{}{}{}{}{}{}</body>\n</html>\n",

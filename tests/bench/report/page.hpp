@@ -1,4 +1,5 @@
-// The page of a report: one HTML file that needs nothing else, and the tables of its figures beside it.
+// The page of a report: one HTML file without further files, and the tables of its figures beside
+// it.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -11,11 +12,12 @@ namespace runstone::bench {
 
 struct WrittenPage {
   std::string file;
-  std::size_t figures = 0, missing = 0;  // missing: nothing of what they show was measured
+  std::size_t figures = 0, missing = 0;  // missing: no step of the figure was measured
 };
 
-/// Makes OUT/index.html, OUT/summary.md and OUT/csv/ of what lies in OUT/data. What is missing, broken, or of another machine or commit
-/// is said where it shows. The error names the file that could not be written.
+/// Writes OUT/index.html, OUT/summary.md and OUT/csv/ from OUT/data. The figures name what is
+/// missing, broken, or from another machine or commit. The error names the file that could not be
+/// written.
 Result<WrittenPage, std::string> write_page(const ReportOptions& options,
                                             const StepFailures& failures);
 

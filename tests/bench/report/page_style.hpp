@@ -3,7 +3,7 @@
 
 namespace runstone::bench {
 
-/// The page around the charts; colours come from chart_css().
+/// The style of the page around the charts; colours come from chart_css().
 inline constexpr std::string_view kPageStyle = R"css(
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}

@@ -45,7 +45,8 @@ void ProgressBar::end(const std::string& how, double expected_seconds, double to
 }
 
 std::string ProgressBar::left() const {
-  // This machine against the one on which the steps were weighed, as far as one can tell yet.
+  // The speed of this machine relative to the one that gave the expected times, from the steps so
+  // far.
   const double pace = expected_done_ > 0 ? took_ / expected_done_ : 1;
   return duration_text(expected_left_ * pace);
 }

@@ -1,4 +1,5 @@
-// ProgressBar: how far a long run is. On a terminal one line that is drawn again, elsewhere a line a step.
+// ProgressBar: the progress of a long run: on a terminal one line that is drawn again, elsewhere a
+// line for each step.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -8,11 +9,11 @@ namespace runstone::bench {
 
 class ProgressBar {
  public:
-  /// `expected_seconds` of all steps, of which the bar makes its guess of what is left.
+  /// `expected_seconds` is the sum over all steps, from which the bar estimates the remaining time.
   ProgressBar(std::ostream& out, bool is_terminal, std::size_t steps, double expected_seconds);
 
   void begin(const std::string& step);
-  /// The step at hand ended; it was expected to take so long, and took so long (0: it was there already).
+  /// Ends the present step, with its expected and its real time (0: its result existed already).
   void end(const std::string& how, double expected_seconds, double took_seconds);
 
  private:
@@ -24,11 +25,11 @@ class ProgressBar {
   const std::size_t steps_;
   std::size_t done_ = 0;
   double expected_left_;
-  double expected_done_ = 0, took_ = 0;  // of the steps that were measured in this run
+  double expected_done_ = 0, took_ = 0;  // of the steps measured in this run
   std::string step_;
 };
 
-/// "45 s", "3 min", "1 h 20 min".
+/// Returns "45 s", "3 min", "1 h 20 min".
 std::string duration_text(double seconds);
 
 }  // namespace runstone::bench

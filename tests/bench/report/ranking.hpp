@@ -1,4 +1,4 @@
-// A ranking: meshers by one figure of each, best first.
+// A ranking: meshers by one figure, best first.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ struct Ranked {
   std::string note = {};
 };
 
-/// The least first, equals by name; what was not measured (NaN) last.
+/// Sorts the least first, equals by name, and missing values (NaN) last.
 void rank(std::vector<Ranked>& all);
 
 chart::RankChart chart_of(const std::vector<Ranked>& all, const chart::Axis& axis);

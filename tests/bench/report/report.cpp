@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/network/child.hpp"
 #include "tests/bench/report/page.hpp"
 #include "tests/bench/report/progress_bar.hpp"
@@ -23,7 +23,7 @@ std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
-/// The folder's own name and the size of what is in it, which tells worlds of one name apart.
+/// Returns the folder's name and the size of its content, which distinguishes worlds of one name.
 std::string world_name(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -33,7 +33,7 @@ std::string world_name(const std::string& folder) {
   return fmt::format("{} of {} bytes", path.filename().string(), bytes);
 }
 
-/// What this run would put its name to.
+/// Returns a finding of this run without a result.
 Finding finding_of(const ReportOptions& options, const Step& step) {
   Finding out;
   out.step = step.name;
@@ -43,10 +43,10 @@ Finding finding_of(const ReportOptions& options, const Step& step) {
   return out;
 }
 
-/// Whether such a finding lies there already.
+/// Returns true if the folder has a comparable finding.
 bool is_there(const ReportOptions& options, const Step& step) {
   const auto found = read_finding(options.out, step.name);
-  // Two trees with changes of their own have the same name.
+  // Two different trees with uncommitted changes have the same name.
   const std::string commit = this_machine().commit;
   if (commit.ends_with("-dirty") || commit == "unknown") return false;
   return found && is_comparable(*found, finding_of(options, step));
@@ -70,7 +70,7 @@ Result<double, std::string> measure(const ReportOptions& options, const Step& st
   return seconds;
 }
 
-/// Why this run must not begin; empty if it may.
+/// Returns the reason why this run must not begin; empty if it may.
 std::string objection(const ReportOptions& options) {
   const std::vector<Step> steps = report_steps(options);
   for (const std::string& name : options.steps) {
@@ -83,8 +83,7 @@ std::string objection(const ReportOptions& options) {
     if (found && !found->is_quick) {
       return options.out +
              " has figures of a full run, which a quick one would replace: take another folder, or "
-             "say "
-             "--again";
+             "say --again";
     }
   }
   return "";

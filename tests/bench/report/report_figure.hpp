@@ -1,4 +1,5 @@
-// ReportFigure: one picture of the report with the numbers behind it and the sentence that says what to see.
+// ReportFigure: one figure of the report, with its numbers and the sentence that says what it
+// shows.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,10 +11,10 @@
 namespace runstone::bench {
 
 struct ReportFigure {
-  std::string id;  // its anchor, and the name of its CSV
+  std::string id;  // anchor in the page, and name of its CSV
   std::string title;
-  std::string sentence;            // what to see, plain text
-  std::vector<std::string> steps;  // it is drawn from
+  std::string sentence;            // what the figure shows, plain text
+  std::vector<std::string> steps;  // the steps from which it is drawn
   DataTable data;
   std::string picture;                  // HTML: the chart
   std::vector<std::string> marks = {};  // known defects of data, plain text
@@ -24,21 +25,21 @@ struct ReportSection {
   std::vector<ReportFigure> figures;
 };
 
-/// What figures are made from.
+/// The sources of figures.
 struct Evidence {
   const Findings& findings;
   const ThesisData& thesis;
 };
 
-/// The thesis' own figures from our numbers beside its own.
+/// The thesis' figures, with our numbers beside the thesis'.
 ReportSection thesis_section(const Evidence& evidence);
-/// All meshers against each other.
+/// All meshers compared.
 ReportSection field_section(const Evidence& evidence);
-/// What their meshes cost to draw, and other ways to keep voxels.
+/// The cost of drawing the meshes, and other ways to store voxels.
 ReportSection drawing_section(const Evidence& evidence);
-/// What the thesis left as future work: real worlds, axis orders, dirty layers, edits.
+/// The thesis' future work: real worlds, axis orders, dirty layers, edits.
 ReportSection beyond_section(const Evidence& evidence);
-/// The same voxels over links: bytes, transfers, latency, crowds.
+/// The same voxels over links: bytes, transfers, latency, fleets.
 ReportSection network_section(const Evidence& evidence);
 
 }  // namespace runstone::bench

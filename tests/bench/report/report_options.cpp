@@ -24,9 +24,9 @@ CLI::App* add_report_command(CLI::App& app, ReportOptions& options) {
       ->delimiter(',')
       ->check(CLI::IsMember(steps));
   report->add_flag("--again", options.is_again,
-                   "measure again what is there; otherwise a run goes on where it was cut off");
+                   "measure everything again; otherwise a run continues where it was interrupted");
   report->add_flag("--page-only", options.is_page_only,
-                   "measure nothing: make the page of what is there");
+                   "measure nothing: make the page from the existing results");
   report->add_option("--luanti", options.luanti, "folder of a Luanti world")
       ->capture_default_str()
       ->check(CLI::ExistingDirectory);

@@ -1,4 +1,4 @@
-// ReportOptions: what the command line of `runstone-bench report` says.
+// ReportOptions: the command line of `runstone-bench report`.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,16 +10,16 @@ class App;
 namespace runstone::bench {
 
 struct ReportOptions {
-  std::string out;                 // folder of the page and of what was measured
+  std::string out;                 // folder of the page and of the findings
   std::string luanti;              // folder of the real world
   std::string thesis;              // folder of the thesis' tables
   std::vector<std::string> steps;  // to measure; empty: all
   bool is_quick = false;
-  bool is_again = false;      // measures what is there already, too
+  bool is_again = false;      // also measures steps that have a result
   bool is_page_only = false;  // measures nothing
 };
 
-/// Adds the subcommand and its options. `options` must outlive the parse.
+/// Adds the subcommand. `options` must outlive the parse.
 CLI::App* add_report_command(CLI::App& app, ReportOptions& options);
 
 }  // namespace runstone::bench

@@ -28,7 +28,7 @@ std::string text_of(const json& row, std::string_view column) {
   return found != row.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// Without those that were not.
+/// Returns the values without missing ones.
 std::vector<double> measured(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   return values;

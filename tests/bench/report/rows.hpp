@@ -1,5 +1,6 @@
-// Rows: the flat rows of a finding, picked by the values of their columns. Missing columns and values that are
-// no numbers read as "not measured" (NaN), so that a result of another version never breaks the page.
+// Rows: the flat rows of a finding, selected by the values of their columns. Missing columns and
+// values that are no numbers read as "not measured" (NaN), so that a result of another version
+// never breaks the page.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,14 +9,14 @@
 
 namespace runstone::bench {
 
-/// Points into the JSON it was made from.
+/// Refers to the JSON from which it was made, which must outlive it.
 class Rows {
  public:
   Rows() = default;
-  /// The objects of an array; none of anything else.
+  /// Takes the objects of an array; no rows of anything else.
   explicit Rows(const nlohmann::json& array);
 
-  /// One row: an object. None of anything else.
+  /// Returns one row for an object; no row for anything else.
   static Rows of(const nlohmann::json& object);
 
   Rows where(std::string_view column, std::string_view text) const;
@@ -26,20 +27,21 @@ class Rows {
   std::size_t size() const { return rows_.size(); }
   Rows operator[](std::size_t row) const;
 
-  /// Of the first row; NaN if there is none.
+  /// Returns a value of the first row; NaN if there is no row.
   double number(std::string_view column) const;
-  /// Of the first row; empty if there is none.
+  /// Returns a text of the first row; empty if there is no row.
   std::string text(std::string_view column) const;
-  /// One a row.
+  /// Returns one value for each row.
   std::vector<double> numbers(std::string_view column) const;
-  /// The different texts of a column, in the order in which they come.
+  /// Returns the different texts of a column, in order of appearance.
   std::vector<std::string> kinds(std::string_view column) const;
 
  private:
   std::vector<const nlohmann::json*> rows_;
 };
 
-/// Of the values that were measured; NaN if none was. The geometric mean leaves out what is not positive.
+/// Returns the mean of the known values; NaN if there are none. The geometric mean leaves out
+/// values that are not positive.
 double mean_of(const std::vector<double>& values);
 double geometric_mean_of(const std::vector<double>& values);
 double sum_of(const std::vector<double>& values);

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr unsigned kEdge = 32;  // the thesis'
+constexpr unsigned kEdge = 32;  // the thesis' edge
 constexpr std::array<std::string_view, 5> kMeshers = {"rdm", "decode_binary", "grid_rdm", "rle_rdm",
                                                       "culled"};
 
@@ -39,7 +39,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// What one mesher took of each chunk of a scenario.
+/// The times of one mesher on each chunk of a scenario.
 struct Times {
   std::vector<double> ns, vertices;
   std::array<std::vector<double>, kPhaseCount> phases;

@@ -6,6 +6,7 @@
 
 #include "tests/bench/edits/edit_bench.hpp"
 #include "tests/bench/frames/frames_bench.hpp"
+#include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/meshing/chunk_edge.hpp"
 #include "tests/bench/meshing/mesh_bench.hpp"
 #include "tests/bench/network/net_bench.hpp"
@@ -21,7 +22,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 using Measured = Result<json, std::string>;
 
-/// What a benchmark writes as its JSON file.
+/// Returns the JSON that a benchmark writes.
 template <class T>
 Measured json_of(const Result<T, std::string>& result) {
   if (!result) return Unexpected<std::string>{result.error()};

@@ -1,5 +1,5 @@
-// Step: one thing the report measures, with a finding of its own. Steps are cut so that an interrupted run
-// loses a few minutes at most.
+// Step: one measurement of the report, with a finding of its own. Steps are small enough that an
+// interrupted run loses a few minutes at most.
 #pragma once
 #include <functional>
 #include <iosfwd>
@@ -13,13 +13,14 @@
 namespace runstone::bench {
 
 struct Step {
-  std::string name;     // and of its file
-  std::string command;  // that measures the same alone; empty: only the report does
-  double seconds = 0;   // that it takes about
+  std::string name;  // also of its file
+  // The arguments of runstone-bench that measure the same; empty if only the report does.
+  std::string command;
+  double seconds = 0;  // expected duration
   std::function<Result<nlohmann::json, std::string>(std::ostream& progress)> measure;
 };
 
-/// All of them, in the order in which they run. `options` must outlive them.
+/// Returns all steps, in the order in which they run. `options` must outlive them.
 std::vector<Step> report_steps(const ReportOptions& options);
 
 }  // namespace runstone::bench

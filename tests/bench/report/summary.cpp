@@ -26,9 +26,7 @@ std::string meshers_table(const Rows& rows) {
   const double optimum = total_of(totals, "optimal_greedy").triangles;
   std::string out =
       "| mesher, the thesis' 37 scenarios, 32³ | µs a chunk (geometric mean) | triangles (sum) | "
-      "of the "
-      "optimum | T-junctions (sum) "
-      "|\n|---|---|---|---|---|\n";
+      "of the optimum | T-junctions (sum) |\n|---|---|---|---|---|\n";
   for (const MesherTotal& total : totals) {
     out += fmt::format("| {} | {} | {} | {} | {} |\n", long_name_of(total.mesher),
                        format_value(total.mean_ns / 1000), count_text(total.triangles),

@@ -1,4 +1,4 @@
-// The report as a few lines of Markdown, for a README or a note.
+// The report as a few lines of Markdown, for a README.
 #pragma once
 #include <string>
 
@@ -6,8 +6,8 @@
 
 namespace runstone::bench {
 
-/// The answer, who wins at what, and a line for each mesher over the 37 scenarios. Empty if the meshers were not
-/// measured.
+/// Returns the answer, the winners, and a line for each mesher over the 37 scenarios. Returns an
+/// empty text if the meshers were not measured.
 std::string summary_of(const Evidence& evidence);
 
 }  // namespace runstone::bench

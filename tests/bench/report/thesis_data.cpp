@@ -20,7 +20,8 @@ std::optional<T> number(const std::string& text) {
   return error == std::errc() && stop == end ? std::optional(out) : std::nullopt;
 }
 
-/// Calls take(fields) for each line behind the first, until it says no. Returns what is wrong, or nothing.
+/// Calls take(fields) for each line after the first, until it returns false. Returns an error, or
+/// an empty text.
 template <class Take>
 std::string read_table(const std::string& file, std::size_t fields, Take&& take) {
   std::ifstream in(file);

@@ -25,7 +25,8 @@ struct Candidate {
   double value = 0;
 };
 
-/// The least wins, the greatest loses; equals share. No row where fewer than two were measured.
+/// Adds a row: the least wins, the greatest loses, and equals share. Adds none if fewer than two
+/// candidates were measured.
 void judge(Verdicts& out, const char* question, const char* figure,
            std::vector<Candidate> candidates, const std::function<std::string(double)>& text) {
   std::erase_if(candidates, [](const Candidate& each) { return !std::isfinite(each.value); });
@@ -52,11 +53,11 @@ std::vector<Candidate> of_meshers(const std::vector<MesherTotal>& totals,
   return out;
 }
 
-/// Ours against decoding and meshing densely, part by part.
+/// The product compared with decoding and dense meshing, part by part.
 struct Duel {
-  double gain = 0;  // geometric mean of dense / ours; NaN if nothing was measured
+  double gain = 0;  // geometric mean of dense / product; NaN if nothing was measured
   std::size_t wins = 0, parts = 0;
-  std::string lost;  // names of the parts
+  std::string lost;  // names of the parts in which the product is slower
 };
 
 Duel duel_of(const Rows& rows) {
@@ -90,12 +91,9 @@ std::string answer_of(const Evidence& evidence) {
       format_value(total_of(totals, "decode_binary").sum_ns / total_of(totals, "rdm").sum_ns);
   std::string out = fmt::format(
       "{} is {}: over the thesis' 37 scenarios (the chunk in the middle), decoding and meshing "
-      "with the "
-      "fastest dense mesher, binary "
-      "greedy, takes {} times as long as meshing straight from runs by the geometric mean and {} "
-      "times by "
-      "the sum, and runs are faster "
-      "in {} of {}{}{}. ",
+      "with the fastest dense mesher, binary greedy, takes {} times as long as meshing straight "
+      "from runs by the geometric mean and {} times by the sum, and runs are faster in {} of "
+      "{}{}{}. ",
       "Counted from what is stored, the fastest mesher",
       pays ? "Run Directional Meshing from compressed runs" : "binary greedy",
       format_value(scenarios.gain), sums, scenarios.wins, scenarios.parts,
@@ -103,18 +101,15 @@ std::string answer_of(const Evidence& evidence) {
   if (!std::isnan(real.gain)) {
     out += fmt::format(
         "In a real world, made by another program, decoding and meshing takes {} times as long, "
-        "and runs are "
-        "faster in "
-        "{} of {} volumes. ",
+        "and runs are faster in {} of {} volumes. ",
         format_value(real.gain), real.wins, real.parts);
   }
   const double kept = mean_of(evidence.findings.rows("facts").numbers("run_bytes")) / kDenseBytes;
   if (!std::isnan(kept)) {
     out += fmt::format(
         "So meshing from compressed data {}: a chunk of the scenarios takes {} % less memory than "
-        "a dense "
-        "array of two "
-        "bytes a voxel, nothing is unpacked, and on the whole it costs {} time, not {}.",
+        "a dense array of two bytes a voxel, nothing is unpacked, and on the whole it costs {} "
+        "time, not {}.",
         pays ? "pays" : "saves memory and does not pay in time here",
         format_value(100 * (1 - kept)), pays ? "less" : "more", pays ? "more" : "less");
   }

@@ -1,4 +1,5 @@
-// Verdicts: the report in a minute. The thesis' two questions answered, then who wins and who loses at what.
+// Verdicts: the short form of the report. It answers the thesis' two questions and names the winner
+// and the loser of each comparison.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,16 +10,16 @@ namespace runstone::bench {
 
 struct ReportVerdict {
   std::string question, winner, loser;
-  std::string figure;  // id of the one that shows it
+  std::string figure;  // id of the figure that shows it
 };
 
 struct Verdicts {
   std::string answer;  // three sentences, plain text
   std::vector<ReportVerdict> rows;
-  std::vector<std::string> steps;  // that they rest on
+  std::vector<std::string> steps;  // the steps on which the answer depends
 };
 
-/// Of what was measured: a question without its measurements has no row.
+/// Returns the verdicts from the measurements. A question without measurements has no row.
 Verdicts verdicts_of(const Evidence& evidence);
 
 }  // namespace runstone::bench

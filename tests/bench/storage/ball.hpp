@@ -14,7 +14,7 @@ class Ball {
  public:
   static constexpr std::int32_t kRadiusMax = 15;
 
-  /// Requires 0 <= radius <= kRadiusMax. The parts outside a chunk are left out by those who ask.
+  /// Requires 0 <= radius <= kRadiusMax. Callers leave out the parts outside a chunk.
   Ball(LocalPos centre, std::int32_t radius)
       : centre_(centre), radius_(radius), reach_(radius * radius + radius) {
     RUNSTONE_ASSERT(radius >= 0 && radius <= kRadiusMax);
@@ -53,7 +53,7 @@ class Ball {
     }
   }
 
-  /// How it lies to a cube of voxels.
+  /// The position of the ball relative to a cube of voxels.
   enum class Against : std::uint8_t { apart, cuts, covers };
   Against against(LocalPos low, std::int32_t side) const {
     std::int32_t nearest = 0, farthest = 0;
@@ -74,7 +74,7 @@ class Ball {
   LocalPos centre_;
   std::int32_t radius_;
   std::int32_t reach_;  // the largest squared distance inside
-  // By squared distance of a row from the centre: how far it reaches to either side.
+  // By the squared distance of a row from the centre: the reach of the row to either side.
   std::array<std::uint8_t, kRadiusMax*(kRadiusMax + 1) + 1> half_{};
 };
 

@@ -1,4 +1,5 @@
-// FlatArray: a material a voxel, in the axis order of the runs it is made from. Source: thesis 3.3.1, 3.3.3.
+// FlatArray: one material a voxel, in the axis order of the runs from which it is made. Source:
+// thesis 3.3.1, 3.3.3.
 #pragma once
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,7 @@
-// IntervalMap: the runs of a flattened chunk in a balanced tree, so that an edit moves no other runs. The tree is
-// std::map, keyed by the end of each interval; intervals tile the chunk, and neighbours differ.
-// Source: thesis 3.7.2; M. Lysenko, "An Analysis of Minecraft-like Engines" (0fps, 2012).
+// IntervalMap: the runs of a flattened chunk in a balanced tree, so that an edit moves no other
+// runs. The tree is a std::map from the end of each interval to its material. Intervals tile the
+// chunk, and neighbours differ. Source: thesis 3.7.2; M. Lysenko, "An Analysis of Minecraft-like
+// Engines" (0fps, 2012).
 #pragma once
 #include <map>
 
@@ -43,23 +44,24 @@ class IntervalMap {
 
  private:
   using Ends = std::map<VoxelIndex, Material>;
-  /// As the nodes of libstdc++ and libc++ are laid out.
+  /// The layout of a node of libstdc++ and libc++.
   struct Node {
     void *parent, *left, *right;
     long colour;
     Ends::value_type value;
   };
 
-  /// Voxels [first, last) become `material`. Requires first < last. O(log intervals + intervals replaced).
+  /// Sets voxels [first, last) to `material`. Requires first < last. Cost: O(log intervals +
+  /// intervals replaced).
   void fill(VoxelIndex first, VoxelIndex last, Material material) {
     auto at = ends_.upper_bound(first);
     if (at->second == material && last <= at->first) return;
     const bool whole = at == ends_.begin() ? first == 0 : std::prev(at)->first == first;
     if (!whole) {
-      // What lies before goes on, unless it is what comes.
+      // The part before `first` stays, unless it has the new material.
       if (at->second != material) ends_.emplace_hint(at, first, at->second);
     } else if (at != ends_.begin() && std::prev(at)->second == material) {
-      ends_.erase(std::prev(at));  // it becomes the beginning of the new interval
+      ends_.erase(std::prev(at));  // the new interval includes it
     }
     while (at != ends_.end() && at->first <= last) at = ends_.erase(at);
     if (at == ends_.end() || at->second != material) ends_.emplace_hint(at, last, material);

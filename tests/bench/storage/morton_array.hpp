@@ -1,4 +1,4 @@
-// MortonArray: a material a voxel, in the order of Morton codes. Source: thesis 3.3.4.
+// MortonArray: one material a voxel, in the order of Morton codes. Source: thesis 3.3.4.
 #pragma once
 #include <vector>
 
@@ -11,7 +11,8 @@
 
 namespace runstone::bench::storage {
 
-/// The voxels of a storable chunk by Morton code. Counts a dense expansion. O(volume).
+/// Returns the voxels of a storable chunk by Morton code. Counts a dense expansion. Cost:
+/// O(volume).
 inline std::vector<Material> in_morton_order(const RunChunk& chunk) {
   RUNSTONE_ASSERT(storable(chunk.extent));
   count_dense_expansion();

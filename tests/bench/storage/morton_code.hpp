@@ -1,5 +1,6 @@
-// Morton codes: the bits of x, y and z in turns, x lowest, so that voxels near each other in space mostly are so in
-// memory, and each aligned cube of 8, 64, 512 ... voxels is one stretch. Source: thesis 3.3.4; Morton 1966.
+// Morton codes: the bits of x, y and z interleaved, x lowest. Voxels that are near in space are
+// mostly near in memory, and each aligned cube of 8, 64, 512 ... voxels is one stretch. Source:
+// thesis 3.3.4; Morton 1966.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 namespace runstone::bench::storage {
 
-/// The bits of a code that belong to x, y and z; seven each, as chunks have.
+/// The bits of a code that belong to x, y and z: seven each, as chunks need.
 inline constexpr std::array<std::uint32_t, 3> kMortonAxis = {0x49249, 0x92492, 0x124924};
 
 /// Spreads bits by a table of 512 bytes.
@@ -34,8 +35,8 @@ struct MortonByPdep {
   }
 
  private:
-  // Not the intrinsic: a function for BMI2 is never inlined into one for any x86-64, and the call would cost more
-  // than the instruction.
+  // Not the intrinsic: a function for BMI2 is never inlined into a function for any x86-64, and the
+  // call would cost more than the instruction.
   static std::uint32_t deposit(std::uint32_t bits, std::uint32_t mask) {
     std::uint32_t out = 0;
     __asm__("pdep %2, %1, %0" : "=r"(out) : "r"(bits), "r"(mask));
@@ -48,7 +49,7 @@ using MortonByPdep = MortonByTable;
 inline bool morton_by_pdep() { return false; }
 #endif
 
-/// The next code along an axis whose bits are `axis`. Wraps at the end of its seven bits.
+/// Returns the next code along an axis whose bits are `axis`. Wraps at the end of its seven bits.
 constexpr std::uint32_t morton_next(std::uint32_t code, std::uint32_t axis) {
   return (code & ~axis) | (((code & axis) - axis) & axis);
 }

@@ -1,7 +1,8 @@
-// PaletteStore: sections of 16 x 16 x 16 voxels, each with the materials that it has met and bit-packed places
-// in that palette, as Minecraft keeps a world in memory: no bits for a section of one material, then 4 to 8, and
-// beyond 256 materials the materials themselves. A palette grows and never shrinks; only a section that is made
-// anew has the fewest bits. x fastest, then z, then y. Source: wiki.vg, "Chunk Format".
+// PaletteStore: sections of 16 x 16 x 16 voxels, each with a palette of its materials and
+// bit-packed indices, as Minecraft keeps a world in memory: no bits for a section of one material,
+// then 4 to 8, and beyond 256 materials the materials themselves. A palette grows and never
+// shrinks; only a rebuilt section has the fewest bits. x is the fastest axis, then z, then y.
+// Source: wiki.vg, "Chunk Format".
 #pragma once
 #include <algorithm>
 #include <array>
@@ -108,7 +109,8 @@ class PaletteStore {
       places.assign([&](std::size_t i) { return place[i]; });
     }
 
-    /// What stands for a material in `places`, which get more bits if they have to.
+    /// Returns the value for a material in `places`. Adds bits to `places` if the palette needs
+    /// them.
     std::uint32_t value_of(Material material, std::size_t volume) {
       if (is_direct()) return material;
       const std::uint32_t place = place_in(palette, material);
@@ -125,7 +127,7 @@ class PaletteStore {
       return material;
     }
 
-    /// Linear, as the game's are up to 16 materials; few sections have more.
+    /// Linear search, as in the game up to 16 materials; few sections have more.
     static std::uint32_t place_in(std::vector<Material>& palette, Material material) {
       const auto at = std::find(palette.begin(), palette.end(), material);
       const auto place = static_cast<std::uint32_t>(at - palette.begin());
@@ -144,7 +146,7 @@ class PaletteStore {
     return (at.x & low) | (at.z & low) << bits_ | (at.y & low) << (2 * bits_);
   }
 
-  /// Calls piece(first, count) for the parts of a row that lie in one section each.
+  /// Calls piece(first, count) for the parts of a row, each inside one section.
   template <class F>
   void for_each_section(OrderedPos first, std::uint32_t count, F&& piece) const {
     while (count > 0) {
@@ -155,11 +157,11 @@ class PaletteStore {
     }
   }
 
-  /// `count` voxels along x, in one section.
+  /// Sets `count` voxels along x, in one section.
   void fill(LocalPos first, std::uint32_t count, Material material) {
     Section& section = sections_[section_of(first)];
     const std::uint32_t value = section.value_of(material, section_volume());
-    if (section.places.bits() == 0) return;  // all of it is of that material
+    if (section.places.bits() == 0) return;  // the whole section has that material
     const std::size_t cell = cell_of(first);
     for (std::size_t i = cell; i < cell + count; ++i) section.places.set(i, value);
   }

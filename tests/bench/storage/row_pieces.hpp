@@ -1,4 +1,4 @@
-// Runs cut at the ends of lines: what stores that do not flatten a chunk as the runs do are filled from.
+// Runs cut at the ends of lines, for stores that flatten a chunk in another way than the runs do.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace runstone::bench::storage {
 
-/// Calls piece(first, count, material) for pieces that tile the chunk in index order, each inside a line of the
-/// fastest axis. O(runs + lines).
+/// Calls piece(first, count, material) for pieces that tile the chunk in index order, each inside a
+/// line of the fastest axis. Cost: O(runs + lines).
 template <class F>
 void for_each_row_piece(const RunChunk& chunk, F&& piece) {
   const OrderedExtent e = ordered(chunk.extent, chunk.order);

@@ -1,6 +1,6 @@
-// RunStore: the product's runs, in the axis order that the holder chose: the cheapest. A voxel is found by
-// bisection; a brush finds the stretches that change and replaces the runs of its edit areas in one go, as
-// apply_stack() does with a lone edit, but for digest and dirty layers. Source: thesis 3.7.1, 7.3.
+// RunStore: the product's runs, in the cheapest axis order. A voxel is found by bisection. A brush
+// finds the stretches that change and replaces the runs of its edit areas at once, as apply_stack()
+// does with one edit, but without digest and dirty layers. Source: thesis 3.7.1, 7.3.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -49,7 +49,7 @@ class RunStore {
   std::size_t byte_size() const {
     const std::size_t bytes = chunk_.runs.byte_capacity();
     if (chunk_.runs.is_narrow()) return sizeof *this + heap_bytes(bytes);
-    const std::size_t materials = bytes / 6 * sizeof(Material);  // both lists are as long
+    const std::size_t materials = bytes / 6 * sizeof(Material);  // both lists have one length
     return sizeof *this + heap_bytes(bytes - materials) + heap_bytes(materials);
   }
   const RunChunk& chunk() const { return chunk_; }
@@ -61,7 +61,7 @@ class RunStore {
     std::vector<Run> runs, whole;
   };
 
-  /// Stretches of the ball's rows that are of another material, as long as they get.
+  /// Finds the longest stretches of the ball's rows that have another material.
   void find_changes(const Ball& ball, Material material, std::vector<Change>& out) const {
     const OrderedExtent e = ordered(chunk_.extent, chunk_.order);
     chunk_.runs.visit([&]<class Runs>(Runs runs) {

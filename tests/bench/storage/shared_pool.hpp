@@ -1,7 +1,7 @@
-// SharedPool: as SlotPool, but equal records are kept once: found by a hash table whose chains run through the
-// records, and counted, so that one that nobody refers to any more makes room. The pool of a DAG.
-// Source: hash-consing as in Careil, Billeter, Eisemann, "Interactively Modifying Compressed Sparse Voxel
-// Representations" (2020).
+// SharedPool: as SlotPool, but equal records are kept once. A hash table, whose chains run through
+// the records, finds them. References are counted, and a record without references is freed. It is
+// the pool of a DAG. Source: hash-consing as in Careil, Billeter, Eisemann, "Interactively
+// Modifying Compressed Sparse Voxel Representations" (2020).
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@
 
 namespace runstone::bench::storage {
 
-/// Record: plain bytes without padding, a multiple of eight.
+/// Record must be plain bytes without padding, a multiple of eight.
 template <class Record>
 class SharedPool {
  public:
@@ -25,7 +25,7 @@ class SharedPool {
   SharedPool() : chains_(kChainsMin, kNone) {}
 
   const Record& operator[](std::uint32_t slot) const { return slots_[slot].record; }
-  /// Where the record is now, with one reference more, and whether it was not there before.
+  /// Adds a reference to a record. Returns its slot, and whether the record is new.
   std::pair<std::uint32_t, bool> add(const Record& record) {
     std::uint32_t chain = chain_of(record);
     for (std::uint32_t at = chains_[chain]; at != kNone; at = slots_[at].next) {
@@ -49,9 +49,9 @@ class SharedPool {
     ++count_;
     return {slot, true};
   }
-  /// One reference more.
+  /// Adds a reference.
   void share(std::uint32_t slot) { ++slots_[slot].references; }
-  /// One reference less. Returns whether it was the last, and the record is gone.
+  /// Removes a reference. Returns true if it was the last one and the record is freed.
   bool release(std::uint32_t slot) {
     if (--slots_[slot].references > 0) return false;
     std::uint32_t* link = &chains_[chain_of(slots_[slot].record)];
@@ -79,7 +79,7 @@ class SharedPool {
   struct Slot {
     Record record{};
     std::uint32_t references = 0;
-    std::uint32_t next = kNone;  // in its chain, or of the free ones
+    std::uint32_t next = kNone;  // in its chain, or in the list of free slots
   };
 
   std::uint32_t chain_of(const Record& record) const {

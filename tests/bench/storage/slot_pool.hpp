@@ -1,4 +1,5 @@
-// SlotPool: records in one vector, named by their place, free places reused. The pool of a plain octree.
+// SlotPool: records in one vector, named by their slot; free slots are used again. It is the pool
+// of a plain octree.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +16,7 @@ class SlotPool {
   static constexpr bool kShares = false;
 
   const Record& operator[](std::uint32_t slot) const { return records_[slot]; }
-  /// Where the record is now, and that it was not there before.
+  /// Adds a record. Returns its slot, and true because the record is new.
   std::pair<std::uint32_t, bool> add(const Record& record) {
     if (free_.empty()) {
       records_.push_back(record);
@@ -26,7 +27,7 @@ class SlotPool {
     records_[slot] = record;
     return {slot, true};
   }
-  /// Gives a record back. Returns whether it is gone: always.
+  /// Frees a record. Always returns true.
   bool release(std::uint32_t slot) {
     free_.push_back(slot);
     return true;

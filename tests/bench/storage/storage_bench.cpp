@@ -4,16 +4,16 @@
 
 #include <bit>
 
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/shuffled.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/storage/stores.hpp"
 #include "tests/bench/worlds/measured_worlds.hpp"
 
 namespace runstone::bench {
 namespace {
 
-/// All stores on one volume.
+/// Measures all stores on one volume.
 void measure_volume(const storage::StoreCase& asked, unsigned repetitions, const StorageRow& shared,
                     std::vector<StorageRow>& rows) {
   const auto stores = storage::make_stores(asked);

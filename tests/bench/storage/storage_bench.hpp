@@ -1,17 +1,17 @@
-// `runstone-bench storage`: every way to keep voxels on every volume: bytes, and what reading, walking and editing
-// costs.
+// `runstone-bench storage`: every way to store voxels on every volume: bytes, and the times to
+// read, walk and edit.
 #pragma once
 #include <iosfwd>
 #include <string>
 
 #include "common/core/result.hpp"
-#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/storage/storage_result.hpp"
 
 namespace runstone::bench {
 
-/// Progress goes to `progress`, a line a world and edge. Fails if a world cannot be read. Requires edges that
-/// are powers of two.
+/// Prints a line of progress for each world and edge. Fails if a world cannot be read. Requires
+/// edges that are powers of two.
 Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options,
                                                      std::ostream& progress);
 

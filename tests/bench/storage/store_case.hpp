@@ -1,5 +1,5 @@
-// StoreCase: what is asked of every store of one volume: the same positions, edits and brushes, drawn from a
-// seed.
+// StoreCase: the input of every store of one volume: the same positions, edits and brushes, drawn
+// from a seed.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,7 +13,7 @@ inline constexpr std::int32_t kBrushRadius = 5;  // voxels
 
 struct PointEdit {
   LocalPos at;
-  Material now, before;  // never the same
+  Material now, before;  // always different
 };
 struct Brush {
   Ball ball;
@@ -25,11 +25,11 @@ struct StoreCase {
   std::vector<LocalPos> reads;
   std::vector<PointEdit> edits;
   std::vector<Brush> brushes;
-  double brush_voxels = 0;  // of a brush that lie in the chunk: mean
+  double brush_voxels = 0;  // of a brush, inside the chunk: mean
 };
 
-/// Places are uniform in the chunk. Materials are drawn from those of the chunk, the empty one, and one that the
-/// chunk does not have.
+/// Places are uniform in the chunk. Materials are drawn from those of the chunk, the empty one, and
+/// one that the chunk does not have.
 StoreCase make_store_case(const RunChunk& chunk, std::uint64_t seed);
 
 }  // namespace runstone::bench::storage

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/storage/flat_array.hpp"
 #include "tests/bench/storage/interval_map.hpp"
 #include "tests/bench/storage/morton_array.hpp"
@@ -19,11 +19,13 @@ namespace {
 constexpr std::array<std::string_view, 7> kNames = {"flat",         "morton", "palette", "runs",
                                                     "interval_map", "octree", "dag"};
 
-constexpr double kBlockNs = 50'000;  // of calls timed together, or one call if that takes longer
-constexpr std::size_t kBatchBytes = 256 * 1024;  // of stores that are built or painted in one go,
-constexpr std::size_t kBatchMax = 16;            // and how many at most
+// A block of calls that are timed together, or one call if it takes longer.
+constexpr double kBlockNs = 50'000;
+// The bytes of the stores that are built or painted together, and their number.
+constexpr std::size_t kBatchBytes = 256 * 1024;
+constexpr std::size_t kBatchMax = 16;
 
-/// What asking the clock costs by itself.
+/// Returns the time that a call of the clock takes.
 double clock_ns() {
   static const double cost = [] {
     std::uint64_t least = ~std::uint64_t{0};
@@ -40,11 +42,13 @@ template <class Work>
 double core_ns_of(Work&& work) {
   const std::uint64_t start = core_ns();
   work();
-  // The clock may tick a little faster than at its best: no time is below one.
+  // A call of the clock may take a little less than its fastest measured time, so no result is
+  // below one.
   return std::max(static_cast<double>(core_ns() - start) - clock_ns(), 1.0);
 }
 
-/// Of a call of work that leaves things as they are: once to warm up, then as often as makes a block.
+/// Returns the time of a call of work that changes nothing: one call to warm up, then as many as
+/// fill a block.
 template <class Work>
 double block_ns(Work&& work) {
   const double once = std::max(core_ns_of(work), 20.0);
@@ -61,7 +65,8 @@ double read_ns(const Store& store, const StoreCase& asked) {
            for (const LocalPos at : asked.reads) {
              const Material material = store.at(at);
              benchmark::DoNotOptimize(
-                 material);  // one by one: of a store of one material all reads are the same
+                 // One by one: in a store of one material all reads are the same.
+                 material);
            }
            benchmark::ClobberMemory();
          }) /
@@ -81,14 +86,15 @@ double walk_ns(const Store& store, const StoreCase& asked) {
          asked.chunk.volume();
 }
 
-/// On a copy: what an edit leaves behind (a palette that grew) stays out of the store.
+/// Works on a copy, so that the store keeps nothing from an edit, such as a grown palette.
 template <VoxelStore Store>
 double edit_ns(const Store& store, const StoreCase& asked) {
   Store edited = store;
   return block_ns([&] {
            for (const PointEdit& edit : asked.edits) {
              edited.set(edit.at, edit.now);
-             benchmark::ClobberMemory();  // or an array would only be written the second time
+             // otherwise an array would be written only the second time
+             benchmark::ClobberMemory();
              edited.set(edit.at, edit.before);
              benchmark::ClobberMemory();
            }
@@ -96,7 +102,7 @@ double edit_ns(const Store& store, const StoreCase& asked) {
          static_cast<double>(2 * asked.edits.size());
 }
 
-/// Batches, so that the clock is asked seldom.
+/// Returns the size of a batch. Batches keep the calls of the clock few.
 template <VoxelStore Store>
 std::size_t batch_of(const Store& store) {
   return std::clamp<std::size_t>(kBatchBytes / store.byte_size(), 1, kBatchMax);
@@ -115,7 +121,7 @@ double build_ns(const Store& store, const StoreCase& asked) {
          static_cast<double>(batch);
 }
 
-/// Each brush on the voxels as they were.
+/// Paints each brush on the original voxels.
 template <VoxelStore Store>
 double brush_ns(const Store& store, const StoreCase& asked) {
   const std::size_t batch = batch_of(store);
@@ -130,7 +136,7 @@ double brush_ns(const Store& store, const StoreCase& asked) {
 }
 
 template <VoxelStore Store>
-StoreContestant mesher_case(std::string_view name, const StoreCase& asked) {
+MeasuredStore measured_store(std::string_view name, const StoreCase& asked) {
   const auto store = std::make_shared<const Store>(asked.chunk);
   return {name, store->byte_size(), [store, &asked] {
             std::vector<double> out(kStoreFigureCount);
@@ -150,16 +156,16 @@ StoreContestant mesher_case(std::string_view name, const StoreCase& asked) {
 
 std::span<const std::string_view> store_names() { return kNames; }
 
-std::vector<StoreContestant> make_stores(const StoreCase& asked) {
-  std::vector<StoreContestant> out;
-  out.push_back(mesher_case<FlatArray>(kNames[0], asked));
-  out.push_back(morton_by_pdep() ? mesher_case<MortonArray<MortonByPdep>>(kNames[1], asked)
-                                 : mesher_case<MortonArray<MortonByTable>>(kNames[1], asked));
-  out.push_back(mesher_case<PaletteStore>(kNames[2], asked));
-  out.push_back(mesher_case<RunStore>(kNames[3], asked));
-  out.push_back(mesher_case<IntervalMap>(kNames[4], asked));
-  out.push_back(mesher_case<SparseOctree>(kNames[5], asked));
-  out.push_back(mesher_case<VoxelDag>(kNames[6], asked));
+std::vector<MeasuredStore> make_stores(const StoreCase& asked) {
+  std::vector<MeasuredStore> out;
+  out.push_back(measured_store<FlatArray>(kNames[0], asked));
+  out.push_back(morton_by_pdep() ? measured_store<MortonArray<MortonByPdep>>(kNames[1], asked)
+                                 : measured_store<MortonArray<MortonByTable>>(kNames[1], asked));
+  out.push_back(measured_store<PaletteStore>(kNames[2], asked));
+  out.push_back(measured_store<RunStore>(kNames[3], asked));
+  out.push_back(measured_store<IntervalMap>(kNames[4], asked));
+  out.push_back(measured_store<SparseOctree>(kNames[5], asked));
+  out.push_back(measured_store<VoxelDag>(kNames[6], asked));
   return out;
 }
 

@@ -1,7 +1,7 @@
-// The stores as mesher_cases: each set before one volume, ready to be measured.
-//   flat           a material a voxel, in the axis order of the runs (flat_array.hpp)
+// The stores as cases to measure, each in front of one volume.
+//   flat           one material a voxel, in the axis order of the runs (flat_array.hpp)
 //   morton         the same by Morton code (morton_array.hpp)
-//   palette        sections of 16³ with a palette, as Minecraft (palette_store.hpp)
+//   palette        sections of 16³ with a palette, as in Minecraft (palette_store.hpp)
 //   runs           the product's runs (run_store.hpp)
 //   interval_map   the runs in a balanced tree (interval_map.hpp)
 //   octree, dag    sparse voxel octree and DAG (voxel_tree.hpp)
@@ -17,24 +17,25 @@
 
 namespace runstone::bench::storage {
 
-/// What one repetition measures, ns of core time, in this order: to build from runs; to read a voxel at random;
-/// to walk, a voxel; to set one voxel; to paint a ball.
+/// The figures of one repetition, in ns of processor time, in this order: build from runs; read a
+/// random voxel; walk, per voxel; set one voxel; paint a ball.
 enum class StoreFigure : std::uint8_t { build, read, walk, edit, brush };
 inline constexpr std::size_t kStoreFigureCount = 5;
 
-struct StoreContestant {
+struct MeasuredStore {
   std::string_view name;
-  std::size_t bytes = 0;                            // all that it keeps, just built
-  std::function<std::vector<double>()> repetition;  // figures by StoreFigure
+  std::size_t bytes = 0;                            // all that the store keeps, just built
+  std::function<std::vector<double>()> repetition;  // returns figures by StoreFigure
 };
 
-/// All names, in the order above.
+/// Returns all names, in the order above.
 std::span<const std::string_view> store_names();
 
-/// All stores on one volume, in that order. Requires a storable() chunk; `asked` must outlive them.
-std::vector<StoreContestant> make_stores(const StoreCase& asked);
+/// Returns all stores on one volume, in that order. Requires a storable() chunk; `asked` must
+/// outlive them.
+std::vector<MeasuredStore> make_stores(const StoreCase& asked);
 
-/// Whether Morton codes are made by the instruction pdep here, or by a table.
+/// Returns "pdep" or "table": how Morton codes are made on this machine.
 std::string_view morton_code_maker();
 
 }  // namespace runstone::bench::storage

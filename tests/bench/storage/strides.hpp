@@ -1,5 +1,5 @@
-// Strides: how far neighbours along each axis lie apart in a flattened chunk. An axis order that is not known
-// when the program is compiled then costs a read no table.
+// Strides: the distances of neighbours along each axis in a flattened chunk. With them a read needs
+// no table, although the axis order is not known at compile time.
 #pragma once
 #include <cstdint>
 
@@ -20,7 +20,7 @@ class Strides {
   std::uint32_t x_, y_, z_;
 };
 
-/// Index of a voxel by its ordered coordinates.
+/// Returns the index of a voxel from its ordered coordinates.
 constexpr VoxelIndex index_of(OrderedPos at, OrderedExtent e) {
   return at.f + e.f * (at.m + e.m * at.s);
 }

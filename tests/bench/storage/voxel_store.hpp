@@ -1,12 +1,13 @@
-// VoxelStore: what every way to keep the voxels of a chunk can do, so that one measurement and one test are
-// templates over all of them: no virtual call stands in an inner loop. Chunks are cubes whose edge is a power of
-// two, as trees and Morton codes want them. A store is made from runs and keeps nothing but what it needs to be
-// read, walked and edited.
-//   at(p)                 material of a voxel
-//   set(p, m)             one voxel; nothing happens if it is of that material
-//   paint(ball, m)        all voxels of a ball, in the way that suits the store
-//   walk(f)               f(count, material) for stretches that make up the chunk, in the store's own best order
-//   byte_size()           all that it keeps: itself and its blocks on the heap (heap_bytes.hpp)
+// VoxelStore: the interface of every way to store the voxels of a chunk. One measurement and one
+// test are templates over all of them, so that no virtual call stands in an inner loop. Chunks are
+// cubes whose edge is a power of two, as trees and Morton codes require. A store is made from runs
+// and keeps only what reading, walking and editing need.
+//   at(p)                 returns the material of a voxel
+//   set(p, m)             sets one voxel; does nothing if it has that material
+//   paint(ball, m)        sets all voxels of a ball, in the way that suits the store
+//   walk(f)               calls f(count, material) for stretches that tile the chunk, in the
+//                         store's best order
+//   byte_size()           returns all that it keeps: itself and its heap blocks (heap_bytes.hpp)
 #pragma once
 #include <bit>
 #include <concepts>
@@ -31,7 +32,7 @@ concept VoxelStore =
       { kept.byte_size() } -> std::same_as<std::size_t>;
     };
 
-/// A cube with an edge of 8, 16, 32, 64 or 128.
+/// Returns true for a cube with an edge of 8, 16, 32, 64 or 128.
 constexpr bool storable(Extent extent) {
   return extent.valid() && extent.x == extent.y && extent.y == extent.z &&
          std::has_single_bit(std::uint32_t{extent.x});

@@ -1,10 +1,12 @@
-// VoxelTree: a cube split in eight down to single voxels, parts of one material collapsed. Children are named by
-// their place in a pool, not by pointers; the lowest nodes hold the materials of 2 x 2 x 2 voxels. What the pool
-// does with equal nodes makes it one of two stores:
+// VoxelTree: a cube divided into eight parts, recursively, down to single voxels. Parts of one
+// material are collapsed. Children are named by their slot in a pool, not by pointers. The lowest
+// nodes hold the materials of 2 x 2 x 2 voxels. The pool's treatment of equal nodes makes two
+// stores of it:
 //   SparseOctree   every part has nodes of its own. Source: thesis 3.4; Laine, Karras 2010.
-//   VoxelDag       equal parts share them; an edit makes new nodes along its path only. Source: Kämpe, Sintorn,
-//                  Assarsson, "High Resolution Sparse Voxel DAGs" (2013); edits as in Careil et al. (2020).
-// A tree is canonical: equal voxels have equally many nodes, whatever happened before.
+//   VoxelDag       equal parts share nodes; an edit makes new nodes along its path only. Source:
+//                  Kämpe, Sintorn, Assarsson, "High Resolution Sparse Voxel DAGs" (2013); edits as
+//                  in Careil et al. (2020).
+// A tree is canonical: equal voxels have the same number of nodes, whatever edits came before.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -47,13 +49,14 @@ class VoxelTree {
     walk(root_, chunk_volume(), stretch);
   }
   std::size_t byte_size() const { return sizeof *this + nodes_.heap_size() + leaves_.heap_size(); }
-  /// Nodes above the lowest, and the lowest.
+  /// Returns the numbers of inner nodes and of leaves.
   std::array<std::size_t, 2> node_counts() const { return {nodes_.count(), leaves_.count()}; }
 
  private:
-  /// A part of the cube: kUniform and its material, kLeaf and the place of its leaf (2 x 2 x 2 voxels), or the
-  /// place of its node. So equal parts of different heights may share a node. Every function that takes a part
-  /// to change it takes the reference to its node over, and hands one out with its result.
+  /// A part of the cube: kUniform and its material, kLeaf and the slot of its leaf (2 x 2 x 2
+  /// voxels), or the slot of its node. So equal parts of different heights may share a node. A
+  /// function that takes a part in order to change it takes over the reference to its node, and
+  /// returns one with its result.
   using Part = std::uint32_t;
   using Node = std::array<Part, 8>;
   using Leaf = std::array<Material, 8>;
@@ -75,12 +78,12 @@ class VoxelTree {
   Part close(const Leaf& voxels) {
     return all_equal(voxels) ? uniform(voxels[0]) : kLeaf | leaves_.add(voxels).first;
   }
-  /// Takes the references to the children over.
+  /// Makes a part from eight parts. Takes over the references to the children.
   Part close(const Node& parts) {
     if (is_uniform(parts[0]) && all_equal(parts)) return parts[0];
     const auto [slot, added] = nodes_.add(parts);
     if (!added) {
-      for (const Part part : parts) drop(part);  // the node that was there has its own
+      for (const Part part : parts) drop(part);  // the existing node has its own references
     }
     return slot;
   }
@@ -127,7 +130,7 @@ class VoxelTree {
     for (const Part child : parts) drop(child);
   }
 
-  /// Of voxels in Morton order.
+  /// Builds a part from voxels in Morton order.
   Part build(std::span<const Material> voxels) {
     if (voxels.size() == 8) {
       Leaf leaf;

@@ -7,15 +7,15 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/bench/wire/transfer_form.hpp"
 #include "tests/bench/worlds/lit_chunk.hpp"
 
 namespace runstone::bench {
 namespace {
 
-/// One chunk in one form.
+/// The measurement of one chunk in one form.
 struct Sample {
   double bytes = 0, encode_us = 0, decode_us = 0;
 };
@@ -36,7 +36,7 @@ double us_of(Work&& work) {
   return static_cast<double>(now_ns() - start) / 1000;
 }
 
-/// The forms in turns, so that a noisy machine hits all of them alike.
+/// Measures the forms in alternation, so that noise of the machine affects all of them alike.
 Samples measure(const LitChunk& chunk, unsigned repetitions, std::ostream& progress) {
   const std::vector<TransferForm> forms = make_transfer_forms(chunk);
   std::vector<std::vector<double>> encode(forms.size()), decode(forms.size());
@@ -103,7 +103,7 @@ void add_rows(const ByteWorld& world, unsigned repetitions, std::vector<BytesRow
   }
 }
 
-/// A bar holds for all chunks and for the mixed ones alone.
+/// Judges a target, which applies to all chunks and to the non-uniform ones alone.
 Target judged(const std::vector<BytesRow>& rows, const std::string& what, const std::string& world,
               const std::string& form, double BytesRow::* ratio, double wanted) {
   Target target{what, fmt::format("{:.2f}x", wanted), "", Verdict::not_measured};
@@ -118,7 +118,7 @@ Target judged(const std::vector<BytesRow>& rows, const std::string& what, const 
   return target;
 }
 
-/// A stretch is wanted of the best coder only.
+/// The stretch targets apply to the best coder only.
 std::vector<Target> targets_of(const std::vector<BytesRow>& rows) {
   const auto luanti = &BytesRow::of_luanti, minecraft = &BytesRow::of_minecraft;
   std::vector<Target> targets;
@@ -162,8 +162,7 @@ Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
 void write_table(const BytesBench& bench, std::ostream& out) {
   fmt::print(out,
              "\n| world | chunks | form | bytes | x Luanti with light | geometric mean | x "
-             "Minecraft | encode "
-             "µs | decode µs |\n|---|---|---|---|---|---|---|---|---|\n");
+             "Minecraft | encode µs | decode µs |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const BytesRow& row : bench.rows) {
     fmt::print(out, "| {} | {} {} | {} | {:.0f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} |\n",
                row.world, row.chunks, row.mixed ? "not uniform" : "all", row.form, row.bytes,

@@ -1,4 +1,5 @@
-// `runstone-bench bytes`: what the same voxels cost in each form to send: bytes, and time in both directions.
+// `runstone-bench bytes`: the cost of sending the same voxels in each form: bytes, and the time to
+// encode and decode.
 #pragma once
 #include <cstddef>
 #include <iosfwd>
@@ -6,7 +7,7 @@
 #include <vector>
 
 #include "common/core/result.hpp"
-#include "tests/bench/app/bench_options.hpp"
+#include "tests/bench/harness/bench_options.hpp"
 #include "tests/bench/harness/machine.hpp"
 #include "tests/bench/harness/target.hpp"
 
@@ -31,8 +32,8 @@ struct BytesBench {
   std::vector<Target> targets;
 };
 
-/// Every form is decoded once for each chunk and held to its voxels and light: a difference ends the program.
-/// Single-threaded. Fails if the Luanti world is asked for and cannot be read.
+/// Decodes every form once for each chunk and compares voxels and light; aborts if they differ.
+/// Single-threaded. Fails if the Luanti world is wanted and cannot be read.
 Result<BytesBench, std::string> run_bytes_bench(const BenchOptions& options,
                                                 std::ostream& progress);
 

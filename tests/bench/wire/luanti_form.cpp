@@ -22,8 +22,9 @@ struct Free {
 struct Scratch {
   std::unique_ptr<ZSTD_CStream, Free> compressor{ZSTD_createCStream()};
   std::unique_ptr<ZSTD_DStream, Free> decompressor{ZSTD_createDStream()};
-  Bytes plain;                             // of a block to send
-  Bytes received = Bytes(kPlainBytesMax);  // never cleared: only what was read into it is looked at
+  Bytes plain;  // of the block to send
+  // never cleared: only the bytes that were read into it are used
+  Bytes received = Bytes(kPlainBytesMax);
 };
 
 Scratch& scratch() {
@@ -42,11 +43,11 @@ unsigned get_u16(ByteReader& in) {
 }
 
 struct Stream {
-  ByteView plain;         // in the scratch
-  std::size_t bytes = 0;  // that it took
+  ByteView plain;         // a part of the scratch
+  std::size_t bytes = 0;  // length of the stream
 };
 
-/// One stream from the front of `in`.
+/// Decompresses one stream from the front of `in`.
 Result<Stream> decompress(ByteView in, Scratch& s) {
   ZSTD_initDStream(s.decompressor.get());
   ZSTD_inBuffer source{in.data(), in.size(), 0};
@@ -57,7 +58,7 @@ Result<Stream> decompress(ByteView in, Scratch& s) {
   return Stream{ByteView(s.received).first(target.pos), source.pos};
 }
 
-/// What follows the head of a block in both of its forms.
+/// Reads what follows the head of a block in both of its forms.
 Result<void> read_nodes(ByteReader& in, LuantiNodes& out) {
   if (in.u8() != 2 || in.u8() != 2)
     in.reject(ErrorCode::bad_value, "ids or parameters of another width");
@@ -86,7 +87,8 @@ void encode_luanti_block(const LuantiNodes& nodes, Bytes& out) {
   ZSTD_initCStream(s.compressor.get(), kLevel);
   ZSTD_inBuffer source{s.plain.data(), s.plain.size(), 0};
   ZSTD_outBuffer target{out.data() + at, out.size() - at, 0};
-  // Two calls, as Luanti does: with all input at the end call zstd would write the size down.
+  // Two calls, as Luanti makes them: with all input in the end call, zstd would write the content
+  // size.
   ZSTD_compressStream2(s.compressor.get(), &target, &source, ZSTD_e_continue);
   const std::size_t left = ZSTD_compressStream2(s.compressor.get(), &target, &source, ZSTD_e_end);
   RUNSTONE_ASSERT(left == 0);

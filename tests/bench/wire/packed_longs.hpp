@@ -1,5 +1,6 @@
-// PackedLongs: small numbers, all of the same bits, in longs of 64, low bits first, none across two longs: how
-// Minecraft keeps and sends the voxels of a section (since 1.16) as places in its palette.
+// PackedLongs: small numbers of equal width in 64-bit longs, low bits first, none across two longs.
+// Minecraft keeps and sends the voxels of a section in this form (since 1.16), as indices into its
+// palette.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -10,10 +11,10 @@
 
 namespace runstone::bench {
 
-/// Above so many bits a section has no palette: its numbers are the ids themselves.
+/// A section with more bits has no palette: its numbers are the ids themselves.
 inline constexpr unsigned kPaletteBitsMax = 8;
 
-/// Bits of a number for a palette of so many materials: 0 for one, else at least 4.
+/// Returns the bits of a number for a palette of `materials` entries: 0 for one, else at least 4.
 constexpr unsigned palette_bits(std::size_t materials) {
   return materials <= 1 ? 0 : std::max(4u, static_cast<unsigned>(std::bit_width(materials - 1)));
 }
@@ -22,7 +23,8 @@ class PackedLongs {
  public:
   static constexpr std::size_t kCountMax = 4096;
   PackedLongs() = default;
-  /// All zero. Requires bits <= 16 and count <= kCountMax. No bits: no longs, and every number is 0.
+  /// Makes numbers that are all zero. Requires bits <= 16 and count <= kCountMax. With 0 bits there
+  /// are no longs, and every number is 0.
   PackedLongs(std::size_t count, unsigned bits) { reset(count, bits); }
   void reset(std::size_t count, unsigned bits) {
     count_ = count;
@@ -34,7 +36,7 @@ class PackedLongs {
 
   unsigned bits() const { return bits_; }
   std::span<const std::uint64_t> longs() const { return longs_; }
-  /// To fill from elsewhere.
+  /// Lets a reader fill the longs.
   std::span<std::uint64_t> longs() { return longs_; }
   std::size_t capacity() const { return longs_.capacity(); }
 
@@ -48,7 +50,7 @@ class PackedLongs {
     std::uint64_t& word = longs_[place.word];
     word = (word & ~(std::uint64_t{mask()} << place.shift)) | std::uint64_t{value} << place.shift;
   }
-  /// Sets all, number i to value(i).
+  /// Sets every number i to value(i).
   template <class Value>
   void assign(Value&& value) {
     std::size_t i = 0;
@@ -59,7 +61,7 @@ class PackedLongs {
       }
     }
   }
-  /// Calls take(value) for all in order; not at all if there are no bits.
+  /// Calls take(value) for every number in order; never if there are no bits.
   template <class Take>
   void for_each(Take&& take) const {
     std::size_t left = count_;
@@ -77,7 +79,8 @@ class PackedLongs {
     unsigned shift;
   };
   std::uint32_t mask() const { return (1u << bits_) - 1; }
-  // Division by a number of few values as the game does it: a product, exact for all i below kCountMax.
+  // Divides by a product with the reciprocal, as the game does. It is exact for all i below
+  // kCountMax.
   Place place_of(std::size_t i) const {
     const std::size_t word = i * reciprocal_ >> kShift;
     return {word, static_cast<unsigned>(i - word * per_long_) * bits_};

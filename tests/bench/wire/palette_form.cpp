@@ -14,12 +14,12 @@ constexpr std::size_t kSectionBytesMax = 8 * 1024 + 600;  // direct longs, and r
 
 struct Scratch {
   Bytes plain;
-  std::vector<Material> palette;  // of the section written last
-  std::vector<Material> names;    // of the section read last
-  PackedLongs numbers;            // of the section at hand: places in its palette, or ids
+  std::vector<Material> palette;  // of the last encoded section
+  std::vector<Material> names;    // of the last decoded section
+  PackedLongs numbers;            // of the present section: palette indices, or ids
   Bytes received;
-  std::vector<std::uint16_t> index_of =
-      std::vector<std::uint16_t>(65536, 0xffff);  // by id; 0xffff: absent
+  // By id; 0xffff: absent.
+  std::vector<std::uint16_t> index_of = std::vector<std::uint16_t>(65536, 0xffff);
 };
 
 Scratch& scratch() {

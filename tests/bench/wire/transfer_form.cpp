@@ -19,17 +19,17 @@ namespace {
 
 constexpr std::size_t kBlockSide = 16, kBlocks = 8;
 constexpr int kZstdLevel = 3;
-// Luanti's id of air; the others follow it, so that every material has one.
+// Luanti's id of air. The others follow it, so that every material has an id.
 constexpr std::uint16_t kLuantiAir = 126;
 
 constexpr std::array<std::string_view, 8> kNames = {
     "dense", "dense_zstd", "luanti_light", "luanti", "minecraft", "raw", "packed", "coded"};
 
 void check(bool good) {
-  if (!good) std::abort();  // a form that cannot read its own bytes measures nothing
+  if (!good) std::abort();  // a form that cannot read its bytes measures nothing
 }
 
-/// Index of a voxel of block `b` in the chunk: blocks x fastest, then y, then z.
+/// Returns the index in the chunk of a voxel of block `b`. Blocks lie x fastest, then y, then z.
 std::size_t in_chunk(std::size_t b, std::size_t x, std::size_t y, std::size_t z) {
   const std::size_t wide_x = x + kBlockSide * (b & 1), wide_y = y + kBlockSide * (b >> 1 & 1),
                     wide_z = z + kBlockSide * (b >> 2);

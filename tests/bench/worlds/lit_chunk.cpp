@@ -21,11 +21,11 @@ constexpr auto kSide = static_cast<std::int32_t>(kByteEdge);
 constexpr std::uint8_t kSun = 15;
 constexpr std::int32_t kSkyAbove =
     static_cast<std::int32_t>(kSideMax) -
-    kSide;  // how far above a chunk something may shade it: columns end there
+    kSide;  // how far above a chunk a voxel may shade it: columns end there
 constexpr VoxelBox kTerrainBox = {{-160, -64, -160}, {160, 96, 160}};
 constexpr VoxelBox kSeededBox = {{0, -64, 0}, {128, 64, 128}};
 
-/// y of the lowest voxel of a column that the sky is open above.
+/// Returns the y of the lowest voxel of a column that is open to the sky.
 using OpenFrom = std::function<std::int32_t(std::int32_t x, std::int32_t z)>;
 
 std::size_t voxel_index(std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -87,7 +87,7 @@ std::vector<LitChunk> seeded(const VoxelWorld& world) {
   });
 }
 
-/// A model stands alone under the sky.
+/// A scenario's model stands alone under the sky.
 std::vector<LitChunk> scenarios(const MeasuredWorlds& worlds) {
   std::vector<LitChunk> out;
   for (const Volume& volume : worlds.at_edge(0, kByteEdge).volumes) {
@@ -105,7 +105,7 @@ std::vector<LitChunk> scenarios(const MeasuredWorlds& worlds) {
   return out;
 }
 
-/// Where a block of 16^3 lies in the chunks that each_chunk() makes of a box.
+/// The place of a block of 16^3 in the chunks that each_chunk() makes of a box.
 struct BlockPlace {
   std::size_t chunk = 0;
   std::int32_t x = 0, y = 0, z = 0;  // of its lowest voxel in the chunk

@@ -11,10 +11,10 @@
 namespace runstone::bench {
 namespace {
 
-constexpr std::int32_t kEdge = 128;  // of the chunks imported
+constexpr std::int32_t kEdge = 128;  // of the imported chunks
 constexpr std::int64_t kVoxelsMax = std::int64_t{1} << 28;
 
-/// The voxels of a box: y runs fastest, then x, then z.
+/// The voxels of a box. y is the fastest axis, then x, then z.
 struct DenseBox {
   VoxelBox box;
   std::vector<Material> voxels;

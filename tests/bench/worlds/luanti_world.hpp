@@ -1,5 +1,5 @@
-// A Luanti world as a world to measure on: imported once, kept dense, so that volumes of any edge can be cut
-// at any place. Memory: 2 bytes a voxel of its bounds, which must stay below 2^28 voxels.
+// A Luanti world to measure on. It is imported once and kept dense, so that volumes of any edge can
+// be cut at any place. Memory: 2 bytes a voxel of its bounds, which must stay below 2^28 voxels.
 #pragma once
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace runstone::bench {
 
-/// Whether plants, torches and the like are voxels, or empty as in an import by default.
+/// Says whether plants, torches and the like are voxels, or empty as in an import by default.
 enum class PlantsKept : bool { no, yes };
 
-/// Reads `folder`/map.sqlite. The world is called "luanti". Fails with the importer's message, or if it is
-/// empty or too large.
+/// Reads `folder`/map.sqlite. The world's name is "luanti". Fails with the importer's message, or
+/// if the world is empty or too large.
 Result<VoxelWorld, std::string> luanti_world(const std::string& folder,
                                              PlantsKept plants = PlantsKept::no);
 

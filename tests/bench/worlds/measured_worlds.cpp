@@ -12,7 +12,8 @@
 namespace runstone::bench {
 namespace {
 
-/// The chunk in the middle of the thesis' 3 x 3 x 3, with its neighbours.
+/// Returns the chunk in the middle of the thesis' 3 x 3 x 3, with its neighbours, for each
+/// scenario.
 MeasuredWorld scenarios_at(unsigned edge) {
   MeasuredWorld out;
   out.name = "scenarios";

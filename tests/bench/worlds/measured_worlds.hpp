@@ -1,5 +1,5 @@
-// What there is to measure on, by name: the seeded worlds, a Luanti world, and the 37 scenarios of the
-// thesis.
+// The worlds to measure on, by name: the seeded worlds, a Luanti world, and the thesis' 37
+// scenarios.
 #pragma once
 #include <set>
 #include <string>
@@ -15,24 +15,24 @@ struct MeasuredWorld {
   std::string name;
   std::shared_ptr<const VisibilityTable> visibility;
   std::vector<Volume> volumes;
-  std::vector<std::string> parts;  // a name for each
-  std::string missing;             // why there are none, or not all; empty if all is well
+  std::vector<std::string> parts;  // a name for each volume
+  std::string missing;             // why volumes are missing; empty if none are
 };
 
 std::set<std::string> measured_world_names();
-/// Of those the ones that look like places people build in.
+/// Returns the names of the worlds that look like places people build in.
 std::set<std::string> landscape_names();
 
 class MeasuredWorlds {
  public:
-  /// The worlds of these names, all if there are none, in a fixed order. Fails if the Luanti world is among
-  /// them and cannot be read.
+  /// Opens the worlds of these names in a fixed order; all worlds if there are no names. Fails if
+  /// the Luanti world is among them and cannot be read.
   static Result<MeasuredWorlds, std::string> open(const std::vector<std::string>& names,
                                                   const std::string& luanti_folder);
 
   std::size_t size() const { return names_.size(); }
   const std::string& name(std::size_t world) const { return names_[world]; }
-  /// Null for the scenarios.
+  /// Returns null for the scenarios.
   const VoxelWorld* voxels(std::size_t world) const;
   MeasuredWorld at_edge(std::size_t world, unsigned edge) const;
 

@@ -10,8 +10,8 @@
 namespace runstone::bench {
 namespace {
 
-/// A height map: the ground is the first empty voxel of a column. 62 x 62 x 62 voxels of the gentle one in
-/// three materials need about as many runs as the hills of docs/architecture.md.
+/// A height map: the ground is the first empty voxel of a column. 62 x 62 x 62 voxels of the gentle
+/// map in three materials have about as many runs as the hills of docs/architecture.md.
 struct HeightMap {
   double elevation;
   unsigned octaves;
@@ -77,7 +77,7 @@ Block checkerboard(VoxelPos at) {
   return (at.x + at.y + at.z) % 2 == 0 ? Block::stone : Block::air;
 }
 
-/// A column of a formula of places.
+/// Returns a column from a formula of places.
 template <class Formula>
 auto by_voxel(Formula formula) {
   return [formula](VoxelPos at, std::span<Material> out) {
@@ -88,7 +88,7 @@ auto by_voxel(Formula formula) {
   };
 }
 
-/// A column of a formula of heights above and below the ground.
+/// Returns a column from a formula of heights above and below the ground.
 template <class Formula>
 auto by_ground(HeightMap map, Formula formula) {
   return [map, formula](VoxelPos at, std::span<Material> out) {

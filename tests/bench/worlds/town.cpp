@@ -11,12 +11,12 @@ namespace runstone::bench {
 namespace {
 
 constexpr std::int32_t kLot = 16;      // voxels a side, street included
-constexpr std::int32_t kStreet = 3;    // its width
+constexpr std::int32_t kStreet = 3;    // width
 constexpr std::int32_t kStorey = 4;    // height
 constexpr std::int32_t kHouseLow = 4;  // first and last voxel of a house in its lot
 constexpr std::int32_t kHouseHigh = 14;
 
-/// What stands on a lot.
+/// The building or garden of a lot.
 struct Lot {
   explicit Lot(std::int32_t x, std::int32_t z) {
     SplitMix64 rng(mix64(static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |

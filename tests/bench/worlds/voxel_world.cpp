@@ -18,7 +18,7 @@ bool knows(const VoxelWorld& world, const VoxelBox& box) {
   return !world.bounds || !intersect(*world.bounds, box).empty();
 }
 
-/// Lowest coordinates of volumes along one axis.
+/// Returns the lowest coordinates of the volumes along one axis.
 std::vector<std::int32_t> places(std::int32_t low, std::int32_t high, std::int32_t side) {
   std::vector<std::int32_t> out;
   for (std::int32_t at = low; at + side <= high; at += side) out.push_back(at);

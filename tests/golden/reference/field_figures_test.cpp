@@ -1,4 +1,4 @@
-// What the meshes of the same 37 scenarios are made of, as docs/meshing.md says: each chunk of edge 32 alone.
+// The parts of the meshes of the 37 scenarios, as in docs/meshing.md: each chunk of edge 32 alone.
 #include <array>
 #include <catch2/catch.hpp>
 #include <map>
@@ -68,7 +68,7 @@ TEST_CASE("the field over the 37 scenarios: triangles, vertices, T-junctions, th
   }
 }
 
-/// What the outlines of scenes have that Poly2Tri's original refuses.
+/// The regions of scenes that Poly2Tri's original rejects.
 class TouchingRegions {
  public:
   void add(const MeshScene& scene, const VisibilityTable& visibility) {
@@ -84,7 +84,8 @@ class TouchingRegions {
   reference::TriangleMesh mesh_;
 };
 
-TEST_CASE("the regions that Poly2Tri's original refuses", "[mesh][scenarios][golden]") {
+TEST_CASE("the outlines of the scenarios count the regions that Poly2Tri's original rejects",
+          "[mesh][scenarios][golden]") {
   TouchingRegions scenarios;
   for (unsigned number = 1; number <= 37; ++number) {
     scenarios.add(scenario_scene(*scenario_generator(number, kEdge), {0, 0, 0}, kEdge, true),

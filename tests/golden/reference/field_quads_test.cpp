@@ -1,5 +1,5 @@
-// How many quads each mesher makes of the same worlds, as docs/meshing.md says: the 37 scenarios alone, and
-// eight chunks of edge 32 in the middle of seeded worlds.
+// The quads that each mesher makes of the same worlds, as in docs/meshing.md: the 37 scenarios
+// alone, and eight chunks of edge 32 in the middle of seeded worlds.
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>
@@ -37,7 +37,7 @@ std::string text_of(const Counts& c) {
   return out;
 }
 
-/// Adds the quads that all make of a scene.
+/// Adds the quads that all meshers make of a scene.
 class Field {
  public:
   void add(const MeshScene& scene, const VisibilityTable& visibility) {

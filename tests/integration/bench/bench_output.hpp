@@ -1,4 +1,4 @@
-// runstone-bench called as a program calls it, and what it said.
+// Runs runstone-bench as a program and keeps its output.
 #pragma once
 #include <sstream>
 #include <string>

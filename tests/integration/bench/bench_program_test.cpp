@@ -1,5 +1,5 @@
-// The benchmark as a program: what it was asked for is in its files, and what it counts is right. Nothing is
-// said of times.
+// The benchmark as a program: its files contain what the command line names, and its counts are
+// right. No test checks times.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -27,7 +27,7 @@ std::string text_of(const std::string& file) {
 
 using CsvRow = std::map<std::string, std::string>;
 
-/// Rows by the names in the first line.
+/// Reads rows by the names in the first line.
 std::vector<CsvRow> read_csv(const std::string& file) {
   const auto cells = [](const std::string& line) {
     std::vector<std::string> out;
@@ -65,7 +65,8 @@ TEST_CASE("runstone-bench mesh has a row for every mesher in every cell", "[benc
   std::map<std::string, std::set<std::string>> parts;    // by world
   std::map<std::string, std::map<std::string, std::size_t>> quads;
   std::map<std::string, std::set<std::string>>
-      triangles;  // of meshers of polygons: all of them the same
+      // Of meshers of polygons: all have the same number.
+      triangles;
   std::size_t t_junctions = 0;
   for (const CsvRow& row : rows) {
     const std::string cell = row.at("world") + " " + row.at("part");
@@ -145,7 +146,7 @@ TEST_CASE("runstone-bench mesh names the cells it leaves out", "[bench]") {
   }
 }
 
-TEST_CASE("runstone-bench mesh-once prints what it meshed, a line a world", "[bench]") {
+TEST_CASE("runstone-bench mesh-once prints a line for each world that it meshed", "[bench]") {
   const BenchOutput output = run_bench({"mesh-once", "--worlds", "town,checkerboard", "--edges",
                                         "16", "--mesher", "culled", "--times", "3"});
   INFO(output.err);
@@ -206,7 +207,7 @@ TEST_CASE("runstone-bench chunk-edge cuts the same voxels at every edge", "[benc
   CHECK(std::stoul(rows[0].at("quads")) > std::stoul(rows[1].at("quads")));  // borders cut them
 }
 
-TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
+TEST_CASE("runstone-bench rejects unknown options and values", "[bench]") {
   CHECK(run_bench({}).exit_code == 2);
   CHECK(run_bench({"mesh", "--worlds", "atlantis"}).exit_code == 2);
   CHECK(run_bench({"mesh", "--meshers", "marching_cubes"}).exit_code == 2);
@@ -224,7 +225,7 @@ TEST_CASE("runstone-bench refuses what it does not know", "[bench]") {
   CHECK(run_bench({"mesh", "--quick", "--worlds", "empty", "--csv", nowhere}).exit_code == 1);
 }
 
-TEST_CASE("runstone-bench edits has a row for every case and judges every bar", "[bench]") {
+TEST_CASE("runstone-bench edits has a row for every case and judges every target", "[bench]") {
   const test::TempFolder folder;
   const std::string csv = folder / "edits.csv", json = folder / "edits.json";
   const BenchOutput output =
@@ -296,7 +297,7 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
     CHECK(forms.at("luanti") < forms.at("luanti_light") + 0.5);
   }
   CHECK(bytes["luanti all"]["luanti_light"] >
-        1.05 * bytes["luanti all"]["luanti"]);  // the game's own light
+        1.05 * bytes["luanti all"]["luanti"]);  // the game's light
   CHECK(bytes["uniform all"]["raw"] == 16);
   const auto targets = nlohmann::json::parse(text_of(json)).at("bars");
   for (const auto& target : targets) {
@@ -306,7 +307,8 @@ TEST_CASE("runstone-bench bytes has every form of the same chunks", "[bench]") {
   }
 }
 
-TEST_CASE("report: a step is measured once, a run goes on, and the page is there") {
+TEST_CASE(
+    "report: a step is measured once, an interrupted run continues, and the page is written") {
   const test::TempFolder folder;
   const std::vector<std::string> words = {"report",  "--out",   folder / "r",
                                           "--quick", "--steps", "facts"};
@@ -322,7 +324,7 @@ TEST_CASE("report: a step is measured once, a run goes on, and the page is there
 
   const BenchOutput second = run_bench(words);
   CHECK(second.exit_code == 0);
-  // A tree with changes of its own has no name to go on from.
+  // A tree with uncommitted changes is always measured again.
   const bool is_dirty = facts["machine"]["commit"].get<std::string>().ends_with("-dirty");
   CHECK((second.err.find("is there") != std::string::npos) != is_dirty);
 
@@ -383,8 +385,8 @@ TEST_CASE("runstone-bench storage has a row for every store on every volume", "[
   }
   CHECK(std::stoul(cells["empty 0 -16 0 32"]["octree"].at("bytes")) < 200);
   CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["octree"].at("bytes")) > 65536);
-  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["dag"].at("bytes")) <
-        1000);  // one leaf, one node a height
+  // One leaf, and one node for each height.
+  CHECK(std::stoul(cells["checkerboard 0 -16 0 32"]["dag"].at("bytes")) < 1000);
 
   const auto document = nlohmann::json::parse(text_of(json));
   CHECK(document.at("rows").size() == rows.size());

@@ -1,4 +1,4 @@
-// What a mesher_case hands out is the mesh it made.
+// A mesher case returns the mesh that it made.
 #include "tests/bench/meshing/mesher_case.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 using namespace runstone;
 using namespace runstone::bench;
 
-TEST_CASE("every contestant hands out its last mesh, in place of what was there", "[bench]") {
+TEST_CASE("every mesher case replaces a surface by its last mesh", "[bench]") {
   for (const VoxelWorld& world : seeded_worlds()) {
     for (const Volume& volume : volumes_of(world, 16)) {
       const auto owed = test::expected_faces(volume.scene, seeded_materials());
@@ -24,14 +24,14 @@ TEST_CASE("every contestant hands out its last mesh, in place of what was there"
         REQUIRE(mesher_case.has_value());
         PhaseTimes phases{};
         mesher_case->mesh(phases);
-        surface.quads.emplace_back();  // left over from another
+        surface.quads.emplace_back();  // the remains of another mesh
         surface.triangles.vertices.emplace_back();
         mesher_case->surface(surface);
         CHECK(surface.quads.size() == mesher_case->quads());
         CHECK(surface.triangles.vertices.empty() ==
               (owed.empty() || (name != "monotone" && name != "poly2tri")));
-        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden")
-          continue;  // hidden faces too
+        // They show hidden faces, too.
+        if (name == "simple" || name == "rle_rdm" || name == "run_strips_hidden") continue;
         CHECK(test::surface_difference(surface, volume.scene.chunk.extent, seeded_materials(), owed)
                   .value_or("") == "");
       }
@@ -44,7 +44,7 @@ TEST_CASE("in a real world polygons show the faces that culling shows", "[bench]
       MeasuredWorlds::open({"luanti"}, RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
   REQUIRE(worlds.has_value());
   const MeasuredWorld world = worlds->at_edge(0, 32);
-  test::PolygonJury jury;
+  test::PolygonChecks checks;
   std::vector<Quad> culled;
   std::size_t faces = 0;
   for (std::size_t v = 0; v < world.volumes.size(); ++v) {
@@ -57,9 +57,9 @@ TEST_CASE("in a real world polygons show the faces that culling shows", "[bench]
     }
     faces += owed.size();
     CAPTURE(world.parts[v]);
-    // The world's materials have no table here; those beyond one count as opaque, and which are drawn is said
-    // by the faces.
-    CHECK(jury.fault(scene, *world.visibility, MaterialTable{}, owed) == "");
+    // The world's materials have no table here. Materials beyond a table count as opaque, and the
+    // faces say which are drawn.
+    CHECK(checks.fault(scene, *world.visibility, MaterialTable{}, owed) == "");
   }
   CHECK(faces > 10'000);
 }

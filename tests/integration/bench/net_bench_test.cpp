@@ -1,6 +1,6 @@
-#ifdef RUNSTONE_CLIENT_PROGRAM  // not where no client is built
-// The network lab as a program: every experiment, small, over links that this process may make. Nothing is said of
-// times.
+#ifdef RUNSTONE_CLIENT_PROGRAM  // not in a build without the client
+// The network benchmark as a program: every experiment, small, over links that this process may
+// make. No test checks times.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -19,13 +19,13 @@ using nlohmann::json;
 
 namespace {
 
-/// What the lab wrote as JSON; its exit code has to be 0.
-json run_lab(std::vector<std::string> arguments, std::string& tables) {
+/// Returns the JSON of a run. Requires exit code 0.
+json run_testbed(std::vector<std::string> arguments, std::string& tables) {
   ::setenv("RUNSTONE_SERVER", RUNSTONE_SERVER_PROGRAM, 1);
   ::setenv("RUNSTONE_CLIENT", RUNSTONE_CLIENT_PROGRAM, 1);
   ::setenv("RUNSTONE_BOT", RUNSTONE_BOT_PROGRAM, 1);
   const test::TempFolder folder;
-  const std::string file = folder / "lab.json", csv = folder / "lab.csv";
+  const std::string file = folder / "testbed.json", csv = folder / "testbed.csv";
   arguments.insert(arguments.begin(),
                    {"net", "--quick", "--edits", "20", "--json", file, "--csv", csv});
   std::vector<const char*> argv = {"runstone-bench"};
@@ -43,9 +43,9 @@ json run_lab(std::vector<std::string> arguments, std::string& tables) {
   return written;
 }
 
-double figure(const json& lab, const std::string& experiment, const std::string& what,
+double figure(const json& testbed, const std::string& experiment, const std::string& what,
               const std::string& name) {
-  for (const json& it : lab["figures"]) {
+  for (const json& it : testbed["figures"]) {
     if (it["experiment"] == experiment && it["case"] == what && it["figure"] == name)
       return it["value"].get<double>();
   }
@@ -55,94 +55,95 @@ double figure(const json& lab, const std::string& experiment, const std::string&
 
 }  // namespace
 
-TEST_CASE("the lab measures joins and edits over a link", "[lab]") {
+TEST_CASE("the testbed measures joins and edits over a link", "[testbed]") {
   std::string tables;
-  const json lab = run_lab({"--experiments", "join,latency", "--profiles", "lan"}, tables);
-  CHECK(figure(lab, "join", "median", "near_most_ms") > 0);
-  CHECK(figure(lab, "join", "median", "near_most_ms") <=
-        figure(lab, "join", "median", "view_all_ms"));
+  const json testbed = run_testbed({"--experiments", "join,latency", "--profiles", "lan"}, tables);
+  CHECK(figure(testbed, "join", "median", "near_most_ms") > 0);
+  CHECK(figure(testbed, "join", "median", "near_most_ms") <=
+        figure(testbed, "join", "median", "view_all_ms"));
   for (const char* load : {"idle", "streaming", "streaming 20 clients"}) {
     CAPTURE(load);
-    CHECK(figure(lab, "latency", load, "remote_edits") > 0);
-    CHECK(figure(lab, "latency", load, "remote_never_meshed") == 0);
-    CHECK(figure(lab, "latency", load, "remote_meshed_p50_ms") > 0);
-    CHECK(figure(lab, "latency", load, "echo_p50_ms") >= 0.4);
-    CHECK(figure(lab, "latency", load, "drifted_chunks") == 0);
+    CHECK(figure(testbed, "latency", load, "remote_edits") > 0);
+    CHECK(figure(testbed, "latency", load, "remote_never_meshed") == 0);
+    CHECK(figure(testbed, "latency", load, "remote_meshed_p50_ms") > 0);
+    CHECK(figure(testbed, "latency", load, "echo_p50_ms") >= 0.4);
+    CHECK(figure(testbed, "latency", load, "drifted_chunks") == 0);
   }
-  CHECK(figure(lab, "latency", "streaming", "terrain_kb_s") > 0);
-  CHECK(tables.find("| another client's: meshed |") != std::string::npos);
-  CHECK_FALSE(lab["bars"].empty());
+  CHECK(figure(testbed, "latency", "streaming", "terrain_kb_s") > 0);
+  CHECK(tables.find("| remote edit: meshed |") != std::string::npos);
+  CHECK_FALSE(testbed["bars"].empty());
 }
 
-TEST_CASE("the lab measures transfers without privileges", "[lab]") {
+TEST_CASE("the testbed measures transfers without privileges", "[testbed]") {
   std::string tables;
-  const json lab = run_lab(
+  const json testbed = run_testbed(
       {"--experiments", "transfer", "--profiles", "lan", "--worlds", "terrain", "--link", "shaper"},
       tables);
-  CHECK(figure(lab, "transfer", "terrain dense", "bytes") > 64 * 65536);
-  CHECK(figure(lab, "transfer", "terrain packed", "bytes") <
-        figure(lab, "transfer", "terrain raw", "bytes"));
-  CHECK(figure(lab, "transfer", "terrain packed", "complete_ms") >= 0.4);
-  CHECK(lab["figures"][0]["link"] == "shaper");
+  CHECK(figure(testbed, "transfer", "terrain dense", "bytes") > 64 * 65536);
+  CHECK(figure(testbed, "transfer", "terrain packed", "bytes") <
+        figure(testbed, "transfer", "terrain raw", "bytes"));
+  CHECK(figure(testbed, "transfer", "terrain packed", "complete_ms") >= 0.4);
+  CHECK(testbed["figures"][0]["link"] == "shaper");
   CHECK(tables.find("a TCP proxy on loopback") != std::string::npos);
 }
 
-TEST_CASE("the lab measures crowds", "[lab]") {
+TEST_CASE("the testbed measures fleets", "[testbed]") {
   std::string tables;
-  const json lab =
-      run_lab({"--experiments", "crowd", "--clients", "3", "--crowd-seconds", "1"}, tables);
-  CHECK(figure(lab, "crowd", "3 clients", "samples") > 0);
-  CHECK(figure(lab, "crowd", "3 clients", "disconnects") == 0);
-  CHECK(figure(lab, "crowd", "3 clients", "edits") > 0);
-  CHECK(figure(lab, "crowd", "3 clients", "received_kb_s_each") > 0);
-  CHECK(figure(lab, "crowd", "3 clients", "enqueue_us_per_receiver") > 0);
-  double in_rows = figure(lab, "crowd", "3 clients", "never");
-  for (const json& it : lab["figures"]) {
+  const json testbed =
+      run_testbed({"--experiments", "crowd", "--clients", "3", "--crowd-seconds", "1"}, tables);
+  CHECK(figure(testbed, "crowd", "3 clients", "samples") > 0);
+  CHECK(figure(testbed, "crowd", "3 clients", "disconnects") == 0);
+  CHECK(figure(testbed, "crowd", "3 clients", "edits") > 0);
+  CHECK(figure(testbed, "crowd", "3 clients", "received_kb_s_each") > 0);
+  CHECK(figure(testbed, "crowd", "3 clients", "enqueue_us_per_receiver") > 0);
+  double in_rows = figure(testbed, "crowd", "3 clients", "never");
+  for (const json& it : testbed["figures"]) {
     if (it["figure"].get<std::string>().rfind("samples_", 0) == 0)
       in_rows += it["value"].get<double>();
   }
-  CHECK(in_rows == figure(lab, "crowd", "3 clients", "samples"));
+  CHECK(in_rows == figure(testbed, "crowd", "3 clients", "samples"));
   CHECK(tables.find("These latencies of 3 clients:\n\n| from, below ms | samples |") !=
         std::string::npos);
 }
 
-TEST_CASE("the lab measures what loaded chunks take of the server's memory", "[lab]") {
+TEST_CASE("the testbed measures the server's memory of loaded chunks", "[testbed]") {
   std::string tables;
-  const json lab = run_lab({"--experiments", "memory"}, tables);
-  const double cells = figure(lab, "memory", "real world", "cells");
+  const json testbed = run_testbed({"--experiments", "memory"}, tables);
+  const double cells = figure(testbed, "memory", "real world", "cells");
   CHECK(cells >= 1000);
-  CHECK(figure(lab, "memory", "real world", "mixed") <= cells);
-  CHECK(figure(lab, "memory", "real world", "loaded") >= cells);
-  CHECK(figure(lab, "memory", "real world", "grown_bytes") > 0);
+  CHECK(figure(testbed, "memory", "real world", "mixed") <= cells);
+  CHECK(figure(testbed, "memory", "real world", "loaded") >= cells);
+  CHECK(figure(testbed, "memory", "real world", "grown_bytes") > 0);
 }
 
 TEST_CASE(
-    "attacks are answered by name, and honest clients neither lose their connection nor see a "
-    "broken rule",
-    "[lab]") {
+    "attacks end with a named rule, and honest clients keep their connections and see no broken "
+    "rule",
+    "[testbed]") {
   std::string tables;
-  const json lab = run_lab({"--experiments", "attack", "--attacks",
-                            "absurd-views,byte-a-second,claims,half-open,unread-pings,views",
-                            "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
-                           tables);
+  const json testbed =
+      run_testbed({"--experiments", "attack", "--attacks",
+                   "absurd-views,byte-a-second,claims,half-open,unread-pings,views",
+                   "--attack-seconds", "1", "--attackers", "2", "--attack-bots", "3"},
+                  tables);
   for (const char* attack :
        {"absurd-views", "byte-a-second", "claims", "half-open", "unread-pings", "views"}) {
     for (const std::string phase : {"before", "during", "after"}) {
       CAPTURE(attack, phase);
-      CHECK(figure(lab, "attack", attack, phase + "_samples") > 0);
-      CHECK(figure(lab, "attack", attack, phase + "_never") == 0);
-      CHECK(figure(lab, "attack", attack, phase + "_disconnects") == 0);
-      CHECK(figure(lab, "attack", attack, phase + "_violations") == 0);
-      CHECK(figure(lab, "attack", attack, phase + "_server_resident_mb") > 0);
+      CHECK(figure(testbed, "attack", attack, phase + "_samples") > 0);
+      CHECK(figure(testbed, "attack", attack, phase + "_never") == 0);
+      CHECK(figure(testbed, "attack", attack, phase + "_disconnects") == 0);
+      CHECK(figure(testbed, "attack", attack, phase + "_violations") == 0);
+      CHECK(figure(testbed, "attack", attack, phase + "_server_resident_mb") > 0);
     }
-    CHECK(figure(lab, "attack", attack, "joins_open") ==
-          figure(lab, "attack", attack, "joins_tried"));
+    CHECK(figure(testbed, "attack", attack, "joins_open") ==
+          figure(testbed, "attack", attack, "joins_tried"));
   }
-  CHECK(figure(lab, "attack", "absurd-views", "told malformed_message") > 0);
-  CHECK(figure(lab, "attack", "absurd-views", "logged malformed_message") > 0);
-  CHECK(figure(lab, "attack", "claims", "told flooding") > 0);
-  CHECK(figure(lab, "attack", "half-open", "attacker_connections") > 32);
-  CHECK(figure(lab, "attack", "half-open", "told closed without a word") > 0);
+  CHECK(figure(testbed, "attack", "absurd-views", "told malformed_message") > 0);
+  CHECK(figure(testbed, "attack", "absurd-views", "logged malformed_message") > 0);
+  CHECK(figure(testbed, "attack", "claims", "told flooding") > 0);
+  CHECK(figure(testbed, "attack", "half-open", "attacker_connections") > 32);
+  CHECK(figure(testbed, "attack", "half-open", "told closed without a word") > 0);
   CHECK(tables.find("view radius exceeds 64 chunks") != std::string::npos);
 }
 #endif

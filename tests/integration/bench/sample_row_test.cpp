@@ -9,7 +9,8 @@
 using namespace runstone::bench;
 using nlohmann::json;
 
-TEST_CASE("a histogram's table has all samples, and those that never came below", "[lab]") {
+TEST_CASE("a histogram's table has all samples, and a last line for those that never arrived",
+          "[testbed]") {
   const std::vector<SampleRow> rows = {{0.5, 0.75, 1}, {2, 3, 150}, {16.384, 24.576, 40}};
   CHECK(histogram_table(rows, 9) ==
         "| from, below ms | samples | share, % | so far, % | |\n"
@@ -23,8 +24,8 @@ TEST_CASE("a histogram's table has all samples, and those that never came below"
   CHECK(histogram_table({}, 2).find("| never | 2 | 100.000 | 100.000 | ####") != std::string::npos);
 }
 
-TEST_CASE("what a crowd saw is read from its bots' report, infinite latencies as such", "[lab]") {
-  const FleetSight seen = sight_of(json::parse(
+TEST_CASE("a fleet's report is read from its bots' report, with infinite latencies", "[testbed]") {
+  const FleetReport seen = fleet_report(json::parse(
       R"({"seen_us": {"count": 5, "infinite": 1, "p50": 1500, "p90": "infinite", "p99": "infinite", "max": "infinite",
                       "rows": [[1024, 1536, 3], [16384, 24576, 1]]}})"));
   CHECK(seen.rows == std::vector<SampleRow>{{1.024, 1.536, 3}, {16.384, 24.576, 1}});
@@ -33,5 +34,5 @@ TEST_CASE("what a crowd saw is read from its bots' report, infinite latencies as
   CHECK(seen.p50_ms == 1.5);
   CHECK(std::isinf(seen.p90_ms));
   CHECK(std::isinf(seen.max_ms));
-  CHECK(sight_of(json::parse(R"({"own_us": {"p50": 1500}})")).rows.empty());
+  CHECK(fleet_report(json::parse(R"({"own_us": {"p50": 1500}})")).rows.empty());
 }

@@ -1,4 +1,5 @@
-// What is compared with must be what it says: every form comes back, and Luanti's is the game's own.
+// The forms that are compared must be correct: every form decodes to the same voxels, and Luanti's
+// is the game's.
 #include "tests/bench/wire/transfer_form.hpp"
 
 #include <catch2/catch.hpp>
@@ -41,7 +42,7 @@ PaletteSection section_of(SplitMix64& rng, unsigned materials) {
 
 }  // namespace
 
-TEST_CASE("every form of a chunk comes back as it went", "[bench]") {
+TEST_CASE("every form of a chunk decodes to the encoded voxels", "[bench]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (int step = 0; step < 24; ++step) {
     CAPTURE(Catch::rngSeed(), step);
@@ -61,7 +62,7 @@ TEST_CASE("every form of a chunk comes back as it went", "[bench]") {
   }
 }
 
-TEST_CASE("a Luanti block on the wire is the game's row without what only the disk has",
+TEST_CASE("a Luanti block on the wire is the game's row without the fields of the disk",
           "[bench]") {
   auto map = LuantiMap::open(RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small/map.sqlite");
   REQUIRE(map);

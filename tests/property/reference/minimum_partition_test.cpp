@@ -1,5 +1,5 @@
-// That no partition into rectangles has fewer: against all partitions of every small region, and against the
-// formula for planes of any size.
+// No partition into rectangles has fewer: compared with all partitions of every small region, and
+// with the formula for planes of any size.
 #include <catch2/catch.hpp>
 
 #include "common/core/hash.hpp"
@@ -22,7 +22,7 @@ FacePlane plane_of_bits(std::uint64_t region, unsigned width, unsigned height) {
   return plane;
 }
 
-/// Blobs and noise of some materials.
+/// Returns blobs and noise of some materials.
 FacePlane random_plane(SplitMix64& rng, unsigned side_max, unsigned materials) {
   FacePlane plane;
   plane.width = 1 + rng.below(side_max);
@@ -46,9 +46,8 @@ FacePlane random_plane(SplitMix64& rng, unsigned side_max, unsigned materials) {
   return plane;
 }
 
-TEST_CASE(
-    "every region of 4 x 5 and of 5 x 3 cells falls apart into as few rectangles as there can be",
-    "[mesh][property][reference]") {
+TEST_CASE("every region of 4 x 5 and of 5 x 3 cells is tiled by the fewest possible rectangles",
+          "[mesh][property][reference]") {
   for (const auto& [width, height] : {std::pair{4u, 5u}, std::pair{5u, 3u}}) {
     LeastRectangles least(width, height);
     MinimumPartition partition;
@@ -66,14 +65,14 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("random regions of 6 x 6 cells fall apart into as few rectangles as there can be",
+TEST_CASE("random regions of 6 x 6 cells are tiled by the fewest possible rectangles",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 31);
   LeastRectangles least(6, 6);
   MinimumPartition partition;
   std::vector<PlaneRectangle> rectangles;
   for (int round = 0; round < 1000; ++round) {
-    // Mostly full regions have holes, chords that cross, and corners that touch.
+    // Nearly full regions have holes, chords that cross, and corners that touch.
     std::uint64_t region = (std::uint64_t{1} << 36) - 1;
     const std::uint32_t missing = rng.below(16);
     for (std::uint32_t i = 0; i < missing; ++i) region &= ~(std::uint64_t{1} << rng.below(36));
@@ -86,9 +85,8 @@ TEST_CASE("random regions of 6 x 6 cells fall apart into as few rectangles as th
   }
 }
 
-TEST_CASE(
-    "planes of several materials have as many rectangles as their corners, chords and holes demand",
-    "[mesh][property][reference]") {
+TEST_CASE("planes of several materials have the number of rectangles that the formula gives",
+          "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 32);
   MinimumPartition partition;
   std::vector<PlaneRectangle> rectangles;

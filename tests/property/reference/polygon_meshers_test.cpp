@@ -1,5 +1,6 @@
-// The meshers of polygons, monotone and Poly2Tri, before the triangle oracle: the exposed faces with material
-// and direction, each covered once, and no vertices but corners of the faces' outlines.
+// The meshers of polygons, monotone and Poly2Tri, compared with the triangle oracle: the exposed
+// faces with material and direction, each covered once, and no vertices but corners of the faces'
+// outlines.
 #include <catch2/catch.hpp>
 
 #include "tests/support/polygon_checks.hpp"
@@ -9,20 +10,20 @@
 namespace runstone::test {
 namespace {
 
-std::string fault_of(PolygonJury& jury, const MeshScene& scene) {
-  return jury.fault(scene, mesh_visibility(), mesh_materials(), expected_faces(scene));
+std::string fault_of(PolygonChecks& checks, const MeshScene& scene) {
+  return checks.fault(scene, mesh_visibility(), mesh_materials(), expected_faces(scene));
 }
 
 TEST_CASE("random scenes: meshers of polygons cover exactly the exposed faces",
           "[mesh][property][polygons]") {
   SplitMix64 rng(Catch::rngSeed() + 51);
-  PolygonJury jury;
+  PolygonChecks checks;
   std::size_t touching = 0;
   for (int scene_number = 0; scene_number < 3000; ++scene_number) {
     const unsigned side_max = scene_number % 200 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
     const MeshScene scene = random_scene(rng, side_max);
-    const std::string fault = fault_of(jury, scene);
-    touching += jury.touching_corners();
+    const std::string fault = fault_of(checks, scene);
+    touching += checks.touching_corners();
     if (fault.empty()) continue;
     CAPTURE(Catch::rngSeed(), scene_number);
     FAIL(fault);
@@ -33,18 +34,18 @@ TEST_CASE("random scenes: meshers of polygons cover exactly the exposed faces",
 TEST_CASE("the largest and the flattest extents: meshers of polygons",
           "[mesh][property][polygons]") {
   SplitMix64 rng(Catch::rngSeed() + 52);
-  PolygonJury jury;
+  PolygonChecks checks;
   for (const Extent extent : {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128},
                               Extent{128, 128, 8}, Extent{65, 64, 63}}) {
     const MeshScene scene = scene_of_extent(rng, extent, random_order(rng));
     CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z);
-    REQUIRE(fault_of(jury, scene) == "");
+    REQUIRE(fault_of(checks, scene) == "");
   }
 }
 
 TEST_CASE("noise and checkerboards: meshers of polygons", "[mesh][property][polygons]") {
   SplitMix64 rng(Catch::rngSeed() + 53);
-  PolygonJury jury;
+  PolygonChecks checks;
   for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
     for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
       const Extent extent{33, 40, 31};
@@ -53,19 +54,19 @@ TEST_CASE("noise and checkerboards: meshers of polygons", "[mesh][property][poly
         neighbour = random_chunk(rng, extent, random_order(rng), materials, shape);
       }
       CAPTURE(Catch::rngSeed(), static_cast<int>(shape), materials);
-      REQUIRE(fault_of(jury, scene) == "");
+      REQUIRE(fault_of(checks, scene) == "");
     }
   }
   for (int round = 0; round < 10; ++round) {
     CAPTURE(Catch::rngSeed(), round);
     const MeshScene scene = scene_of_many_materials(rng, Extent{12, 9, 11});
-    REQUIRE(jury.fault(scene, many_visibility(), many_materials(),
-                       expected_faces(scene, many_materials())) == "");
+    REQUIRE(checks.fault(scene, many_visibility(), many_materials(),
+                         expected_faces(scene, many_materials())) == "");
   }
 }
 
 TEST_CASE("scenarios: meshers of polygons", "[mesh][property][polygons][scenarios]") {
-  PolygonJury jury;
+  PolygonChecks checks;
   for (const unsigned edge : {8u, 32u, 64u}) {
     for (unsigned number = 1; number <= 37; ++number) {
       if (number == 5 && edge != 32) continue;
@@ -73,7 +74,7 @@ TEST_CASE("scenarios: meshers of polygons", "[mesh][property][polygons][scenario
         const MeshScene scene =
             scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, alone);
         CAPTURE(edge, number, alone);
-        REQUIRE(fault_of(jury, scene) == "");
+        REQUIRE(fault_of(checks, scene) == "");
       }
     }
   }

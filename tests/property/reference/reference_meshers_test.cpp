@@ -1,5 +1,6 @@
-// The reference meshers under the one oracle that also judges the product: exposed unit faces with material
-// and direction, each covered once. Meshers that cull less are held to what they do show, face by face.
+// The reference meshers, compared with the oracle that also checks the product: exposed unit faces
+// with material and direction, each covered once. Meshers that cull less are compared with what
+// they do show, face by face.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -16,10 +17,10 @@ namespace {
 
 using namespace reference;
 
-TEST_CASE("random scenes: every reference mesher covers exactly the faces it owes",
+TEST_CASE("random scenes: every reference mesher covers exactly its expected faces",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 21);
-  MesherJury jury;
+  MesherChecks checks;
   std::set<AxisOrder> orders;
   int missing_neighbours = 0;
   int with_transparent = 0;
@@ -27,9 +28,9 @@ TEST_CASE("random scenes: every reference mesher covers exactly the faces it owe
   for (int scene_number = 0; scene_number < kScenes; ++scene_number) {
     const unsigned side_max = scene_number % 500 == 0 ? 40 : scene_number % 20 == 0 ? 20 : 10;
     const MeshScene scene = random_scene(rng, side_max);
-    const std::string fault = jury.fault(scene);
+    const std::string fault = checks.fault(scene);
     orders.insert(scene.chunk.order);
-    with_transparent += jury.binary_mesh().transparent.quads.empty() ? 0 : 1;
+    with_transparent += checks.binary_mesh().transparent.quads.empty() ? 0 : 1;
     missing_neighbours +=
         std::count(scene.neighbours.begin(), scene.neighbours.end(), std::nullopt) != 0 ? 1 : 0;
     if (fault.empty()) continue;
@@ -45,14 +46,14 @@ TEST_CASE("random scenes: every reference mesher covers exactly the faces it owe
 TEST_CASE("the largest and the flattest extents: every reference mesher",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 22);
-  MesherJury jury;
+  MesherChecks checks;
   for (const Extent extent :
        {Extent{128, 8, 8}, Extent{8, 128, 9}, Extent{10, 8, 128}, Extent{64, 8, 8},
         Extent{8, 64, 9}, Extent{10, 8, 64}, Extent{64, 64, 8}, Extent{63, 62, 64}}) {
     for (const AxisOrder order : kAxisOrders) {
       const MeshScene scene = scene_of_extent(rng, extent, order);
       CAPTURE(Catch::rngSeed(), extent.x, extent.y, extent.z, order);
-      REQUIRE(jury.fault(scene) == "");
+      REQUIRE(checks.fault(scene) == "");
     }
   }
 }
@@ -60,7 +61,7 @@ TEST_CASE("the largest and the flattest extents: every reference mesher",
 TEST_CASE("shapes with a face on every voxel, and with none: every reference mesher",
           "[mesh][property][reference]") {
   SplitMix64 rng(Catch::rngSeed() + 23);
-  MesherJury jury;
+  MesherChecks checks;
   for (const Shape shape : {Shape::checkerboard, Shape::noise, Shape::uniform}) {
     for (const unsigned materials : {2u, 4u, kMeshMaterialCount}) {
       for (const AxisOrder order : kAxisOrders) {
@@ -70,7 +71,7 @@ TEST_CASE("shapes with a face on every voxel, and with none: every reference mes
           neighbour = random_chunk(rng, extent, random_order(rng), materials, shape);
         }
         CAPTURE(Catch::rngSeed(), static_cast<int>(shape), materials, order);
-        REQUIRE(jury.fault(scene) == "");
+        REQUIRE(checks.fault(scene) == "");
       }
     }
   }
@@ -78,26 +79,27 @@ TEST_CASE("shapes with a face on every voxel, and with none: every reference mes
 
 TEST_CASE("random scenes: no mesher needs fewer quads than the optimum, and RDM few more",
           "[mesh][property][reference]") {
-  // The jury holds the reference meshers to the optimum; ours is not one of them.
+  // The checks compare the reference meshers with the optimum; the product is compared here.
   SplitMix64 rng(Catch::rngSeed() + 26);
-  MesherJury jury;
+  MesherChecks checks;
   std::size_t ours = 0;
   std::size_t least = 0;
   for (int round = 0; round < 1000; ++round) {
     const MeshScene scene = random_scene(rng, 20);
     CAPTURE(Catch::rngSeed(), round);
-    REQUIRE(jury.fault_of_exposed(scene) == "");
+    REQUIRE(checks.fault_of_exposed(scene) == "");
     const std::size_t quads = mesh_of(scene).quad_count();
-    REQUIRE(quads >= jury.optimal_quads());
+    REQUIRE(quads >= checks.optimal_quads());
     ours += quads;
-    least += jury.optimal_quads();
+    least += checks.optimal_quads();
   }
   CAPTURE(ours, least);
   CHECK(ours * 100 < least * 103);
 }
 
 TEST_CASE("binary greedy merges as well as the plain greedy count", "[mesh][property][reference]") {
-  // The oracle's count goes widest first along u; words may lie along u or v, so the totals differ a little.
+  // The oracle counts widest first along u. The mesher's words may lie along u or v, so the totals
+  // differ a little.
   SplitMix64 rng(Catch::rngSeed() + 24);
   std::size_t found = 0;
   std::size_t counted = 0;
@@ -118,7 +120,7 @@ TEST_CASE("samples from an octree are the voxels around a chunk", "[mesh][proper
   SplitMix64 rng(Catch::rngSeed() + 25);
   DenseGrid grid;
   for (int round = 0; round < 40; ++round) {
-    // Eight chunks fill a cube of 64 from some odd place on; a window anywhere near is sampled.
+    // Eight chunks fill a cube of 64 from some odd place on. A window anywhere near it is sampled.
     const VoxelPos origin{rng.between(-100, 100), rng.between(-100, 100), rng.between(-100, 100)};
     MaterialOctree octree(origin, 2);
     std::vector<DenseChunk> chunks;

@@ -1,7 +1,9 @@
-// The includes of the tree follow the arrows of the house. An arrow is a DEPS entry of runstone_module() in a
-// CMakeLists.txt: a module may include its own headers and those of its DEPS. Besides, the pure folders (common/ but os
-// and sqlite, protocol/) include no header for sockets, files, clocks, threads, logs or graphics, and the folders where
-// authority and replica decide include none for sockets, clocks or threads.
+// Checks that the includes of the tree follow the arrows between modules. An arrow is a DEPS entry
+// of runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
+// DEPS. In addition:
+// - The pure folders (common/ without os and sqlite, and protocol/) include no header for sockets,
+//   files, clocks, threads, logs or graphics.
+// - The folders of authority and replica include no header for sockets, clocks or threads.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -49,7 +51,8 @@ std::vector<Include> includes_of(const std::string& text) {
 
 using Arrows = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-/// The folder of each module, and the folders it may include from besides: what CMake wrote from DEPS.
+/// Returns the folder of each module, and the folders from which it may include: what CMake wrote
+/// from DEPS.
 const Arrows& arrows() {
   static const Arrows kArrows = [] {
     Arrows out;
@@ -77,8 +80,8 @@ Arrows::const_iterator module_of(std::string_view path) {
   return found;
 }
 
-/// Returns true if no module of this build can contain the path: tests are not modules, and a build without the client
-/// has no modules below client/.
+/// Returns true if no module of this build can contain the path: tests are not modules, and a build
+/// without the client has no modules below client/.
 bool is_outside(std::string_view path) {
 #ifndef RUNSTONE_HAS_CLIENT
   if (below(path, "client")) return true;
@@ -86,7 +89,8 @@ bool is_outside(std::string_view path) {
   return below(path, "tests");
 }
 
-/// Headers that a folder may not see, as <...> or "...": a prefix ending in '/' names a folder of headers.
+/// Headers that a folder may not include, as <...> or "...". A prefix that ends in '/' names a
+/// folder of headers.
 struct Ban {
   std::vector<std::string> folders;
   std::vector<std::string> headers;
@@ -113,7 +117,7 @@ bool names(const std::string& header, const std::string& banned) {
   return banned.ends_with('/') ? header.starts_with(banned) : header == banned;
 }
 
-/// One line for each wrong include: "file includes header: rule".
+/// Returns one line for each wrong include: "file includes header: rule".
 std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
   static constexpr std::string_view kRoots[] = {"common", "protocol", "server", "client", "tests"};
   std::vector<std::string> out;
@@ -175,7 +179,7 @@ std::vector<SourceFile> source_tree(const std::filesystem::path& root) {
   return out;
 }
 
-// The verdict on one file with one line.
+// Returns true if a file with this one line breaks a rule.
 bool is_wrong(const std::string& path, const std::string& line) {
   return !wrong_includes({{path, "#pragma once\n" + line + "\nint x;\n"}}).empty();
 }
@@ -199,7 +203,7 @@ TEST_CASE("every include of the tree follows the arrows of the house", "[house]"
 }
 
 TEST_CASE("a planted wrong include is caught", "[house]") {
-  // Up, or across.
+  // Upwards and sideways.
   CHECK(is_wrong("common/core/ids.hpp", "#include \"common/runs/run_list.hpp\""));
   CHECK(is_wrong("common/runs/run_chunk.cpp", "#include \"common/edits/apply/edit_stack.hpp\""));
   CHECK(is_wrong("common/edits/apply/edit_stack.cpp", "#include \"common/mesh/quad.hpp\""));
@@ -217,7 +221,7 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"protocol/limits.hpp\""));
   CHECK(is_wrong("common/os/open_files.cpp", "#include \"server/app/server.hpp\""));
   CHECK(is_wrong("client/app/client_main.cpp", "#include \"tests/support/dense_chunk.hpp\""));
-  // Out of the pure libraries.
+  // System headers in the pure libraries.
   for (const char* header : {"asio.hpp", "asio/ip/tcp.hpp", "spdlog/spdlog.h", "sqlite3.h",
                              "GL/gl.h", "GLFW/glfw3.h", "chrono", "thread", "fstream"}) {
     CAPTURE(header);
@@ -228,10 +232,10 @@ TEST_CASE("a planted wrong include is caught", "[house]") {
   CHECK(is_wrong("client/replica/replica.cpp", "#include <asio.hpp>"));
   CHECK(is_wrong("client/replica/replica.cpp", "#include \"common/os/steady_clock.hpp\""));
   CHECK(is_wrong("server/world/authority.cpp", "#include \"common/os/steady_clock.hpp\""));
-  // Out of the product.
+  // Test code in the product.
   CHECK(is_wrong("client/schedule/mesh_job.cpp", "#include \"tests/reference/binary_greedy.hpp\""));
   CHECK(is_wrong("common/mesh/rdm/rdm_mesher.cpp", "#include \"tests/reference/dense_grid.hpp\""));
-  // Written in other ways.
+  // Other spellings.
   CHECK(is_wrong("common/core/ids.hpp", "  #  include\t\"common/runs/run_list.hpp\""));
   CHECK(is_wrong("common/core/ids.hpp", "#include <common/core/hash.hpp>"));
   CHECK(is_wrong("common/core/ids.hpp", "#include \"hash.hpp\""));

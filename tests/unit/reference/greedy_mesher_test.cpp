@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/picture_scene.hpp"
+#include "tests/support/text_scene.hpp"
 
 namespace runstone::test {
 namespace {
@@ -22,8 +22,8 @@ TEST_CASE("greedy: a quad grows as wide as it can, then as high", "[mesh][refere
                 "111",  //
                 "11."}) == Rectangles{{0, 0, 3, 2, 1}, {0, 2, 2, 1, 1}});
   CHECK(greedy({"11.",  //
-                "111",  // as high as whole rows of its width, which may be parts of longer ones
-                "111"}) == Rectangles{{0, 0, 2, 3, 1}, {2, 1, 1, 2, 1}});
+                // As high as whole rows of its width, which may be parts of longer ones.
+                "111", "111"}) == Rectangles{{0, 0, 2, 3, 1}, {2, 1, 1, 2, 1}});
 }
 
 TEST_CASE("greedy: the first face decides, even where two quads would do", "[mesh][reference]") {
@@ -31,7 +31,7 @@ TEST_CASE("greedy: the first face decides, even where two quads would do", "[mes
                 "111"}) == Rectangles{{1, 0, 1, 2, 1}, {0, 1, 1, 1, 1}, {2, 1, 1, 1, 1}});
 }
 
-TEST_CASE("greedy: materials part quads", "[mesh][reference]") {
+TEST_CASE("greedy: different materials are in different quads", "[mesh][reference]") {
   CHECK(greedy({"112",  //
                 "112"}) == Rectangles{{0, 0, 2, 2, 1}, {2, 0, 1, 2, 2}});
   CHECK(greedy({"11",  //

@@ -8,10 +8,10 @@ namespace {
 
 using namespace reference;
 
-/// Of a graph by the right vertices of each left one: left and right members.
+/// Returns the set of a graph, as left and right members, from the right vertices of each left one.
 std::pair<std::vector<bool>, std::vector<bool>> set_of(
     const std::vector<std::vector<std::uint32_t>>& edges, std::uint32_t right_count) {
-  static IndependentSet set;  // what one graph leaves behind would show in the next
+  static IndependentSet set;  // the remains of one graph would show in the next
   BipartiteGraph graph;
   graph.right_count = right_count;
   for (const auto& of : edges) {

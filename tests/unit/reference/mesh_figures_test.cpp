@@ -1,4 +1,4 @@
-// T-junctions and thin triangles: by hand, and against plain loops over everything.
+// T-junctions and thin triangles: by hand, and compared with plain loops over everything.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,21 +27,23 @@ TEST_CASE("a vertex inside an edge is a T-junction, vertices that meet are none"
   surface.quads = {pack({0, 0, 0, 2, 2, Direction::pos_z, kStone}),
                    pack({2, 0, 0, 2, 2, Direction::pos_z, kStone})};
   CHECK(count_t_junctions(surface).places == 0);
-  // The quad on the right in two: their common corner lies in the middle of the left one's edge.
+  // The quad on the right is divided in two: the common corner lies in the middle of the left
+  // quad's edge.
   surface.quads = {pack({0, 0, 0, 2, 2, Direction::pos_z, kStone}),
                    pack({2, 0, 0, 2, 1, Direction::pos_z, kStone}),
                    pack({2, 1, 0, 2, 1, Direction::pos_z, kStone})};
   CHECK(count_t_junctions(surface).places == 1);
   CHECK(count_t_junctions(surface).edges == 1);
-  // Across directions: a side of 1 x 1 that ends in the middle of the top's edge, 2 x 2; edges of both.
+  // Across directions: a side of 1 x 1 ends in the middle of the edge of the top, 2 x 2. Edges of
+  // both count.
   surface.quads = {pack({0, 0, 0, 2, 2, Direction::pos_z, kStone}),
                    pack({1, 0, 0, 1, 1, Direction::pos_x, kStone})};
   CHECK(count_t_junctions(surface).places == 1);
   surface.quads.push_back(
-      pack({2, 0, 0, 2, 2, Direction::pos_z, kDirt}));  // its edge has the same point in it
+      pack({2, 0, 0, 2, 2, Direction::pos_z, kDirt}));  // its edge contains the same point
   CHECK(count_t_junctions(surface).places == 1);
   CHECK(count_t_junctions(surface).edges == 2);
-  // Nothing lies on the diagonal of a quad; it would on the edge of a triangle.
+  // No vertex counts on the diagonal of a quad; on the edge of a triangle it does.
   surface.clear();
   surface.quads = {pack({0, 0, 0, 3, 3, Direction::pos_z, kStone}),
                    pack({1, 1, 1, 1, 1, Direction::neg_z, kWater})};
@@ -54,7 +56,7 @@ TEST_CASE("a vertex inside an edge is a T-junction, vertices that meet are none"
   CHECK(count_t_junctions({}).places == 0);
 }
 
-/// Every vertex against every edge.
+/// Compares every vertex with every edge.
 TJunctions t_junctions_by_pairs(const Surface& surface) {
   std::vector<std::vector<Corner>> polygons;
   for (const Quad quad : surface.quads) {
@@ -132,8 +134,8 @@ TEST_CASE("thin triangles are counted beyond 1:16 and 1:100", "[mesh][reference]
   using Pair = std::pair<std::size_t, std::size_t>;
   CHECK(count(1, 1) == Pair{0, 0});
   CHECK(count(15, 1) == Pair{0, 0});
-  CHECK(count(1, 16) ==
-        Pair{2, 0});  // the diagonal is a little longer than 16 and the height less than 1
+  // The diagonal is a little longer than 16, and the height is less than 1.
+  CHECK(count(1, 16) == Pair{2, 0});
   CHECK(count(2, 31) == Pair{0, 0});
   CHECK(count(99, 1) == Pair{2, 0});
   CHECK(count(1, 100) == Pair{2, 2});
@@ -142,7 +144,7 @@ TEST_CASE("thin triangles are counted beyond 1:16 and 1:100", "[mesh][reference]
   surface.triangles.vertices = {{0, 0, 5}, {8, 8, 5}, {4, 5, 5}, {5, 3, 5}, {5, 4, 5}};
   surface.triangles.triangles = {{{0, 1, 2}, Direction::pos_z, kStone}};  // 128 over 8
   CHECK(count_thin_triangles(surface).above_16 == 0);
-  surface.triangles.triangles = {{{0, 1, 4}, Direction::pos_z, kStone}};  // likewise below the line
+  surface.triangles.triangles = {{{0, 1, 4}, Direction::pos_z, kStone}};  // the same below the line
   CHECK(count_thin_triangles(surface).above_16 == 0);
   surface.triangles.vertices[1] = {9, 8, 5};  // 145 over 4
   CHECK(count_thin_triangles(surface).above_16 == 1);

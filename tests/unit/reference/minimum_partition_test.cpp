@@ -1,10 +1,10 @@
-// Shapes of which the fewest rectangles are known by looking at them.
+// Shapes whose fewest rectangles are known by inspection.
 #include "tests/reference/minimum_partition.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "tests/support/partition_oracle.hpp"
-#include "tests/support/picture_scene.hpp"
+#include "tests/support/text_scene.hpp"
 
 namespace runstone::test {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using namespace reference;
 
 std::size_t rectangles_in(const std::vector<std::string>& rows) {
-  static MinimumPartition partition;  // what one plane leaves behind would show in the next
+  static MinimumPartition partition;  // the remains of one plane would show in the next
   const FacePlane plane = plane_of(rows);
   std::vector<PlaneRectangle> rectangles;
   partition.find(plane, rectangles);
@@ -30,7 +30,7 @@ TEST_CASE("minimum partition: nothing, one rectangle, and one cut a concave corn
   CHECK(rectangles_in({".11", "11."}) == 2);
 }
 
-TEST_CASE("minimum partition: a chord serves two corners", "[mesh][reference]") {
+TEST_CASE("minimum partition: a chord is the cut of two corners", "[mesh][reference]") {
   CHECK(rectangles_in({".1.",  //
                        "111"}) == 2);
   CHECK(rectangles_in({".1.",  // two chords along u or two along v
@@ -38,7 +38,7 @@ TEST_CASE("minimum partition: a chord serves two corners", "[mesh][reference]") 
                        ".1."}) == 3);
 }
 
-TEST_CASE("minimum partition: of chords that cross, the larger party is cut", "[mesh][reference]") {
+TEST_CASE("minimum partition: of chords that cross, the larger set is cut", "[mesh][reference]") {
   CHECK(rectangles_in({".1.1.",  // three along v, crossed by one along u at either side
                        "11111",  //
                        ".1.1."}) == 5);

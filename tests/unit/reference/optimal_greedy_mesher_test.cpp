@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/partition_oracle.hpp"
-#include "tests/support/picture_scene.hpp"
+#include "tests/support/text_scene.hpp"
 
 namespace runstone::test {
 namespace {

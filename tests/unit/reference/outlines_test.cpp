@@ -1,4 +1,4 @@
-// Outlines of small pictures by hand, and of random ones against what the faces around each point say.
+// Outlines of small drawings by hand, and of random ones compared with the faces around each point.
 #include "tests/reference/outlines.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "tests/support/face_picture.hpp"
+#include "tests/support/face_text.hpp"
 #include "tests/support/mesh_scene.hpp"
 
 namespace runstone::test {
@@ -23,7 +23,7 @@ Outlines outlines_of(const std::vector<std::string>& rows) {
   return out;
 }
 
-/// Corners of each ring, region by region.
+/// Returns the number of corners of each ring, region by region.
 std::vector<std::uint32_t> ring_sizes(const Outlines& outlines) {
   std::vector<std::uint32_t> out;
   for (const auto& ring : outlines.rings) out.push_back(ring.count);
@@ -42,8 +42,9 @@ TEST_CASE("a region is a ring of its corners, and one for each hole", "[mesh][re
   const Outlines frame = outlines_of({"####", "#..#", "#..#", "####"});
   CHECK(frame.regions.size() == 1);
   CHECK(ring_sizes(frame) == Sizes{4, 4});
+  // Clockwise.
   CHECK(std::vector<LayerPoint>(frame.points.begin() + 4, frame.points.end()) ==
-        std::vector<LayerPoint>{{1, 3}, {3, 3}, {3, 1}, {1, 1}});  // clockwise
+        std::vector<LayerPoint>{{1, 3}, {3, 3}, {3, 1}, {1, 1}});
   CHECK(outlines_of({"...", "..."}).regions.empty());
 }
 
@@ -69,11 +70,11 @@ TEST_CASE("a ring passes a corner where its region touches itself twice", "[mesh
   const Outlines holes = outlines_of({"####", "#.##", "##.#", "####"});
   CHECK(holes.regions[0].touching == 1);
   CHECK(ring_sizes(holes) == Sizes{4, 8});
-  // Both at once.
+  // Both in one region.
   CHECK(outlines_of({"####", "#.##", "##.#", "###."}).regions[0].touching == 2);
 }
 
-/// Regions by joining faces side by side, each as the set of its faces.
+/// Returns the regions, found by joining faces side by side, each as the set of its faces.
 std::vector<std::set<std::pair<int, int>>> regions_of(const FacePlane& plane) {
   const auto width = static_cast<int>(plane.width), height = static_cast<int>(plane.height);
   const auto face = [&](int u, int v) {
@@ -111,7 +112,7 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
   std::uint32_t touching_met = 0;
   std::size_t holes_met = 0;
   for (int round = 0; round < 1500; ++round) {
-    const auto rows = random_picture(rng, round % 10 == 0 ? 40 : 10);
+    const auto rows = random_face_text(rng, round % 10 == 0 ? 40 : 10);
     const FacePlane plane = face_plane(rows);
     tracer.trace(plane, outlines);
     auto regions = regions_of(plane);
@@ -127,7 +128,7 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
       const auto in = [&faces](int u, int v) { return faces->count({u, v}) != 0; };
       REQUIRE(region.material == plane.row(first.v)[first.u]);
 
-      // Unit sides as the rings run them, and as the faces have them: the face on the left, none on the right.
+      // Unit sides of the rings, and of the faces: the face on the left, none on the right.
       std::multiset<std::array<int, 4>> run;
       std::map<std::pair<int, int>, int> corners;
       int area = 0;
@@ -158,7 +159,8 @@ TEST_CASE("outlines of random pictures bound their regions", "[mesh][reference]"
       }
       REQUIRE(run == owed);
 
-      // A corner has one or three faces of the region around it, or two on a diagonal: then it is passed twice.
+      // A corner has one or three faces of the region around it, or two on a diagonal. Then the
+      // ring passes it twice.
       std::map<std::pair<int, int>, int> corners_owed;
       std::uint32_t touching = 0;
       for (int v = 0; v <= static_cast<int>(plane.height); ++v) {

@@ -1,4 +1,5 @@
-// Scenes small enough to count by hand, and what the entry points promise beyond the faces.
+// Scenes that are small enough to count by hand, and the promises of the functions beyond the
+// faces.
 #include <catch2/catch.hpp>
 
 #include "common/runs/dense.hpp"
@@ -109,7 +110,8 @@ TEST_CASE("a neighbour hides faces at the border by the same rule", "[mesh][refe
 }
 
 TEST_CASE("the grid variant joins rows only if they are alike", "[mesh][reference]") {
-  // An L of 3 + 2 on the floor: binary greedy and the grid variant cut it in different ways, both in two.
+  // An L of 3 + 2 on the floor: binary greedy and the grid variant cut it in different ways, both
+  // into two.
   MeshScene scene{uniform_chunk(kSmall, kEmpty), {}};
   for (const LocalPos at : {LocalPos{1, 1, 1}, LocalPos{1, 1, 2}, LocalPos{1, 1, 3},
                             LocalPos{2, 1, 1}, LocalPos{2, 1, 2}}) {
@@ -123,14 +125,14 @@ TEST_CASE("the grid variant joins rows only if they are alike", "[mesh][referenc
     if (unpack(quad).direction == Direction::pos_y) up.push_back(unpack(quad));
   }
   REQUIRE(up.size() == 2);
-  CHECK(up[0] ==
-        QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});  // along z first: u of a y face
+  // Along z first: u of a y face.
+  CHECK(up[0] == QuadFields{1, 1, 1, 3, 1, Direction::pos_y, kStone});
   CHECK(up[1] == QuadFields{2, 1, 1, 2, 1, Direction::pos_y, kStone});
 }
 
 TEST_CASE("tail culling: a full chunk keeps all but the first layers' backs", "[mesh][reference]") {
-  // 64 lines with +x, +y, +z, -z; -x for the first slow layer, -y for the first line of it and of no other
-  // layer.
+  // 64 lines with +x, +y, +z, -z. Only the first slow layer has -x, and only the first line of each
+  // layer has -y.
   MeshScene scene{uniform_chunk(kSmall, kStone), {}};
   CHECK(quads_of(scene).rle == 64 * 4 + 8 + 8);
 }
@@ -164,7 +166,8 @@ TEST_CASE("a mask made from runs is the mask of the decoded grid", "[mesh][refer
   int run_dense = 0;
   for (int round = 0; round < 1000; ++round) {
     MeshScene scene = random_scene(rng, 64);
-    if (rng.below(2) == 0) {  // what lies beyond the lines' ends is then known without a look
+    // the voxels beyond the lines' ends are then known without reading the grid
+    if (rng.below(2) == 0) {
       const auto fast = 2 * static_cast<std::size_t>(axes_of(scene.chunk.order)[0]);
       for (const std::size_t d : {fast, fast + 1}) {
         if (scene.neighbours[d])

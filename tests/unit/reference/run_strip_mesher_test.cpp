@@ -10,7 +10,8 @@ namespace {
 
 using namespace reference;
 
-/// Stone along y from 1 to 6 at 3 3, and along x from 1 to 6 at y 3, z 5; each hidden here and there.
+/// Returns stone along y from 1 to 6 at 3 3, and along x from 1 to 6 at y 3, z 5. Some faces of
+/// each are hidden.
 MeshScene beams() {
   MeshScene scene{uniform_chunk(Extent::cube(8), kEmpty), {}};
   const auto put = [&scene](std::uint8_t x, std::uint8_t y, std::uint8_t z, Material material) {
@@ -21,7 +22,7 @@ MeshScene beams() {
     put(i, 3, 5, kStone);
   }
   put(2, 1, 3, kDirt);  // hides -x of the upright beam's first voxel
-  put(2, 4, 3, kDirt);  // and of its fourth
+  put(2, 4, 3, kDirt);  // hides -x of its fourth voxel
   put(5, 4, 5, kDirt);  // hides +y of the other beam's fifth voxel
   return scene;
 }
@@ -40,7 +41,8 @@ std::vector<QuadFields> stone_quads(HiddenFaces hidden, Direction direction) {
 
 TEST_CASE("run strips: sides run along y, and hidden faces end them", "[mesh][reference]") {
   const auto left = stone_quads(HiddenFaces::end_run, Direction::neg_x);
-  REQUIRE(left.size() == 3);  // two of the upright beam (u of an x face is y), the end of the other
+  // Two of the upright beam (u of an x face is y), and the end of the other.
+  REQUIRE(left.size() == 3);
   CHECK(left[0] == QuadFields{3, 2, 3, 2, 1, Direction::neg_x, kStone});
   CHECK(left[1] == QuadFields{3, 5, 3, 2, 1, Direction::neg_x, kStone});
   CHECK(left[2] == QuadFields{1, 3, 5, 1, 1, Direction::neg_x, kStone});

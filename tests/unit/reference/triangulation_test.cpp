@@ -7,7 +7,7 @@
 #include "tests/reference/monotone_triangulation.hpp"
 #include "tests/reference/sweep_delaunay.hpp"
 #include "tests/reference/t_junctions.hpp"
-#include "tests/support/face_picture.hpp"
+#include "tests/support/face_text.hpp"
 
 namespace runstone::test {
 namespace {
@@ -24,7 +24,7 @@ std::vector<Point> ring_of(const Outlines& outlines, const Outlines::Ring& ring)
   return out;
 }
 
-/// Directed sides, the region on the left.
+/// Returns directed sides, with the region on the left.
 std::set<std::pair<Point, Point>> sides_of(const Outlines& outlines,
                                            const Outlines::Region& region) {
   std::set<std::pair<Point, Point>> out;
@@ -36,7 +36,8 @@ std::set<std::pair<Point, Point>> sides_of(const Outlines& outlines,
   return out;
 }
 
-/// In another hand than layer_point.hpp: the determinant with the lifted points, in long double.
+/// A second implementation beside layer_point.hpp: the determinant with the lifted points, in long
+/// double.
 long double in_circumcircle(Point a, Point b, Point c, Point d) {
   const auto x = [](Point p) { return static_cast<long double>(p.first); };
   const auto y = [](Point p) { return static_cast<long double>(p.second); };
@@ -53,7 +54,8 @@ struct Judged {
   std::size_t free_edges = 0, bad_edges = 0;  // within the region; not Delaunay
 };
 
-/// Triangles of a region: as many as corners and holes ask for, all points used, sides where sides are.
+/// Checks the triangles of a region: their number follows from corners and holes, all points are
+/// used, and every side is an edge.
 template <class Triangulation>
 Judged judge(const Outlines& outlines, const Outlines::Region& region,
              const Triangulation& triangulation) {
@@ -80,7 +82,7 @@ Judged judge(const Outlines& outlines, const Outlines::Region& region,
     }
   }
   if (count_t_junctions(surface).places != 0) return {"a T-junction within a region"};
-  // Passages of corners, less 2, and 2 for each ring within.
+  // Passages of corners minus 2, plus 2 for each inner ring.
   std::size_t passages = 0;
   for (std::uint32_t r = 0; r < region.ring_count; ++r)
     passages += outlines.rings[region.first_ring + r].count;
@@ -109,7 +111,7 @@ TEST_CASE("regions of random pictures: exact triangulations, and the Delaunay on
   SweepDelaunay delaunay;
   std::size_t touching = 0, holes = 0, free_edges = 0, bad_monotone = 0;
   for (int round = 0; round < 1500; ++round) {
-    const auto rows = random_picture(rng, round % 100 == 0 ? 128 : round % 10 == 0 ? 40 : 12);
+    const auto rows = random_face_text(rng, round % 100 == 0 ? 128 : round % 10 == 0 ? 40 : 12);
     tracer.trace(face_plane(rows), outlines);
     for (const Outlines::Region& region : outlines.regions) {
       CAPTURE(round, rows);
@@ -128,7 +130,7 @@ TEST_CASE("regions of random pictures: exact triangulations, and the Delaunay on
   }
   CHECK(touching > 400);
   CHECK(holes > 400);
-  CHECK(bad_monotone > free_edges / 20);  // or the property would be no merit
+  CHECK(bad_monotone > free_edges / 20);  // otherwise the property would prove nothing
 }
 
 TEST_CASE("a comb and a spiral, whose corners lie in few rows and columns", "[mesh][reference]") {

@@ -1,4 +1,5 @@
-// The oracle on trial: every way in which a mesh can be wrong is made on purpose, and has to be named.
+// Tests of the oracle: every possible fault of a mesh is made on purpose, and the oracle must name
+// it.
 #include "tests/support/face_oracle.hpp"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-/// Groups loose quads as a mesher would.
+/// Groups quads as a mesher would.
 QuadLayers layers_of(std::vector<Quad> quads) {
   const auto bin = [](Quad quad) {
     const QuadFields q = unpack(quad);
@@ -33,7 +34,7 @@ QuadLayers layers_of(std::vector<Quad> quads) {
   return out;
 }
 
-/// The right mesh of block_scene().
+/// Returns the right mesh of block_scene().
 ChunkMesh block_mesh() {
   ChunkMesh mesh;
   mesh.opaque = layers_of({pack({1, 2, 3, 3, 4, Direction::neg_x, kStone}),
@@ -53,7 +54,7 @@ std::string verdict(const ChunkMesh& mesh) {
   return scene_difference(block_scene(), mesh).value_or("right");
 }
 
-TEST_CASE("a mesh written by hand passes the oracle, and so does another cut into quads",
+TEST_CASE("a mesh written by hand passes the oracle, and so do the same faces in other quads",
           "[mesh]") {
   CHECK(verdict(block_mesh()) == "right");
   ChunkMesh cut = block_mesh();
@@ -100,7 +101,7 @@ TEST_CASE("the oracle sees quads in the wrong group", "[mesh]") {
   CHECK_THAT(verdict(mesh), Contains("grouped under another direction"));
 
   mesh = block_mesh();
-  --mesh.opaque.first[2];  // the quad of layer 1 now stands in layer 2 of -x
+  --mesh.opaque.first[2];  // moves the quad of layer 1 to layer 2 of -x
   mesh.opaque.first[2] = 0;
   CHECK_THAT(verdict(mesh), Contains("grouped under another layer"));
 
@@ -150,7 +151,7 @@ TEST_CASE("the oracle names what is wrong with a raw list of quads", "[mesh]") {
 
 TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand", "[mesh]") {
   CHECK(all_faces(DenseChunk::of(block_scene().chunk), mesh_materials()).size() == 25 * 6);
-  // Six lines of four stones along z, and one water: all sides but the inner ends.
+  // Six lines of four stones along z, and one water: all sides except the inner ends.
   CHECK(tail_culled_faces(DenseChunk::of(block_scene().chunk), mesh_materials()).size() ==
         6 * (4 * 4 + 2) + 6);
   // A full chunk is one run: -x only on the first slow layer, -y only on the first line of each.
@@ -169,7 +170,7 @@ TEST_CASE("the oracle of a mesher without culling, and of tail culling, by hand"
 }
 
 TEST_CASE("the oracle of runs that hidden faces do not end, by hand", "[mesh]") {
-  // Of six stones along y the -x faces of the first and fourth are hidden by others.
+  // Of six stones along y the -x faces of the first and the fourth are hidden by others.
   DenseChunk chunk{Extent::cube(8)};
   for (int y = 1; y <= 6; ++y) chunk.set(3, y, 3, kStone);
   chunk.set(2, 1, 3, kDirt);
@@ -187,7 +188,7 @@ TEST_CASE("the oracle of runs that hidden faces do not end, by hand", "[mesh]") 
 }
 
 TEST_CASE("a mesher that forgets a neighbour, a material rule or a border is caught", "[mesh]") {
-  // The mesher gets another scene than the oracle: what a mesher with that mistake would make of it.
+  // The mesher meshes another scene than the oracle, as a mesher with that mistake would.
   SplitMix64 rng(17);
   int scenes = 0;
   int neighbour = 0;

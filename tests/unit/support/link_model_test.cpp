@@ -1,4 +1,5 @@
-// The model of a link against what a link of that rate, delay and queue must do, in virtual time.
+// Compares the model of a link with what a link of that rate, delay and queue must do, in virtual
+// time.
 #include "tests/support/link_model.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ LinkProfile plain(TimeNs round_trip_ns, std::uint64_t bits_per_second) {
 
 }  // namespace
 
-TEST_CASE("the links of the lab are the ones it says", "[link]") {
+TEST_CASE("the link profiles of the testbed have the documented values", "[link]") {
   REQUIRE(link_profiles().size() == 5);
   CHECK(link_profiles()[0].passes_all());
   const LinkProfile* mobile = find_link_profile("mobile");
@@ -48,7 +49,7 @@ TEST_CASE("a link without rate, delay and loss passes everything at once", "[lin
 TEST_CASE("a packet alone takes its time at the transmitter and half a round trip", "[link]") {
   LinkModel link(plain(40 * kMs, 8'000'000), 1);  // a byte a microsecond
   CHECK(link.push(1000, 5 * kMs).due_ns == 5 * kMs + 1 * kMs + 20 * kMs);
-  // A second after, the transmitter is long free.
+  // One second later the transmitter is free.
   CHECK(link.push(500, 1000 * kMs).due_ns == 1000 * kMs + kMs / 2 + 20 * kMs);
 }
 
@@ -60,7 +61,7 @@ TEST_CASE("packets that come together leave one after another", "[link]") {
   CHECK(link.queued_bytes(10 * kMs) == 0);
 }
 
-TEST_CASE("what finds the queue full is dropped, and room comes back at the link's rate",
+TEST_CASE("a packet that finds the queue full is dropped, and the queue empties at the link's rate",
           "[link]") {
   LinkModel link(plain(10 * kMs, 8'000'000), 1);  // a queue of 65,536 bytes
   int passed = 0;
@@ -80,12 +81,12 @@ TEST_CASE("a packet larger than the queue passes a link that is free", "[link]")
   CHECK(link.push(1, 0).fate == LinkFate::no_room);
 }
 
-TEST_CASE("jitter stays in its bounds, is used to both, and never reorders", "[link]") {
+TEST_CASE("jitter stays in its bounds, reaches both of them, and never reorders", "[link]") {
   const LinkProfile profile{"jitter", 120 * kMs, 20 * kMs, 0, 0};
   LinkModel link(profile, Catch::rngSeed() + 1);
   TimeNs before = 0, shortest = 1000 * kMs, longest = 0;
   for (TimeNs i = 0; i < 2000; ++i) {
-    const TimeNs now = i * 100 * kMs;  // so far apart that none waits for another
+    const TimeNs now = i * 100 * kMs;  // so far apart that no packet waits for another
     const TimeNs due = link.push(100, now).due_ns;
     shortest = std::min(shortest, due - now);
     longest = std::max(longest, due - now);
@@ -106,7 +107,7 @@ TEST_CASE("jitter stays in its bounds, is used to both, and never reorders", "[l
   }
 }
 
-TEST_CASE("loss is the share it says, takes the transmitter's time, and follows the seed",
+TEST_CASE("loss has the given share, uses the transmitter's time, and depends on the seed",
           "[link]") {
   const LinkProfile profile{"loss", 0, 0, 8'000'000, 0.02};
   const auto fates = [&](std::uint64_t seed) {

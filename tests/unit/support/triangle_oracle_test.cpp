@@ -1,5 +1,6 @@
-// The triangle oracle on trial, as the face oracle is in face_oracle_test: whatever can be wrong with a mesh
-// of triangles is made on purpose. Then against another hand: counting the triangles over many points.
+// Tests of the triangle oracle, like face_oracle_test: every possible fault of a mesh of triangles
+// is made on purpose. Then the oracle is compared with a second method: counting the triangles over
+// many points.
 #include "tests/support/triangle_oracle.hpp"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ MeshVertex vertex_at(const Corner& corner) {
           static_cast<std::uint8_t>(corner[2])};
 }
 
-/// Each quad as two triangles with vertices of its own.
+/// Returns each quad as two triangles with vertices of their own.
 TriangleMesh triangles_of(const std::vector<Quad>& quads) {
   TriangleMesh out;
   for (const Quad quad : quads) {
@@ -49,8 +50,10 @@ std::string verdict(const TriangleMesh& mesh) {
       .value_or("right");
 }
 
-TEST_CASE("quads cut in two pass the triangle oracle, and so do other triangles of the same faces",
-          "[mesh]") {
+TEST_CASE(
+    "quads cut into triangles pass the triangle oracle, and so do other triangles of the same "
+    "faces",
+    "[mesh]") {
   TriangleMesh mesh = box_mesh();
   CHECK(mesh.triangles.size() == 24);
   CHECK(verdict(mesh) == "right");
@@ -100,7 +103,8 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
   CHECK_THAT(
       broken([](auto& m) { std::swap(m.triangles[5].vertices[0], m.triangles[5].vertices[1]); }),
       Contains("triangle 5 winds the wrong way"));
-  CHECK_THAT(broken([](auto& m) {  // a flipped one would take away what a doubled one has too much
+  // A flipped triangle would cancel a doubled one.
+  CHECK_THAT(broken([](auto& m) {
                MeshTriangle twin = m.triangles[0];
                m.triangles.push_back(twin);
                std::swap(twin.vertices[0], twin.vertices[1]);
@@ -124,7 +128,8 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
                (axis == 0 ? vertex.x : axis == 1 ? vertex.y : vertex.z) += 1;
              }),
              Contains("lies across planes"));
-  CHECK_THAT(broken([](auto& m) {  // a whole quad in the next plane
+  // A whole quad moves to the next plane.
+  CHECK_THAT(broken([](auto& m) {
                const auto axis = static_cast<unsigned>(m.triangles[0].direction) / 2;
                for (std::size_t i = 0; i < 4; ++i)
                  (axis == 0 ? m.vertices[i].x : axis == 1 ? m.vertices[i].y : m.vertices[i].z) += 1;
@@ -132,7 +137,7 @@ TEST_CASE("the triangle oracle names what is wrong with a broken mesh", "[mesh]"
              Contains(odd));
 }
 
-TEST_CASE("a surface is judged by what is in it", "[mesh]") {
+TEST_CASE("a surface is checked by its kind, quads or triangles", "[mesh]") {
   reference::Surface surface;
   const auto judge = [&surface] {
     return surface_difference(surface, Extent::cube(8), mesh_materials(),
@@ -150,7 +155,7 @@ TEST_CASE("a surface is judged by what is in it", "[mesh]") {
   CHECK_THAT(judge(), Contains("is missing"));  // the water
 }
 
-/// Faces +z of a layer of 6 x 6, some of them there, each cut along either diagonal.
+/// The +z faces of a layer of 6 x 6, some of them present, each cut along either diagonal.
 struct Patch {
   std::vector<UnitFace> faces;
   TriangleMesh mesh;
@@ -178,8 +183,8 @@ Patch random_patch(SplitMix64& rng) {
   return out;
 }
 
-/// Moves a corner of some triangle, doubles one or takes one away; or nothing. May change nothing that is
-/// covered.
+/// Moves a corner of some triangle, doubles or removes one, or does nothing. The covered faces may
+/// stay the same.
 void disturb(TriangleMesh& mesh, SplitMix64& rng) {
   if (mesh.triangles.empty()) return;
   const std::uint32_t i = rng.below(static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -194,7 +199,7 @@ void disturb(TriangleMesh& mesh, SplitMix64& rng) {
       triangle.vertices[rng.below(3)] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
       break;
     }
-    case 2: {  // a vertex of all its triangles, by one
+    case 2: {  // moves a vertex of all its triangles by one
       MeshVertex& vertex = mesh.vertices[triangle.vertices[0]];
       vertex.x = static_cast<std::uint8_t>(vertex.x == 6 ? 5 : vertex.x + 1);
       break;
@@ -204,9 +209,9 @@ void disturb(TriangleMesh& mesh, SplitMix64& rng) {
   }
 }
 
-/// Whether points spread over the layer, 13 x 13 in each unit face and none on an edge between lattice
-/// points this close, lie in one triangle where there is a face and in none elsewhere, and no triangle winds
-/// the wrong way.
+/// Returns true if the triangles cover the faces and nothing else, and none winds the wrong way. It
+/// tests points spread over the layer, 13 x 13 in each unit face, none on an edge between lattice
+/// points this close. Each must lie in one triangle where there is a face and in none elsewhere.
 bool covers_points(const Patch& patch) {
   constexpr int kScale = 13 * 97;
   std::map<std::pair<int, int>, int> cover;
@@ -246,7 +251,7 @@ TEST_CASE("the triangle oracle agrees with counting triangles over points", "[me
   for (int round = 0; round < 600; ++round) {
     Patch patch = random_patch(rng);
     disturb(patch.mesh, rng);
-    // Vertices that are not used are no matter of covering.
+    // Unused vertices do not matter for covering.
     TriangleMesh compact;
     for (MeshTriangle triangle : patch.mesh.triangles) {
       for (auto& vertex : triangle.vertices) {

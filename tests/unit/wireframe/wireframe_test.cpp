@@ -1,4 +1,4 @@
-// The picture of a mesh: what lies behind is not in it.
+// The drawing of a mesh shows nothing that lies behind.
 #include "tests/wireframe/wireframe.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ using namespace runstone;
 
 namespace {
 
-/// Faces +x, +y and +z of the cube of `side` voxels at x, y, z.
+/// Returns the faces +x, +y and +z of the cube of `side` voxels at `at`, `at`, `at`.
 std::vector<Quad> cube(unsigned at, unsigned side, Material material) {
   const auto low = static_cast<std::uint8_t>(at);
   const auto last = static_cast<std::uint8_t>(at + side - 1);
@@ -36,7 +36,7 @@ std::ptrdiff_t dark_pixels(const Image& image) {
 TEST_CASE("a wireframe shows outlines and leaves hidden lines out", "[wireframe]") {
   const std::vector<Quad> outer = cube(0, 8, 1);
   const Image alone = drawn(outer);
-  // Nine edges of some 55 pixels each.
+  // Nine edges of about 55 pixels each.
   CHECK(dark_pixels(alone) > 360);
   CHECK(dark_pixels(alone) < 750);
   CHECK(alone.rgb[0] == 255);

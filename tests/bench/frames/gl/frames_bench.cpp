@@ -17,6 +17,7 @@
 #include "tests/bench/frames/frames_world.hpp"
 #include "tests/bench/frames/gl/orbit.hpp"
 #include "tests/bench/frames/gl/plain_renderer.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/bench/harness/statistics.hpp"
 #include "tests/bench/meshing/mesher_case.hpp"
 #include "tests/reference/t_junctions.hpp"
@@ -27,17 +28,18 @@ namespace {
 
 constexpr const char* kReference = "culled";  // no T-junctions: every face has its own four corners
 constexpr std::uint64_t kSeed = 37;           // of the order in which meshers draw
-/// What a mesher may take for its frames, ms a frame asked for; one that takes longer draws fewer of them.
+/// The time that a mesher may take, in ms for each wanted frame. A slower mesher draws fewer
+/// frames.
 constexpr double kFrameMsMean = 50;
 constexpr unsigned kFramesMin = 3;
 
-/// One who draws a world: a mesher and a path.
+/// A mesher and a path, which draw a world.
 struct Painter {
   FramesRow row;
   std::function<void(const Camera&)> draw;  // one frame, to its end
-  PlainScene* scene = nullptr;              // of a plain one
-  bool wanted = true;                       // or there as the reference only
-  unsigned stride = 1;                      // draws every so manieth frame
+  PlainScene* scene = nullptr;              // of a plain painter
+  bool wanted = true;                       // false: only there as the reference
+  unsigned stride = 1;                      // draws every stride-th frame
   std::vector<double> frame_ms;
 };
 
@@ -46,10 +48,11 @@ std::string gl_text(GLenum what) {
   return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);
 }
 
-/// Why a world is not drawn; empty if it is.
+/// The reason why a world is not drawn; empty if it is drawn.
 using Refusal = std::string;
 
-/// The chunks of a world as a mesher has them, on the GPU, and what can be said of them before they are drawn.
+/// Uploads the chunks of a world as a mesher makes them, and counts what can be counted before they
+/// are drawn.
 Refusal mesh_world(const FramesWorld& world, std::size_t vertices_max, PlainScene& scene,
                    FramesRow& row) {
   reference::ThinTriangles thin;
@@ -86,7 +89,7 @@ Refusal mesh_world(const FramesWorld& world, std::size_t vertices_max, PlainScen
   return {};
 }
 
-/// The product's mesh in the product's renderer.
+/// Uploads the product's mesh to the product's renderer.
 void mesh_product(const FramesWorld& world, Renderer& renderer, FramesRow& row) {
   RdmScratch scratch;
   ChunkMesh mesh;
@@ -124,7 +127,7 @@ class FramesBench {
     renderer_.reset();
     std::vector<Painter> painters = painters_of(world);
     time(painters);
-    look(painters);
+    compare_pictures(painters);
     for (Painter& painter : painters) {
       if (!painter.wanted) continue;
       FramesRow& row = painter.row;
@@ -141,7 +144,7 @@ class FramesBench {
  private:
   Camera camera(unsigned frame) const { return orbit_camera(size_, frame, options_.frames); }
 
-  /// Draws `scene`, which has what `row` says.
+  /// Returns a painter that draws `scene`, whose counts are in `row`.
   Painter plain_painter(FramesRow row, PlainScene& scene) {
     row.vertices = scene.vertices();
     row.triangles = scene.triangles();
@@ -168,7 +171,7 @@ class FramesBench {
     FramesRow row;
     row.world = world.name;
     row.path = "plain";
-    row.mesher = "none";  // what a frame costs with nothing in it
+    row.mesher = "none";  // an empty frame
     out.push_back(plain_painter(row, new_scene()));
     for (const std::string& mesher : meshers) {
       if (mesher == "product") {
@@ -179,7 +182,7 @@ class FramesBench {
       of_mesher.mesher = mesher == "quads" ? "rdm" : mesher;
       if (mesher == "quads") of_mesher.path = mesher;
       PlainScene& scene = new_scene();
-      // The reference has to be there whatever it costs.
+      // The reference is drawn whatever its size.
       const std::size_t vertices_max =
           mesher == kReference ? std::numeric_limits<std::size_t>::max() : options_.vertices_max;
       const Refusal refusal = mesh_world(world, vertices_max, scene, of_mesher);
@@ -215,7 +218,7 @@ class FramesBench {
     return static_cast<double>(now_ns() - start) * 1e-6;
   }
 
-  /// The frames of all painters, shuffled within each place of the camera.
+  /// Times the frames of all painters, shuffled within each position of the camera.
   void time(std::vector<Painter>& painters) {
     for (Painter& painter : painters) {
       double warm_ms = draw_ms(painter, camera(0));  // compiles shaders and touches memory
@@ -239,8 +242,8 @@ class FramesBench {
     }
   }
 
-  /// What the pictures show, and what their fragments cost.
-  void look(std::vector<Painter>& painters) {
+  /// Compares the pictures and counts their fragments.
+  void compare_pictures(std::vector<Painter>& painters) {
     const auto reference =
         std::find_if(painters.begin(), painters.end(), [](const Painter& painter) {
           return painter.scene != nullptr && painter.row.mesher == kReference;
@@ -268,7 +271,7 @@ class FramesBench {
     const PictureDifference difference = difference_of(picture, expected);
     add(row.seam_pixels, static_cast<double>(difference.seam_pixels));
     add(row.pinhole_pixels, static_cast<double>(difference.pinhole_pixels));
-    if (covered == 0) return;  // nothing to divide by
+    if (covered == 0) return;  // avoids a division by zero
     add(row.overdraw, drawn / covered);
     add(row.depth_complexity,
         static_cast<double>(plain_.fragments_covered(*painter.scene, at)) / covered);
@@ -277,7 +280,7 @@ class FramesBench {
 
   const FramesOptions& options_;
   FramesResult result_;
-  std::array<int, 3> size_{};           // of the world at hand, voxels
+  std::array<int, 3> size_{};           // of the present world, in voxels
   std::unique_ptr<GlContext> context_;  // outlives what was made in it
   PlainRenderer plain_;
   std::unique_ptr<Renderer> renderer_;

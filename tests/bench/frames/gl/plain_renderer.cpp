@@ -12,7 +12,7 @@
 namespace runstone::bench {
 namespace {
 
-/// GL_SAMPLES_PASSED of what `draw` draws.
+/// Returns GL_SAMPLES_PASSED of what `draw` draws.
 template <class Draw>
 std::uint64_t samples_of(Draw&& draw) {
   GLuint query = 0;

@@ -1,6 +1,6 @@
-// PlainRenderer: the plainest way to draw a mesh: indexed triangles of one vertex format, or packed quads, with
-// one small shader, back faces culled, chunks from near to far. What it draws looks the same whoever made the mesh.
-// All calls from the one thread whose context is current.
+// PlainRenderer: a minimal renderer: indexed triangles of one vertex format, or packed quads, with
+// one small shader, back faces culled, near chunks first. The picture does not depend on the
+// mesher. Thread: the one whose context is current.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -16,21 +16,22 @@ namespace runstone::bench {
 
 class PlainRenderer {
  public:
-  /// Throws std::runtime_error with the driver's log if a shader does not compile, or if there can be no
-  /// target of that size.
+  /// Throws std::runtime_error with the driver's log if a shader does not compile, or if no target
+  /// of that size can be made.
   PlainRenderer(GlContextLoader loader, int width, int height);
 
-  /// One frame; does not wait for it.
+  /// Draws one frame and does not wait for it.
   void draw(const PlainScene& scene, const Camera& camera);
-  /// Of the last draw(). Waits for it.
+  /// Returns the picture of the last draw(). Waits for it.
   DrawnPicture read();
 
-  /// Fragments of a frame that pass the depth test when it is their turn. Draws it; what it drew can be read.
+  /// Draws a frame and returns the fragments that pass the depth test when they are drawn. read()
+  /// then returns the picture.
   std::uint64_t fragments_drawn(const PlainScene& scene, const Camera& camera);
-  /// Fragments of a frame without any depth test: all that front faces cover. Draws it.
+  /// Draws a frame without depth test and returns its fragments: all that front faces cover.
   std::uint64_t fragments_covered(const PlainScene& scene, const Camera& camera);
-  /// Lanes that shade those of fragments_drawn() in blocks of 2 x 2, helpers included. Draws it. None if the
-  /// context is older than OpenGL 4.5.
+  /// Draws a frame and returns the lanes that shade the fragments of fragments_drawn() in blocks of
+  /// 2 x 2, helper lanes included. Returns nullopt if the context is older than OpenGL 4.5.
   std::optional<double> lanes_shaded(const PlainScene& scene, const Camera& camera);
 
  private:

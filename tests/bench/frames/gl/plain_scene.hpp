@@ -1,5 +1,5 @@
-// PlainScene: one mesher's block of chunks on the GPU: indexed triangles, a vertex and an index buffer for each
-// chunk, or packed quads, one buffer for each.
+// PlainScene: one mesher's block of chunks on the GPU: indexed triangles with a vertex and an index
+// buffer for each chunk, or packed quads with one buffer for each.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace runstone::bench {
 
 class PlainScene {
  public:
-  /// Uploads a chunk of `edge` voxels a side that begins at `origin` in the block; nothing if it is empty.
-  /// Throws std::runtime_error if the GPU has no memory left.
+  /// Uploads a chunk of `edge` voxels a side that begins at `origin` in the block. Uploads nothing
+  /// if it is empty. Throws std::runtime_error if the GPU has no memory left.
   void add(const glm::vec3& origin, unsigned edge, const IndexedMesh& mesh);
-  /// The same of packed quads. A scene is of one sort.
+  /// Uploads a chunk of packed quads. All chunks of a scene have one form.
   void add(const glm::vec3& origin, unsigned edge, std::span<const Quad> quads);
 
   std::size_t vertices() const { return vertices_; }

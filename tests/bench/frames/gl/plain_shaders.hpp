@@ -1,5 +1,6 @@
-// GLSL of PlainRenderer. The colour of a pixel is a function of the plane that shows in it - direction, place
-// along it, material - and of nothing that a mesher may choose, so equal voxels give equal pixels.
+// The GLSL of PlainRenderer. The colour of a pixel is a function of the visible plane: its
+// direction, the place along it, and the material. A mesher cannot influence it, so equal voxels
+// give equal pixels.
 #pragma once
 
 namespace runstone::bench {
@@ -16,7 +17,8 @@ namespace runstone::bench {
 
 inline constexpr const char* kPlainVertexShader =
     "#version 330 core\n"
-    "layout(location = 0) in uvec4 place;\n"  // x, y, z, direction: tests/bench/frames/indexed_mesh.hpp
+    // x, y, z, direction (tests/bench/frames/indexed_mesh.hpp)
+    "layout(location = 0) in uvec4 place;\n"
     "layout(location = 1) in uint material;\n"
     "uniform mat4 clip;\n"
     "uniform vec3 origin;\n"  // of the chunk in the block; whole numbers, so sums are exact
@@ -27,7 +29,8 @@ inline constexpr const char* kPlainVertexShader =
     "  colour = colour_of(at, place.w, material);\n"
     "}\n";
 
-// The same from packed quads, an instance each, as the client draws them (client/render/shaders.hpp).
+// The same for packed quads, an instance each, as the client draws them
+// (client/render/shaders.hpp).
 inline constexpr const char* kPackedVertexShader =
     "#version 330 core\n"
     "layout(location = 0) in uvec2 quad;\n"  // common/mesh/quad.hpp, low word first
@@ -60,9 +63,9 @@ inline constexpr const char* kPlainFragmentShader =
     "out vec4 fragment;\n"
     "void main() { fragment = vec4(colour, 1.0); }\n";
 
-// GPUs shade blocks of 2 x 2 pixels; lanes of a block that are outside the triangle, or hidden, help with
-// derivatives and are thrown away. Each fragment that stays adds 4 / (such fragments in its block), so that a
-// block adds 4, however much of it is thrown away.
+// GPUs shade blocks of 2 x 2 pixels. Lanes of a block outside the triangle, and hidden ones,
+// compute derivatives and are discarded. Each remaining fragment adds 4 / (remaining fragments in
+// its block), so that a block adds 4, however many of its lanes are discarded.
 inline constexpr const char* kLanesFragmentShader =
     "#version 450 core\n"
     "flat in vec3 colour;\n"

@@ -1,4 +1,4 @@
-// Axis: what is written beside a scale, and how the scale is divided.
+// Axis: the title of a scale, and how the scale is divided.
 #pragma once
 #include <string>
 
@@ -9,8 +9,8 @@ struct Axis {
   bool is_log = false;
 };
 
-/// What a picture is laid out for. A narrow one is a picture of its own, not the wide one made small, so that text
-/// stays readable on a phone.
+/// The width for which a chart is laid out. The narrow chart is laid out separately, not scaled
+/// down, so that text stays readable on a phone.
 enum class Width {
   wide,   // 720 units
   narrow  // 400 units

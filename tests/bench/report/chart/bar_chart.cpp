@@ -15,7 +15,7 @@
 namespace runstone::bench::chart {
 namespace {
 
-constexpr double kThinnest = 4.5;  // column
+constexpr double kThinnest = 4.5;  // the narrowest column
 constexpr double kGroupGap = 5;
 constexpr double kWidest = 34;
 
@@ -24,7 +24,7 @@ double value_of(const Series& series, std::size_t category) {
                                          : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// How categories share the width right of `left`.
+/// The widths of the categories right of `left`.
 struct Columns {
   double left;
   std::vector<std::size_t> panels;

@@ -1,4 +1,5 @@
-// BarChart: grouped columns, a group for each category. Many categories go into several rows of columns.
+// BarChart: grouped columns, a group for each category. Many categories go into several rows of
+// columns.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,17 +13,19 @@ struct Series {
   std::string name = {};
   Role role = Role::other;
   std::vector<double> values =
-      {};  // one a category (or a name, in a StackChart); NaN, or none: not measured
+      // One a category (or a name, in a StackChart); NaN or missing: not measured.
+      {};
 };
 
 struct BarChart {
   std::vector<std::string> categories = {};
   std::vector<Series> series = {};
   Axis y = {};
-  std::string title = {};  // what is shown, in words, for those who cannot see it
+  std::string title = {};  // the content in words, for readers who cannot see the chart
 };
 
-/// One <svg>. Any data gives a picture: what cannot be drawn is a small mark, and nothing at all is a note.
+/// Returns one <svg>. Any data gives a chart: a value that cannot be drawn is a small mark, and a
+/// chart without values is a note.
 std::string svg_of(const BarChart& chart, Width width = Width::wide);
 
 }  // namespace runstone::bench::chart

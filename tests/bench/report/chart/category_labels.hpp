@@ -1,4 +1,5 @@
-// Names below or above columns: upright where they fit, else slanted; and how many columns go side by side.
+// Names below or above columns, upright where they fit, otherwise slanted; and the number of
+// columns side by side.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -11,23 +12,25 @@ namespace runstone::bench::chart {
 /// The least distance between slanted names.
 constexpr double kSlantedPitch = 17;
 
-/// Column counts of as few panels as `per_panel_max` allows, as equal as can be: 37 and 20 give 19 and 18.
+/// Returns the column counts of the fewest panels that `per_panel_max` allows, as equal as
+/// possible: 37 and 20 give 19 and 18.
 std::vector<std::size_t> panels_of(std::size_t columns, std::size_t per_panel_max);
 
 class CategoryLabels {
  public:
   CategoryLabels(const std::vector<std::string>& names, double pitch);
 
-  /// Units from the columns to the far end of the names.
+  /// Returns the units from the columns to the far end of the names.
   [[nodiscard]] double height() const { return height_; }
 
-  /// Units that a name below its column goes to the left of the column's middle.
+  /// Returns the units by which a name below its column extends to the left of the column's middle.
   [[nodiscard]] double overhang(std::size_t column) const;
 
-  /// Below the columns, centred under `x`, the middle of the column, or ending there; `y` is the columns' end.
+  /// Draws a name below the columns, centred under `x`, the middle of the column, or ending there.
+  /// `y` is the end of the columns.
   void draw_below(Svg& svg, std::size_t column, double x, double y) const;
 
-  /// Likewise above them, rising to the right, but not beyond `right`.
+  /// Draws a name above the columns, rising to the right, but not beyond `right`.
   void draw_above(Svg& svg, std::size_t column, double x, double y, double right) const;
 
  private:

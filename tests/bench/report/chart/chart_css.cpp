@@ -7,8 +7,9 @@
 namespace runstone::bench::chart {
 namespace {
 
-// Okabe and Ito's palette for all kinds of colour vision, darker on white and lighter on black so that each colour
-// has three times the contrast that is needed to see a mark (WCAG 2.1, 1.4.11), and text 4.5 times (1.4.3).
+// Okabe and Ito's palette for all kinds of colour vision, darker on white and lighter on black.
+// Each colour has three times the contrast that a mark needs to be seen (WCAG 2.1, 1.4.11), and
+// text 4.5 times (1.4.3).
 constexpr std::string_view kLight =
     "--paper:#fff;--ink:#1b1f24;--quiet:#5a646f;--grid:#e4e8ec;--axis:#9aa4af;"
     "--ours:#0067b1;--baseline:#c85200;--thesis:#6d7580;--rest:#8592a0;"

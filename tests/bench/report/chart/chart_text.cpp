@@ -14,7 +14,8 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-/// The first character of a text that is not empty; kReplacement for one byte of what is no UTF-8.
+/// Returns the first character of a text that is not empty; kReplacement for one byte that is no
+/// UTF-8.
 Character first_of(std::string_view text) {
   const auto byte = [&](std::size_t at) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[at]));
@@ -39,7 +40,7 @@ bool is_forbidden(std::uint32_t code) {
          code == 0xFFFF || code == kReplacement;
 }
 
-/// In parts of the size of the font.
+/// Returns a width in parts of the font size.
 double width_of(std::uint32_t code) {
   constexpr std::string_view kThin = "iljI.,:;'|!";
   constexpr std::string_view kSlim = "frt()[]/-\" ";

@@ -9,7 +9,7 @@
 namespace runstone::bench::chart {
 namespace {
 
-/// "-1234567.5" becomes "-1,234,567.5".
+/// Turns "-1234567.5" into "-1,234,567.5".
 std::string grouped(std::string digits) {
   const std::size_t first = digits.starts_with('-') ? 1 : 0;
   const std::size_t point = digits.find('.');
@@ -34,7 +34,7 @@ std::string format_value(double value) {
   if (std::isnan(value)) return "not measured";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   if (value == 0) return "0";
-  // Rounded first: 999.6 is 1,000, and 0.00009996 is 0.0001.
+  // Rounds first: 999.6 becomes 1,000, and 0.00009996 becomes 0.0001.
   const std::string rounded = fmt::format("{:.2e}", value);
   const std::size_t split = rounded.find('e');
   const bool is_small = rounded[split + 1] == '-';

@@ -1,4 +1,4 @@
-// A frame holds both layouts of one chart; the style sheet shows the one that fits the screen.
+// A frame holds both layouts of one chart. The style sheet shows the one that fits the screen.
 #pragma once
 #include <string>
 
@@ -6,7 +6,8 @@
 
 namespace runstone::bench::chart {
 
-/// <div class="chart-frame"> with the wide and the narrow picture of a chart of any kind. This is what a page shows.
+/// Returns a <div class="chart-frame"> with the wide and the narrow layout of a chart of any kind,
+/// for a page.
 template <typename Chart>
 std::string frame_of(const Chart& chart) {
   return "<div class=\"chart-frame\">" + svg_of(chart, Width::wide) + svg_of(chart, Width::narrow) +

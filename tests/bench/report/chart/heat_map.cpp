@@ -15,11 +15,11 @@
 namespace runstone::bench::chart {
 namespace {
 
-constexpr int kLevels = 9;  // chart_css() has as many
+constexpr int kLevels = 9;  // as many as in chart_css()
 constexpr double kCellHeight = 22;
 constexpr double kCellWidest = 84;
 
-/// Values to levels, 0 good to 8 bad.
+/// Maps values to levels, 0 good to 8 bad.
 struct Levels {
   bool is_log = true;
   bool is_low_good = true;
@@ -46,7 +46,7 @@ std::optional<Levels> levels_of(const HeatMap& chart) {
   return out;
 }
 
-/// From good to bad, with the ends in numbers; returns where the table may begin.
+/// Draws the levels from good to bad, with the ends in numbers. Returns where the table may begin.
 double draw_key(Svg& svg, const Levels& levels, const std::string& caption, Width width) {
   constexpr double kStep = 16;
   const double right = width_of(width) - 4;
@@ -100,7 +100,7 @@ std::string svg_of(const HeatMap& chart, Width width) {
   for (const std::string& row : chart.rows) names = std::max(names, width_of(row, kTextSize));
   names = std::min(names, width_of(width) * 0.34);
   const double left = names + 12;
-  // Room at the right for the last slanted name.
+  // Leaves room at the right for the last slanted name.
   const double table = width_of(width) - left - (width == Width::wide ? 56 : 44);
   const double narrowest = width == Width::narrow ? 34 : 27;
   const std::vector<std::size_t> panels =

@@ -12,7 +12,7 @@ struct HeatMap {
   std::vector<std::string> rows = {};
   std::vector<std::string> columns = {};
   std::vector<double> values = {};             // rows x columns, row by row; NaN: not measured
-  Axis value = {.title = {}, .is_log = true};  // the colours
+  Axis value = {.title = {}, .is_log = true};  // of the colours
   std::string (*text)(double) = format_value;  // of a cell; nullptr: no text
   bool is_low_good = true;
   std::string title = {};

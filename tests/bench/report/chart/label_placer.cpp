@@ -15,7 +15,8 @@ std::vector<double> spread(const std::vector<double>& positions, double pitch, d
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
     return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
   });
-  // With the pitch taken off, they must only not decrease: pool those that do at their mean (isotonic regression).
+  // Without the pitch, positions must only not decrease. Those that do are pooled at their mean
+  // (isotonic regression).
   struct Pool {
     double sum;
     std::size_t count;
@@ -48,8 +49,8 @@ LeadEnd lead_to(const Box& label, double x, double y) {
   return {end_x, end_y, std::hypot(end_x - x, end_y - y)};
 }
 
-/// Small boxes on the way from a point to its label.
-std::vector<Box> LabelPlacer::way_of(const Box& label, double x, double y, double radius) {
+/// Returns small boxes along the lead from a point to its label.
+std::vector<Box> LabelPlacer::lead_boxes(const Box& label, double x, double y, double radius) {
   constexpr double kStep = 6;
   const LeadEnd end = lead_to(label, x, y);
   std::vector<Box> out;
@@ -68,7 +69,7 @@ bool LabelPlacer::is_free(const Box& box, double x, double y, double margin) con
   const auto is_hit = [&](const Box& other) { return overlap(box, other); };
   if (std::any_of(taken_.begin(), taken_.end(), is_hit)) return false;
   return std::none_of(points_.begin(), points_.end(), [&](const Disc& point) {
-    // Points at the same place are as much named by it.
+    // A label names all points at the same place.
     const double reach = point.radius + (point.x == x && point.y == y ? 0 : margin);
     return is_hit({point.x - reach, point.y - reach, 2 * reach, 2 * reach});
   });
@@ -76,7 +77,8 @@ bool LabelPlacer::is_free(const Box& box, double x, double y, double margin) con
 
 std::optional<Box> LabelPlacer::place(double x, double y, double radius, double width,
                                       double height) {
-  // Closer to another point than to its own, a name would be read as the other's: only where nothing else is left.
+  // A name that is closer to another point would be read as that point's name. Such a place is used
+  // only if there is no other.
   for (const double margin : {7.0, 1.0}) {
     for (const double away : {3.0, 9.0, 18.0, 30.0, 44.0, 60.0}) {
       const double gap = radius + away;
@@ -91,7 +93,7 @@ std::optional<Box> LabelPlacer::place(double x, double y, double radius, double 
                                 {x - slant - width, y + slant, width, height}};
       for (const Box& box : candidates) {
         if (!is_free(box, x, y, margin)) continue;
-        const std::vector<Box> way = way_of(box, x, y, radius);
+        const std::vector<Box> way = lead_boxes(box, x, y, radius);
         if (!std::all_of(way.begin(), way.end(),
                          [&](const Box& part) { return is_free(part, x, y, 0); }))
           continue;

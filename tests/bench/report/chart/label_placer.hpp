@@ -1,4 +1,4 @@
-// Where names go so that they do not overlap.
+// Places names so that they do not overlap.
 #pragma once
 #include <optional>
 #include <vector>
@@ -7,12 +7,13 @@
 
 namespace runstone::bench::chart {
 
-/// Moves positions apart until each is `pitch` from the next one, within [low, high], in their order and moved as
-/// little as can be (least squares). Empty if they do not fit at all. Requires finite positions.
+/// Moves positions apart until each is `pitch` from the next one, within [low, high], in their
+/// order and as little as possible (least squares). Returns an empty list if they do not fit.
+/// Requires finite positions.
 std::vector<double> spread(const std::vector<double>& positions, double pitch, double low,
                            double high);
 
-/// Where the lead from a point to a label ends: at the label's nearest side.
+/// The end of the lead from a point to a label: at the label's nearest side.
 struct LeadEnd {
   double x = 0;
   double y = 0;
@@ -20,19 +21,19 @@ struct LeadEnd {
 };
 LeadEnd lead_to(const Box& label, double x, double y);
 
-/// Places boxes beside points, first come, first served: near by first, then farther off.
+/// Places boxes beside points, in the order of the calls: near the point first, then farther off.
 class LabelPlacer {
  public:
   explicit LabelPlacer(const Box& room) : room_(room) {}
 
-  /// Nothing shall cover this.
+  /// Keeps labels off this box.
   void block(const Box& box) { taken_.push_back(box); }
 
-  /// Likewise, and labels of other points keep some distance.
+  /// Keeps labels off this point, and labels of other points at some distance.
   void block_point(double x, double y, double radius) { points_.push_back({x, y, radius}); }
 
-  /// Room for a label of this size beside the point at (x, y), which is then taken, and so is the way of the lead
-  /// from point to label. O(boxes and points).
+  /// Returns room for a label of this size beside the point at (x, y), or nullopt. The room and the
+  /// lead from the point to it are then taken. Cost: O(boxes and points).
   std::optional<Box> place(double x, double y, double radius, double width, double height);
 
  private:
@@ -40,7 +41,8 @@ class LabelPlacer {
     double x, y, radius;
   };
 
-  [[nodiscard]] static std::vector<Box> way_of(const Box& label, double x, double y, double radius);
+  [[nodiscard]] static std::vector<Box> lead_boxes(const Box& label, double x, double y,
+                                                   double radius);
   [[nodiscard]] bool is_free(const Box& box, double x, double y, double margin) const;
 
   Box room_;

@@ -1,4 +1,4 @@
-// Legend: a swatch and a name for each series, in as many lines as they take.
+// Legend: a swatch and a name for each series, in as many lines as needed.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,14 +11,14 @@ namespace runstone::bench::chart {
 struct LegendEntry {
   std::string name = {};
   Role role = Role::other;
-  std::string colour = {};  // a class
-  bool is_line = false;     // the swatch
+  std::string colour = {};  // a CSS class
+  bool is_line = false;     // form of the swatch
 };
 
-/// The colours of series: no two alike while the palette lasts.
+/// Returns the colours of series: all different as long as the palette has colours.
 std::vector<std::string> colours_of(const std::vector<Role>& roles);
 
-/// Draws from `top` down; returns where the next thing may begin.
+/// Draws from `top` down. Returns where the next element may begin.
 double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right,
                    double top);
 

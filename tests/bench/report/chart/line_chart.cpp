@@ -26,7 +26,7 @@ struct Scales {
   }
 };
 
-/// Only points that have both coordinates widen the scales.
+/// Only points with both coordinates widen the scales.
 Scales scales_of(const LineChart& chart, bool is_narrow) {
   std::vector<double> xs;
   std::vector<double> ys;
@@ -74,7 +74,8 @@ std::optional<Point> end_of(const LineSeries& line, const Scales& scales) {
   return std::nullopt;
 }
 
-/// Names beside the ends of lines; a lead joins those that had to move, or whose line ends early.
+/// Draws names at the ends of lines. A lead joins a name that had to move, or whose line ends
+/// early.
 void draw_end_labels(Svg& svg, const LineChart& chart, const Scales& scales,
                      const std::vector<std::string>& colours, const Box& area, double right) {
   std::vector<std::size_t> ended;
@@ -117,7 +118,7 @@ std::string svg_of(const LineChart& chart, Width width) {
   const std::vector<std::string> colours = colours_of(roles);
   const double right = width_of(width) - 4;
   const double left = tick_room(scales.y);
-  // Names at the ends take room from the lines, but colours must be looked up in a legend, and come round again.
+  // Names at the ends take room from the lines. Colours need a legend, and repeat.
   const bool has_many = roles.size() > 8;
   const double height = has_many && is_narrow ? 280 : is_narrow ? 240 : 320;
   if (has_many) widest = std::min(widest, (right - left) * 0.4 - kLabelGap);
@@ -140,7 +141,7 @@ std::string svg_of(const LineChart& chart, Width width) {
   scales.y.lay(area.y + height, area.y);
   draw_vertical_axis(svg, scales.y, caption_of(chart.y), area);
   draw_horizontal_axis(svg, scales.x, caption_of(chart.x), area, width_of(width));
-  // Ours last, so that it lies on top.
+  // The product is drawn last, so that it lies on top.
   for (const bool is_ours : {false, true}) {
     for (std::size_t i = 0; i < chart.lines.size(); ++i) {
       if ((roles[i] == Role::ours) == is_ours) draw_line(svg, chart.lines[i], scales, colours[i]);

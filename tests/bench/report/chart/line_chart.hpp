@@ -1,4 +1,5 @@
-// LineChart: lines over two scales, each named at its right end; with a legend where the names do not fit there.
+// LineChart: lines over two scales. Each is named at its right end, or in a legend if the names do
+// not fit there.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct Point {
 struct LineSeries {
   std::string name = {};
   Role role = Role::other;
-  std::vector<Point> points = {};  // in the order of the line; one that cannot be drawn breaks it
+  // in the order of the line; a point that cannot be drawn interrupts it
+  std::vector<Point> points = {};
 };
 
 struct LineChart {

@@ -6,7 +6,7 @@
 namespace runstone::bench::chart {
 namespace {
 
-/// Lines that rise to the right, cut at the box: all points with x + y = c, a step apart.
+/// Returns lines that rise to the right, cut at the box: all points with x + y = c, one step apart.
 std::string hatching(const Box& box) {
   constexpr double kStep = 4.5;
   constexpr int kLinesMax = 1000;
@@ -29,7 +29,7 @@ std::string classes(std::string_view shape, std::string_view colour) {
 
 void draw_bar(Svg& svg, const Box& box, Role role, std::string_view colour) {
   if (role != Role::thesis) return svg.rect(box, classes("fill", colour));
-  // The outline is half inside.
+  // Half of the outline's width is inside the box.
   const Box inner{box.x + 0.5, box.y + 0.5, std::max(box.width - 1, 0.2),
                   std::max(box.height - 1, 0.2)};
   svg.rect(inner, classes("hollow", colour));

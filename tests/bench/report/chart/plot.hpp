@@ -7,17 +7,18 @@
 
 namespace runstone::bench::chart {
 
-/// The room that the ticks of a vertical scale need at its left.
+/// Returns the room that the ticks of a vertical scale need at its left.
 double tick_room(const Scale& scale);
 
-/// The ticks of a horizontal scale on the baseline `y`, kept within the picture; what would touch its left neighbour is
-/// left out.
+/// Draws the ticks of a horizontal scale on the baseline `y`, within the chart. Leaves out a tick
+/// that would touch its left neighbour.
 void draw_tick_row(Svg& svg, const Scale& scale, double y, double right);
 
-/// Horizontal grid lines through `area`, their ticks at its left, and the caption above.
+/// Draws horizontal grid lines through `area`, their ticks at its left, and the caption above.
 void draw_vertical_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area);
 
-/// Ticks and the caption below `area`. Needs kBelow units there. `right` is the end of the picture.
+/// Draws ticks and the caption below `area`, which needs kBelow units there. `right` is the end of
+/// the chart.
 void draw_horizontal_axis(Svg& svg, const Scale& scale, const std::string& caption, const Box& area,
                           double right);
 

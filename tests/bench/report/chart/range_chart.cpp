@@ -34,7 +34,7 @@ std::string key_of(const RangeNames& names) {
   return out;
 }
 
-/// Returns the right end of what was drawn.
+/// Draws a range. Returns the right end of what it drew.
 double draw_range(Svg& svg, const Scale& scale, const Range& range, const Rows& rows,
                   std::size_t row, Role role) {
   const std::string colour = class_of(role);
@@ -46,7 +46,7 @@ double draw_range(Svg& svg, const Scale& scale, const Range& range, const Rows& 
     return at;
   };
   if (scale.can_show(range.far)) {
-    // From the farthest value there is on this side of it.
+    // The whisker begins at the highest value that is known.
     const double from = scale.can_show(range.high)     ? reach(range.high)
                         : scale.can_show(range.middle) ? reach(range.middle)
                                                        : reach(range.far);
@@ -61,7 +61,7 @@ double draw_range(Svg& svg, const Scale& scale, const Range& range, const Rows& 
   }
   if (scale.can_show(range.middle)) {
     const double at = reach(range.middle);
-    svg.rect({at - 2.5, y - 8, 5, 16}, "gap");  // so that the tick stands out of its bar
+    svg.rect({at - 2.5, y - 8, 5, 16}, "gap");  // so that the tick is wider than its bar
     svg.rect({at - 1.5, y - 8, 3, 16}, "ink");
   }
   return end;
@@ -88,7 +88,7 @@ std::string svg_of(const RangeChart& chart, Width width) {
   Svg svg;
   Rows rows(chart.names, chart.roles, tail, width);
   rows.begin_at(Rows::kAxisHeight + kKeyHeight);
-  scale.lay(rows.left() + 5, rows.right());  // a tick at the lowest value is whole
+  scale.lay(rows.left() + 5, rows.right());  // room for a whole tick at the lowest value
   svg.text(rows.left(), 14, Anchor::start,
            shortened(key_of(chart.value_names), kTickSize, rows.end() - rows.left()), "note");
   rows.draw_axis(svg, scale, caption_of(chart.x));

@@ -1,4 +1,4 @@
-// RangeChart: per name a bar from low to high, a tick at the middle and a thin whisker to far.
+// RangeChart: for each name a bar from low to high, a tick at the middle and a thin whisker to far.
 #pragma once
 #include <limits>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace runstone::bench::chart {
 
-/// Values that are not there are NaN: without `far` there is no whisker, without `low` or `high` no bar.
+/// Missing values are NaN. Without `far` there is no whisker, without `low` or `high` no bar.
 struct Range {
   double low = std::numeric_limits<double>::quiet_NaN();
   double middle = std::numeric_limits<double>::quiet_NaN();
@@ -17,7 +17,7 @@ struct Range {
   double far = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What the four values are called in the key and in tooltips; an empty one is not mentioned.
+/// The names of the four values in the key and in tooltips. An empty one is left out.
 struct RangeNames {
   std::string low = "lowest";
   std::string middle = "median";
@@ -34,7 +34,7 @@ struct RangeChart {
   std::string title = {};
 };
 
-/// See svg_of(BarChart). Behind a range stands its middle.
+/// See svg_of(BarChart). The middle is written behind each range.
 std::string svg_of(const RangeChart& chart, Width width = Width::wide);
 
 }  // namespace runstone::bench::chart

@@ -1,4 +1,4 @@
-// RankChart: one horizontal bar a name, its value written at its end. Drawn in the order given.
+// RankChart: one horizontal bar a name, its value written at its end, in the given order.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +14,8 @@ struct RankChart {
   std::vector<double> values = {};  // one a name; NaN: not measured
   Axis x = {};
   std::vector<std::string> notes =
-      {};  // one a name, quietly behind the value ("2.1 x ours"); may be empty
+      // One a name, in a quiet colour behind the value ("2.1 x ours"); may be empty.
+      {};
   std::string title = {};
 };
 

@@ -17,7 +17,7 @@ std::string class_of(Role role) {
 }
 
 std::string class_of(Role role, std::size_t index) {
-  constexpr std::size_t kPalette = 8;  // chart_css() has as many
+  constexpr std::size_t kPalette = 8;  // as many as in chart_css()
   if (role == Role::other) return "c-other" + std::to_string(index % kPalette);
   return class_of(role) + (index > 0 ? "2" : "");
 }

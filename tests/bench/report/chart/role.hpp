@@ -1,4 +1,5 @@
-// Role: what a series is to the reader. It decides colour, hatching and shape, never the numbers.
+// Role: the meaning of a series for the reader. It decides colour, hatching and shape, never the
+// numbers.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,16 +8,20 @@ namespace runstone::bench::chart {
 
 enum class Role {
   ours,      // the product: the strongest colour
-  baseline,  // what it is held against
-  other,  // everyone else: a palette by index where lines and columns must be told apart, else one quiet colour
-  thesis  // figures taken from print: muted; hatched, dashed or hollow, so that no colour is needed
+  baseline,  // what the product is compared with
+  // All others: a palette by index where lines and columns must be distinguished, otherwise one
+  // quiet colour.
+  other,
+  // Printed figures: muted; hatched, dashed or hollow, so that no colour is needed.
+  thesis
 };
 
-/// The CSS class of a role: "c-ours", "c-baseline", "c-thesis", "c-rest".
+/// Returns the CSS class of a role: "c-ours", "c-baseline", "c-thesis", "c-rest".
 std::string class_of(Role role);
 
-/// The same for series that must be told apart; `index` counts those of the same role. Others are "c-other0" ..
-/// "c-other7" and round again; a second one of ours is "c-ours2", another shade, and so are those after it.
+/// Returns the CSS class for series that must be distinguished. `index` counts those of the same
+/// role. Others are "c-other0" .. "c-other7" and start again. A second series of the product, and
+/// those after it, are "c-ours2", another shade.
 std::string class_of(Role role, std::size_t index);
 
 }  // namespace runstone::bench::chart

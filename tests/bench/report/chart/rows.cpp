@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kMargin = 4;
 constexpr double kNameGap = 10;
-constexpr double kSlack = 1;             // rounding shall not shorten the widest name
-constexpr double kNamesShareMax = 0.36;  // of the picture
+constexpr double kSlack = 1;             // rounding must not shorten the widest name
+constexpr double kNamesShareMax = 0.36;  // of the chart's width
 
 }  // namespace
 

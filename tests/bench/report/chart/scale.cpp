@@ -12,7 +12,7 @@ constexpr double kLargest = 1e30;
 constexpr double kSmallestLog = 1e-30;
 constexpr double kSteps[] = {1, 2, 5};
 
-/// The least 1, 2 or 5 times a power of ten that is not below a positive value.
+/// Returns the least 1, 2 or 5 times a power of ten that is not below a positive value.
 double round_up(double value) {
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
   for (const double step : kSteps) {
@@ -61,9 +61,10 @@ Scale::Scale(std::span<const double> values, bool is_log, Start start, Ends ends
   }
 }
 
-/// Values that are all but one would leave no step above the precision of a double.
+/// Moves the ends of the scale apart if they are almost equal. Otherwise no step would be above the
+/// precision of a double.
 void Scale::part_ends() {
-  constexpr double kSmallest = 1e-30;  // below it a linear scale knows nothing but 0
+  constexpr double kSmallest = 1e-30;  // smaller values count as 0 on a linear scale
   const double largest = std::max(std::abs(low_), std::abs(high_));
   if (high_ - low_ > (is_log_ ? largest * 1e-9 : std::max(largest * 1e-9, kSmallest))) return;
   if (largest <= kSmallest && !is_log_) {
@@ -88,7 +89,7 @@ void Scale::divide_linear(Ends ends, std::size_t ticks) {
   const double low = low_;
   const double high = high_;
   double step = round_up((high - low) / static_cast<double>(ticks));
-  // Rounding the ends to steps may add some: then a step larger.
+  // Rounding the ends to steps may add some steps. Then a larger step is used.
   for (int larger = 0; larger < 4; ++larger) {
     if (ends == Ends::round) {
       low_ = std::floor(low / step + 1e-6) * step;
@@ -107,7 +108,7 @@ void Scale::divide_log(Ends ends, std::size_t ticks) {
   }
   const int first = static_cast<int>(std::floor(std::log10(low_) + 1e-9));
   const int last = static_cast<int>(std::floor(std::log10(high_) + 1e-9));
-  // 1-2-5, else decades, else every second decade, every third ...
+  // Tries 1-2-5, then decades, then every second decade, every third, and so on.
   for (int stride = 0; stride <= last - first + 1; ++stride) {
     ticks_.clear();
     for (int decade = first; decade <= last; ++decade) {

@@ -1,4 +1,4 @@
-// Scale: values to positions, linear or logarithmic, with round ticks. It copes with any values.
+// Scale: maps values to positions, linear or logarithmic, with round ticks. It accepts any values.
 #pragma once
 #include <span>
 #include <string>
@@ -15,35 +15,37 @@ struct Tick {
 
 class Scale {
  public:
-  /// What the scale begins with.
+  /// The value with which the scale begins.
   enum class Start {
     lowest,  // the lowest value
-    bars  // 0; on a logarithmic scale so far below the lowest value that its bar can still be seen
+    // 0; on a logarithmic scale so far below the lowest value that its bar can still be seen.
+    bars
   };
 
   enum class Ends {
-    round,  // at round values, so that ticks frame the picture
-    tight   // at the values themselves (or where bars start), so that they fill it
+    round,  // at round values, so that ticks frame the chart
+    tight   // at the values themselves (or where bars start), so that they fill the chart
   };
 
-  /// A scale over all values that it can show. `ticks` is the most there should be, 2 or more.
+  /// Makes a scale over all values that it can show. `ticks` is the greatest number of ticks, 2 or
+  /// more.
   Scale(std::span<const double> values, bool is_log, Start start, Ends ends, std::size_t ticks);
 
-  /// Whether a value has a place: finite, and positive if logarithmic; beyond 1e30, and on a logarithmic scale below
-  /// 1e-30, there is none.
+  /// Returns true if a value has a position: it is finite, and positive if the scale is
+  /// logarithmic. Values beyond 1e30 have none, and on a logarithmic scale values below 1e-30.
   [[nodiscard]] static bool can_show(double value, bool is_log);
   [[nodiscard]] bool can_show(double value) const { return can_show(value, is_log_); }
 
-  /// False if no value could be shown; the scale is then from 0 or 1 to 1 or 10.
+  /// Returns false if no value could be shown. The scale is then from 0 or 1 to 1 or 10.
   [[nodiscard]] bool has_values() const { return has_values_; }
 
-  /// Where the ends lie; `to` may be less than `from`.
+  /// Sets the positions of the ends; `to` may be less than `from`.
   void lay(double from, double to);
 
-  /// Within the ends. Requires can_show(value).
+  /// Returns a position within the ends. Requires can_show(value).
   [[nodiscard]] double place(double value) const;
 
-  /// Where bars begin: at 0 if that is within, else at the low end.
+  /// Returns where bars begin: at 0 if that is within the scale, otherwise at the low end.
   [[nodiscard]] double base() const;
 
   [[nodiscard]] const std::vector<Tick>& ticks() const { return ticks_; }
@@ -65,7 +67,7 @@ class Scale {
   std::vector<Tick> ticks_;
 };
 
-/// What stands beside a scale: its title, and that it is logarithmic.
+/// Returns the text beside a scale: its title, and "logarithmic" if it is.
 std::string caption_of(const Axis& axis);
 
 }  // namespace runstone::bench::chart

@@ -20,8 +20,8 @@ constexpr double kRadius = 4.5;
 constexpr double kLabelHeight = 14;
 constexpr double kInset = 16;
 
-/// Who is named first: with little room the others go without.
-int turn_of(Role role) {
+/// Returns the rank of a role for names. With little room the later ones have no name.
+int label_rank(Role role) {
   switch (role) {
     case Role::ours:
       return 0;
@@ -35,7 +35,7 @@ int turn_of(Role role) {
   return 3;
 }
 
-/// An arrow to the lower left, above the right end of the picture, where no point lies.
+/// Draws an arrow to the lower left, above the right end of the chart, where no point lies.
 void draw_better(Svg& svg, const Box& area) {
   const double x = area.x + area.width - 14;
   const double y = area.y - 12;
@@ -59,11 +59,11 @@ struct PlacedPoint {
   double x = 0;
   double y = 0;
   std::optional<Box> label = {};
-  std::uint32_t lot = 0;  // who comes first among equals
+  std::uint32_t tie_break = 0;  // order among equals
 };
 
-/// Units of lead; a name that found no room counts as a very long one.
-double badness_of(const std::vector<PlacedPoint>& points) {
+/// Returns the units of leads; a point without room for its name counts as a very long lead.
+double cost_of(const std::vector<PlacedPoint>& points) {
   double out = 0;
   for (const PlacedPoint& at : points) {
     if (at.point->is_labelled) out += at.label ? lead_to(*at.label, at.x, at.y).length : 500;
@@ -80,23 +80,24 @@ void place_labels(std::vector<PlacedPoint>& points, LabelPlacer placer) {
   }
 }
 
-/// Who comes first finds room first: the best of some orders, in all of which the roles keep their turns.
+/// Earlier points find room more easily. Tries some orders, all sorted by role, and returns the
+/// best result.
 std::vector<PlacedPoint> with_labels(std::vector<PlacedPoint> points, const LabelPlacer& placer) {
   const auto is_before = [](const PlacedPoint& a, const PlacedPoint& b) {
-    return std::tuple(turn_of(a.point->role), a.lot, a.point) <
-           std::tuple(turn_of(b.point->role), b.lot, b.point);
+    return std::tuple(label_rank(a.point->role), a.tie_break, a.point) <
+           std::tuple(label_rank(b.point->role), b.tie_break, b.point);
   };
   std::vector<PlacedPoint> best;
   constexpr int kOrders = 16;
   std::uint32_t random = 0;
   for (int order = 0; order < kOrders; ++order) {
-    std::sort(points.begin(), points.end(), is_before);  // the first time as they were given
+    std::sort(points.begin(), points.end(), is_before);  // the first attempt has the given order
     std::vector<PlacedPoint> tried = points;
     place_labels(tried, placer);
-    if (best.empty() || badness_of(tried) < badness_of(best)) best = std::move(tried);
+    if (best.empty() || cost_of(tried) < cost_of(best)) best = std::move(tried);
     for (PlacedPoint& at : points) {
-      random = random * 1664525 + 1013904223;  // Numerical Recipes; the same picture every time
-      at.lot = random >> 8;
+      random = random * 1664525 + 1013904223;  // Numerical Recipes; the same chart every time
+      at.tie_break = random >> 8;
     }
   }
   return best;
@@ -141,7 +142,7 @@ std::string svg_of(const ScatterChart& chart, Width width) {
     placer.block_point(points.back().x, points.back().y, kRadius + 1);
   }
   points = with_labels(std::move(points), placer);
-  // Names first: points lie over their leads, and ours over all.
+  // Names first: points lie over their leads, and the product's over all.
   for (const PlacedPoint& at : points) {
     if (at.label) draw_label(svg, *at.point, at.x, at.y, *at.label);
   }

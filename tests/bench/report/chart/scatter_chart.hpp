@@ -13,7 +13,7 @@ struct ScatterPoint {
   double y = 0;
   std::string name = {};
   Role role = Role::other;
-  bool is_labelled = true;  // where there is room: else its name is in the tooltip alone
+  bool is_labelled = true;  // where there is room; otherwise the name is in the tooltip alone
 };
 
 struct ScatterChart {
@@ -24,7 +24,7 @@ struct ScatterChart {
   std::string title = {};
 };
 
-/// See svg_of(BarChart). O(labelled points x points).
+/// See svg_of(BarChart). Cost: O(labelled points x points).
 std::string svg_of(const ScatterChart& chart, Width width = Width::wide);
 
 }  // namespace runstone::bench::chart

@@ -19,7 +19,7 @@ double part_of(const Series& part, std::size_t row) {
   return Scale::can_show(value, false) && value >= 0 ? value : kNone;
 }
 
-/// NaN if there is no part.
+/// Returns NaN if there is no part.
 double sum_of(const std::vector<Series>& parts, std::size_t row) {
   double sum = kNone;
   for (const Series& part : parts) {
@@ -65,7 +65,7 @@ std::string svg_of(const StackChart& chart, Width width) {
       if (!(value > 0)) continue;
       const double from = scale.place(end);
       end += value;
-      // A thin gap parts neighbours whose colours are alike.
+      // A thin gap separates neighbours of similar colours.
       const double wide = scale.place(end) - from;
       svg.begin_mark(chart.names[row] + ", " + chart.parts[i].name + ": " + format_value(value) +
                      " of " + format_value(sums[row]));

@@ -1,4 +1,4 @@
-// StackChart: one horizontal bar a name, made of parts: what a time or a size is spent on.
+// StackChart: one horizontal bar a name, made of parts, such as the parts of a time or a size.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct StackChart {
   std::string title = {};
 };
 
-/// See svg_of(BarChart). Behind a bar stands its sum.
+/// See svg_of(BarChart). The sum is written behind each bar.
 std::string svg_of(const StackChart& chart, Width width = Width::wide);
 
 }  // namespace runstone::bench::chart

@@ -18,7 +18,7 @@ double width_of(Width width) { return width == Width::wide ? 720 : 370; }
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "0";
-  return fmt::format("{}", std::round(value * 10) / 10 + 0.0);  // + 0.0: never "-0"
+  return fmt::format("{}", std::round(value * 10) / 10 + 0.0);  // + 0.0 turns "-0" into "0"
 }
 
 void Svg::begin_mark(std::string_view tooltip) {

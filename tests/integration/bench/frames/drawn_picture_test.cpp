@@ -1,4 +1,4 @@
-// What counts as a seam, and what as a pinhole.
+// The rules for seams and pinholes.
 #include "tests/bench/frames/drawn_picture.hpp"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint32_t kPlane = 7, kOther = 8;
 
-/// A plane of 5 x 5 pixels, its lowest corner at 2 2, with a strip of another beside it; nothing around.
+/// Returns a plane of 5 x 5 pixels, its lowest corner at 2 2, with a strip of another beside it and
+/// nothing around.
 DrawnPicture two_planes() {
   DrawnPicture out{10, 9, std::vector<std::uint32_t>(90)};
   for (std::size_t y = 2; y < 7; ++y) {
@@ -35,10 +36,10 @@ TEST_CASE("a pixel of another colour is a seam, and inside a plane a pinhole", "
     std::size_t pinholes;
   };
   const Case cases[] = {{4, 4, 0, 1},                          // the background shows through
-                        {3, 3, kOther, 1},                     // another plane does
+                        {3, 3, kOther, 1},                     // another plane shows through
                         {5, 5, 0, 1},      {6, 4, kOther, 0},  // the line between two planes moved
-                        {6, 4, 0, 0},      {2, 2, 0, 0},       // the outline did
-                        {1, 4, kPlane, 0},                     // likewise, outwards
+                        {6, 4, 0, 0},      {2, 2, 0, 0},       // the outline moved
+                        {1, 4, kPlane, 0},                     // the outline moved outwards
                         {0, 0, kPlane, 0}, {9, 8, kPlane, 0}};
   for (const Case& c : cases) {
     CAPTURE(c.x, c.y, c.colour);
@@ -47,7 +48,7 @@ TEST_CASE("a pixel of another colour is a seam, and inside a plane a pinhole", "
   }
 }
 
-TEST_CASE("the edge of the picture is no inside", "[frames]") {
+TEST_CASE("a pixel at the edge of the picture is not inside a plane", "[frames]") {
   const DrawnPicture full{3, 5, std::vector<std::uint32_t>(15, kPlane)};
   for (std::size_t pixel = 0; pixel < 15; ++pixel) {
     DrawnPicture picture = full;

@@ -1,5 +1,5 @@
-// The benchmark as a program: what it was asked for is in its files, and what it counts is right. Nothing is
-// said of times.
+// The benchmark as a program: its files contain what the command line names, and its counts are
+// right. No test checks times.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
@@ -23,7 +23,7 @@ BenchOutput run(std::vector<std::string> arguments) {
   return run_bench(arguments);
 }
 
-/// Of indexed triangles.
+/// Returns the bytes of indexed triangles.
 std::size_t bytes_of(const nlohmann::json& row) {
   return 8 * row.at("vertices").get<std::size_t>() + 12 * row.at("triangles").get<std::size_t>();
 }
@@ -100,7 +100,7 @@ TEST_CASE("runstone-bench frames has a row for every mesher in every world", "[f
     CHECK(of.at("rle_rdm plain").at("depth_complexity") >
           of.at("culled plain").at("depth_complexity"));
   }
-  // The thesis' own counts: 1080 vertices a chunk, and 54 faces of whole chunks around the 27.
+  // The thesis' counts: 1080 vertices a chunk, and 54 faces of whole chunks around the 27.
   CHECK(rows["scenario_6"]["culled plain"].at("vertices") == 27 * 1080);
   CHECK(rows["scenario_1"]["rdm plain"].at("vertices") == 4 * 54);
   CHECK(rows["scenario_1"]["rdm plain"].at("depth_complexity") == 1);
@@ -132,10 +132,11 @@ TEST_CASE("a mesh that is too large is named instead", "[frames]") {
   CHECK(output.out.find("| rdm |") != std::string::npos);
   CHECK(output.out.find("| simple |") == std::string::npos);
   CHECK(output.out.find("| culled |") !=
-        std::string::npos);  // 29160, but the others are held to it
+        // 29160; the others are compared with it.
+        std::string::npos);
 }
 
-TEST_CASE("runstone-bench frames refuses what it cannot do", "[frames]") {
+TEST_CASE("runstone-bench frames rejects options that it cannot satisfy", "[frames]") {
   const auto refused = [](const std::vector<std::string>& arguments, const char* why) {
     const BenchOutput output = run(arguments);
     CAPTURE(output.err);

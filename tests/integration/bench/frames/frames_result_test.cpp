@@ -1,4 +1,4 @@
-// The figures as files and tables.
+// The results as files and tables.
 #include "tests/bench/frames/frames_result.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ std::size_t commas(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("a line through the plain rows says what vertices cost", "[frames]") {
+TEST_CASE("the fit over the plain rows gives the cost of vertices", "[frames]") {
   FramesResult result = sample();
   const auto exact = result.fit();
   REQUIRE(exact.has_value());
@@ -59,7 +59,7 @@ TEST_CASE("a line through the plain rows says what vertices cost", "[frames]") {
   CHECK_FALSE(result.fit().has_value());
 }
 
-TEST_CASE("rows come out as CSV, JSON and tables", "[frames]") {
+TEST_CASE("rows are written as CSV, JSON and tables", "[frames]") {
   const FramesResult result = sample();
   std::ostringstream csv;
   write_csv(result, csv);
@@ -94,7 +94,7 @@ TEST_CASE("rows come out as CSV, JSON and tables", "[frames]") {
   CHECK(tables.str().find("skipped: b culled: too large") != std::string::npos);
 }
 
-TEST_CASE("a GPU is told from software", "[frames]") {
+TEST_CASE("a GPU is distinguished from software rendering", "[frames]") {
   FramesResult result;
   for (const char* name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe"}) {
     result.gl_renderer = name;

@@ -1,4 +1,4 @@
-// What is drawn: blocks of chunks that know each other and nothing else.
+// The drawn blocks of chunks, in which chunks know each other and nothing else.
 #include "tests/bench/frames/frames_world.hpp"
 
 #include <algorithm>
@@ -11,7 +11,8 @@ using namespace runstone::bench;
 
 namespace {
 
-/// Each neighbour is the chunk that lies there, and is missing only where the block ends.
+/// Checks that each neighbour is the chunk that lies there, and is missing only where the block
+/// ends.
 void check_neighbours(const FramesWorld& world) {
   CHECK(world.chunks.size() ==
         static_cast<std::size_t>(world.size[0] * world.size[1] * world.size[2]));
@@ -30,7 +31,7 @@ void check_neighbours(const FramesWorld& world) {
 
 }  // namespace
 
-TEST_CASE("a block is cut from a world where it was asked for", "[frames]") {
+TEST_CASE("a block is cut from a world at the given place", "[frames]") {
   const auto worlds = seeded_worlds();
   const auto hills = std::find_if(worlds.begin(), worlds.end(),
                                   [](const VoxelWorld& w) { return w.name == "hills"; });
@@ -60,7 +61,7 @@ TEST_CASE("every name is a world: 27 chunks a scenario, and the ground of the Lu
   const auto luanti = frames_world("luanti", RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small");
   REQUIRE(luanti.has_value());
   check_neighbours(*luanti);
-  // Ground: chunks of rock and of air, and some of both.
+  // The ground has chunks of rock, of air, and of both.
   const auto uniform = [](const FramesChunk& chunk) {
     return chunk.volume.scene.chunk.is_uniform();
   };

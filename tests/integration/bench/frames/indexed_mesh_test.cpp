@@ -1,4 +1,4 @@
-// What is uploaded is what the mesher made: every polygon, wound to the outside, with its own normal and
+// The uploaded mesh is the mesher's mesh: every polygon, wound to the outside, with its normal and
 // material.
 #include "tests/bench/frames/indexed_mesh.hpp"
 
@@ -15,7 +15,7 @@ using reference::Surface;
 
 namespace {
 
-/// Twice the area of triangle `t`, by axis; positive where it is seen from that side.
+/// Returns twice the area of triangle `t`, by axis; positive where it is seen from that side.
 std::array<int, 3> doubled_area(const IndexedMesh& mesh, std::size_t t) {
   std::array<std::array<int, 3>, 3> at{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -82,7 +82,7 @@ TEST_CASE("a triangle mesh keeps its vertices shared, behind those of quads", "[
                                  MeshTriangle{{2, 1, 0}, Direction::pos_y, 300},
                                  MeshTriangle{{3, 4, 5}, Direction::neg_y, 2}};
   IndexedMesh mesh;
-  mesh.vertices.resize(3);  // left over from another
+  mesh.vertices.resize(3);  // the remains of another mesh
   mesh.indices.resize(1);
   index_surface(surface, mesh);
   REQUIRE(mesh.vertices.size() == surface.vertex_count());

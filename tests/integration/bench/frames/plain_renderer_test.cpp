@@ -1,4 +1,4 @@
-// Draws off screen. Where no context exists the cases say so with WARN and pass: there is nothing to test.
+// Draws off screen. If there is no OpenGL context, the cases say so with WARN and pass.
 #include "tests/bench/frames/gl/plain_renderer.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::unique_ptr<GlContext> context_or_warn(MakeContext make) {
   return context;
 }
 
-/// 16 voxels above the middle of 0 .. 16, looking down.
+/// Returns a camera 16 voxels above the middle of 0 .. 16 that looks down.
 Camera above() {
   Camera camera;
   camera.x = camera.z = 8;
@@ -52,14 +52,14 @@ void add(PlainScene& scene, const Surface& surface) {
   scene.add(glm::vec3{0}, 16, mesh);
 }
 
-/// A triangle of a floor at height `y`.
+/// Adds a triangle of a floor at height `y`.
 void add_triangle(Surface& to, std::uint8_t y, std::array<std::array<std::uint8_t, 2>, 3> zx) {
   const auto first = static_cast<std::uint32_t>(to.triangles.vertices.size());
   for (const auto& [z, x] : zx) to.triangles.vertices.push_back({x, y, z});
   to.triangles.triangles.push_back({{first, first + 1, first + 2}, Direction::pos_y, 1});
 }
 
-/// 4 for each block of 2 x 2 pixels in which anything was drawn.
+/// Returns 4 for each block of 2 x 2 pixels in which anything was drawn.
 std::size_t lanes_of(const DrawnPicture& picture) {
   std::set<std::pair<int, int>> blocks;
   for (int y = 0; y < picture.height; ++y) {
@@ -82,7 +82,7 @@ TEST_CASE("fragments and lanes of one triangle are the pixels and blocks it cove
   for (const std::array<std::array<std::uint8_t, 2>, 3>& corners :
        {std::array<std::array<std::uint8_t, 2>, 3>{{{0, 0}, {16, 0}, {0, 16}}},
         {{{0, 0}, {16, 0}, {0, 1}}},    // thin
-        {{{0, 0}, {1, 15}, {0, 16}}},   // thin, askew
+        {{{0, 0}, {1, 15}, {0, 16}}},   // thin, not parallel to an axis
         {{{5, 5}, {6, 5}, {5, 6}}}}) {  // small
     Surface surface;
     add_triangle(surface, 8, corners);
@@ -107,7 +107,8 @@ TEST_CASE("fragments and lanes of one triangle are the pixels and blocks it cove
   }
 }
 
-TEST_CASE("what lies below is covered, and drawn only if it comes first", "[frames]") {
+TEST_CASE("a lower fragment counts as covered, and as drawn only if it is drawn first",
+          "[frames]") {
   const auto context = context_or_warn(&make_egl_surfaceless_context);
   if (!context) return;
   PlainRenderer renderer(context->loader(), kWidth, kHeight);
@@ -128,7 +129,7 @@ TEST_CASE("what lies below is covered, and drawn only if it comes first", "[fram
   CHECK(near_first[1] == far_first[1]);
   CHECK(near_first[1] == alone_low[0] + alone_high[0]);
   CHECK(near_first[2] == far_first[2]);
-  // Seen from behind there is nothing.
+  // From behind nothing is visible.
   CHECK(count({pack({4, 3, 4, 8, 8, Direction::neg_y, 1})}) == std::array<std::uint64_t, 3>{});
 }
 
@@ -194,7 +195,7 @@ TEST_CASE("packed quads give the picture of the same quads indexed, pixel by pix
                       1};
     fields.width = static_cast<std::uint8_t>(1 + below(128));
     fields.height = static_cast<std::uint8_t>(1 + below(128));
-    // Quads of one plane may overlap, so they look alike.
+    // Quads of one plane may overlap, so all quads of a direction get one material.
     fields.material = static_cast<Material>(10000 * (1 + static_cast<unsigned>(fields.direction)));
     quads.push_back(pack(fields));
   }
@@ -213,13 +214,13 @@ TEST_CASE("packed quads give the picture of the same quads indexed, pixel by pix
     const DrawnPicture expected = renderer.read();
     CHECK(covered_pixels(expected) > 1000);
     renderer.draw(packed, at);
-    // Another diagonal, so another depth in the last bit where two planes cross.
+    // The other diagonal gives another depth in the last bit where two planes cross.
     CHECK(difference_of(renderer.read(), expected).seam_pixels < 20);
     CHECK(renderer.fragments_covered(packed, at) == renderer.fragments_covered(indexed, at));
   }
 }
 
-TEST_CASE("the whole block is in view all the way round", "[frames]") {
+TEST_CASE("the whole block is in view on the whole orbit", "[frames]") {
   const std::array<int, 3> size = {96, 64, 160};
   for (unsigned frame = 0; frame < 60; ++frame) {
     const glm::mat4 clip = clip_of(orbit_camera(size, frame, 60), 1280, 720);

@@ -1,5 +1,5 @@
-// Every store of the benchmark against plain voxels: what it was made from, after sets and balls in random
-// places, and what it keeps.
+// Compares every store of the benchmark with plain voxels: when it is made, after sets and balls at
+// random places, and what it keeps.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -44,7 +44,7 @@ RunChunk random_cube(SplitMix64& rng, unsigned edge, unsigned materials) {
   return test::random_chunk(rng, Extent::cube(edge), test::random_order(rng), materials);
 }
 
-/// Voxels nearer than half a voxel more than the radius, one by one.
+/// Sets the voxels nearer than the radius plus half a voxel, one by one.
 void paint(DenseChunk& oracle, LocalPos centre, int radius, Material material) {
   for (int z = 0; z < oracle.side_z(); ++z) {
     for (int y = 0; y < oracle.side_y(); ++y) {
@@ -57,7 +57,7 @@ void paint(DenseChunk& oracle, LocalPos centre, int radius, Material material) {
   }
 }
 
-/// The first voxel that differs, or none.
+/// Returns the first voxel that differs, or nullopt.
 template <class Store>
 std::optional<VoxelPos> first_difference(const Store& store, const DenseChunk& oracle) {
   for (int z = 0; z < oracle.side_z(); ++z) {
@@ -100,8 +100,8 @@ RunChunk runs_of(const DenseChunk& oracle, AxisOrder order) {
   return builder.finish();
 }
 
-/// What must be the same in a store that was edited and one made afresh from its voxels: that which stores keep
-/// collapsed. Nothing of arrays, and of palettes, which do not shrink.
+/// Returns what must be equal in an edited store and one made from its voxels: the parts that
+/// stores keep collapsed. Arrays have none, and palettes do not shrink.
 std::vector<std::size_t> canonical(const RunStore& store) {
   REQUIRE(validate(store.chunk()));
   return {store.chunk().runs.size()};
@@ -136,7 +136,7 @@ TEMPLATE_TEST_CASE("a store stays equal to plain voxels through random sets and 
     for (int step = 0; step < 60; ++step) {
       CAPTURE(step);
       const LocalPos at = random_place(rng, edge);
-      // Mostly a material of the neighbourhood, so that parts collapse and runs melt again.
+      // Mostly a material of the neighbourhood, so that parts collapse and runs merge again.
       const LocalPos near = random_place(rng, edge);
       const Material material = rng.below(3) == 0 ? static_cast<Material>(rng.below(materials + 1))
                                                   : oracle.at(near.x, near.y, near.z);

@@ -11,18 +11,18 @@ namespace {
 
 TEST_CASE("scenarios alone mesh to the faces required of each mesher",
           "[mesh][property][scenarios]") {
-  MesherJury jury;
+  MesherChecks checks;
   for (const unsigned edge : {8u, 16u, 32u}) {
     for (unsigned number = 1; number <= 37; ++number) {
       if (number == 5 && edge != 32) continue;
       const MeshScene scene =
           scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
       CAPTURE(edge, number);
-      REQUIRE(jury.fault(scene) == "");
+      REQUIRE(checks.fault(scene) == "");
       const ChunkMesh ours = mesh_of(scene);
       CHECK(scene_difference(scene, ours).value_or("") == "");
-      CHECK(ours.quad_count() <= jury.culled_quads());
-      CHECK(ours.quad_count() >= jury.optimal_quads());
+      CHECK(ours.quad_count() <= checks.culled_quads());
+      CHECK(ours.quad_count() >= checks.optimal_quads());
     }
   }
 }
@@ -30,48 +30,47 @@ TEST_CASE("scenarios alone mesh to the faces required of each mesher",
 TEST_CASE("scenarios in their world of 27 chunks mesh to the faces required of each mesher",
           "[mesh][property][scenarios]") {
   // One chunk of each kind of place: in the middle, on a side, on an edge, in a corner.
-  MesherJury jury;
+  MesherChecks checks;
   for (unsigned number = 1; number <= 37; ++number) {
     const auto world = scenario_generator(number, 32);
     for (const ChunkCoord at :
          {ChunkCoord{0, 0, 0}, ChunkCoord{0, 1, 0}, ChunkCoord{-1, 0, 1}, ChunkCoord{1, 1, -1}}) {
       const MeshScene scene = scenario_scene(*world, at, 32, false);
       CAPTURE(number, at.x, at.y, at.z);
-      REQUIRE(jury.fault(scene) == "");
+      REQUIRE(checks.fault(scene) == "");
       const ChunkMesh ours = mesh_of(scene);
-      CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed())
+      CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), checks.exposed())
                 .value_or("") == "");
-      CHECK(ours.quad_count() >= jury.optimal_quads());
+      CHECK(ours.quad_count() >= checks.optimal_quads());
     }
   }
 }
 
 /// Checks RDM and the reference meshers that `fault` covers.
-void judge_large_scenarios(unsigned edge, std::string (MesherJury::*fault)(const MeshScene&)) {
-  MesherJury jury;
+void judge_large_scenarios(unsigned edge, std::string (MesherChecks::*fault)(const MeshScene&)) {
+  MesherChecks checks;
   for (unsigned number = 1; number <= 37; ++number) {
     if (number == 5) continue;
     const MeshScene scene =
         scenario_scene(*scenario_generator(number, edge), {0, 0, 0}, edge, true);
     CAPTURE(edge, number);
-    REQUIRE((jury.*fault)(scene) == "");
+    REQUIRE((checks.*fault)(scene) == "");
     const ChunkMesh ours = mesh_of(scene);
-    CHECK(
-        mesh_difference(ours, scene.chunk.extent, mesh_materials(), jury.exposed()).value_or("") ==
-        "");
-    CHECK(ours.quad_count() <= jury.culled_quads());
-    CHECK(ours.quad_count() >= jury.optimal_quads());
+    CHECK(mesh_difference(ours, scene.chunk.extent, mesh_materials(), checks.exposed())
+              .value_or("") == "");
+    CHECK(ours.quad_count() <= checks.culled_quads());
+    CHECK(ours.quad_count() >= checks.optimal_quads());
   }
 }
 
 TEST_CASE("scenarios of edge 64 alone mesh to the faces required of each mesher",
           "[mesh][property][scenarios]") {
-  judge_large_scenarios(64, &MesherJury::fault);
+  judge_large_scenarios(64, &MesherChecks::fault);
 }
 
 TEST_CASE("scenarios of edge 128 alone mesh to their faces", "[mesh][property][scenarios]") {
   // Meshers that draw hidden faces are checked at smaller edges: they take a minute here.
-  judge_large_scenarios(128, &MesherJury::fault_of_exposed);
+  judge_large_scenarios(128, &MesherChecks::fault_of_exposed);
 }
 
 TEST_CASE("large scenarios in the middle of their world mesh to their faces",

@@ -1,4 +1,4 @@
-// The page says what it was given, and what it was not given.
+// The page shows what was measured, and names what was not.
 #include "tests/bench/report/page.hpp"
 
 #include <catch2/catch.hpp>
@@ -41,7 +41,7 @@ Finding edits_finding() {
   return {"edits", this_machine(), true, "a world", "2026-01-31T23:59:59Z", 2, {{"rows", rows}}};
 }
 
-TEST_CASE("a page of nothing says so in every figure and draws none") {
+TEST_CASE("a page without findings says so in every figure and draws none") {
   const test::TempFolder folder;
   const auto made = write_page(options_of(folder / "out"), {});
   REQUIRE(made.has_value());
@@ -54,7 +54,7 @@ TEST_CASE("a page of nothing says so in every figure and draws none") {
   CHECK(std::filesystem::is_empty(folder / "out/csv"));
 }
 
-TEST_CASE("a figure shows what was measured, with its data, and nothing else of the web") {
+TEST_CASE("a figure shows its measurements and its data, and links to nothing on the web") {
   const test::TempFolder folder;
   REQUIRE(write_finding(folder / "out", edits_finding()).has_value());
   const auto made = write_page(options_of(folder / "out"), {{"bytes", "disk <full>"}});
@@ -73,7 +73,7 @@ TEST_CASE("a figure shows what was measured, with its data, and nothing else of 
   CHECK(holds(csv, "\"by hand, as a stack\",1000,250,\r\n"));
 }
 
-TEST_CASE("steps that measured nothing leave no broken number behind") {
+TEST_CASE("steps without measurements give no broken numbers") {
   const test::TempFolder folder;
   const ReportOptions options = options_of(folder / "out");
   for (const Step& step : report_steps(options)) {
@@ -89,7 +89,7 @@ TEST_CASE("steps that measured nothing leave no broken number behind") {
   for (const char* broken : {"nan", "NaN", "inf\"", "-inf"}) CHECK_FALSE(holds(page, broken));
 }
 
-TEST_CASE("a result of any other shape is no more than not measured") {
+TEST_CASE("a result of another form counts as not measured") {
   const test::TempFolder folder;
   const ReportOptions options = options_of(folder / "out");
   const nlohmann::json shapes[] = {nullptr,
@@ -114,7 +114,9 @@ TEST_CASE("a result of any other shape is no more than not measured") {
   }
 }
 
-TEST_CASE("frames are compared over the worlds that most meshers drew; who drew few is named") {
+TEST_CASE(
+    "frames are compared over the worlds that most meshers drew; a mesher that drew fewer is "
+    "named") {
   const test::TempFolder folder;
   Finding frames = edits_finding();
   frames.step = "frames";
@@ -147,7 +149,7 @@ TEST_CASE("frames are compared over the worlds that most meshers drew; who drew 
   CHECK(holds(page, "Drawn by llvmpipe, 640 by 360 pixels."));
 }
 
-TEST_CASE("results of another commit are named where they show") {
+TEST_CASE("results of another commit are named at their figures") {
   const test::TempFolder folder;
   Finding other = edits_finding();
   REQUIRE(write_finding(folder / "out", other).has_value());

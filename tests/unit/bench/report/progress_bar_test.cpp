@@ -6,14 +6,16 @@
 namespace runstone::bench {
 namespace {
 
-TEST_CASE("durations are said in the unit that fits") {
+TEST_CASE("durations have the unit that fits") {
   CHECK(duration_text(0.4) == "0 s");
   CHECK(duration_text(99) == "99 s");
   CHECK(duration_text(150) == "3 min");
   CHECK(duration_text(7'200) == "2 h 0 min");
 }
 
-TEST_CASE("without a terminal there is a line a step, and what is left follows the pace so far") {
+TEST_CASE(
+    "without a terminal there is a line for each step, with the remaining time from the pace so "
+    "far") {
   std::ostringstream out;
   ProgressBar bar(out, false, 3, 90);
   bar.begin("first");

@@ -15,7 +15,7 @@ const nlohmann::json kRows = nlohmann::json::parse(R"([
   {"mesher": "simple", "part": "1", "ns": null, "edge": 32},
   "no row"])");
 
-TEST_CASE("rows are picked by text and number; what is not there is not measured") {
+TEST_CASE("rows are selected by text and number; missing values are not measured") {
   const Rows rows(kRows);
   CHECK(rows.size() == 3);
   CHECK(rows.where("mesher", "rdm").size() == 2);
@@ -28,7 +28,7 @@ TEST_CASE("rows are picked by text and number; what is not there is not measured
   CHECK(Rows(nlohmann::json(3)).empty());
 }
 
-TEST_CASE("means leave out what was not measured") {
+TEST_CASE("means leave out missing values") {
   const double none = std::nan("");
   CHECK(mean_of({1, none, 3}) == 2);
   CHECK(sum_of({1, none, 3}) == 4);

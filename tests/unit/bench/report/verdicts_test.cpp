@@ -1,4 +1,4 @@
-// The answers follow from the numbers, whichever way they point.
+// The verdicts follow from the numbers, whichever mesher wins.
 #include "tests/bench/report/verdicts.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,7 +12,8 @@
 namespace runstone::bench {
 namespace {
 
-/// Each mesher takes the same time in every scenario, but ours takes 500 ns in the last.
+/// Each mesher takes the same time in every scenario, except that the product takes 500 ns in the
+/// last.
 Finding meshers_of(double ours_ns, double dense_ns) {
   nlohmann::json rows = nlohmann::json::array();
   for (unsigned s = 1; s <= kScenarioCount; ++s) {
@@ -67,14 +68,14 @@ TEST_CASE("where runs are faster, the answer says so, by both means, and where t
   CHECK(holds(summary, "quick run"));
 }
 
-TEST_CASE("where they are slower, it says that") {
+TEST_CASE("where runs are slower, the answer says so") {
   const auto [verdicts, summary] = told(meshers_of(400, 200));
   INFO(verdicts.answer);
   CHECK(holds(verdicts.answer, "the fastest mesher is binary greedy"));
   CHECK(holds(verdicts.answer, "faster in 0 of 37"));
 }
 
-TEST_CASE("equals share a place, and who was not measured everywhere has none") {
+TEST_CASE("equals share a place, and a mesher that was not measured everywhere has none") {
   const auto [verdicts, summary] = told(meshers_of(100, 200));
   REQUIRE(verdicts.rows.size() == 3);
   CHECK(verdicts.rows[0].winner == "ours: RDM from runs: 104 ns");  // 100 * 5^(1/37)

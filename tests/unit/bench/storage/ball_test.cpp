@@ -48,7 +48,7 @@ TEST_CASE("the rows of a ball are its voxels inside the chunk, in index order, o
   }
 }
 
-TEST_CASE("how a ball lies to a cube is what its voxels say", "[storage]") {
+TEST_CASE("the position of a ball relative to a cube follows from its voxels", "[storage]") {
   SplitMix64 rng{Catch::rngSeed()};
   int seen[3] = {};
   for (int step = 0; step < 20'000; ++step) {
@@ -70,7 +70,7 @@ TEST_CASE("how a ball lies to a cube is what its voxels say", "[storage]") {
     ++seen[static_cast<int>(against)];
     CAPTURE(Catch::rngSeed(), step);
     if (against == Ball::Against::covers) REQUIRE(inside == side * side * side);
-    // A cube with none of the voxels may still be cut: then a look at its parts finds nothing.
+    // A cube without any of the voxels may still count as cut: then none of its parts has any.
     if (against == Ball::Against::apart) REQUIRE(inside == 0);
     if (inside == side * side * side) REQUIRE(against == Ball::Against::covers);
   }

@@ -1,4 +1,5 @@
-// What a store says that it keeps is what it takes from the heap: a copy takes just that.
+// The bytes that a store reports are those that it takes from the heap: a copy takes exactly as
+// many.
 #include <catch2/catch.hpp>
 
 #include "tests/bench/storage/flat_array.hpp"
@@ -32,7 +33,7 @@ TEMPLATE_TEST_CASE("a store counts all that it keeps, and keeps nothing to spare
         const TestType copy = store;
         copy_bytes = copy.byte_size();
       });
-      // Each block takes 8 bytes more than asked for, and what is missing to a step of 16 and to 32.
+      // Each block takes 8 bytes more than requested, rounded up to a step of 16 and to 32.
       const std::size_t heap = store.byte_size() - sizeof store;
       CHECK(heap >= taken.bytes + 8 * taken.count);
       CHECK(heap <= taken.bytes + 31 * taken.count);
@@ -53,13 +54,13 @@ TEST_CASE("an interval is a node of 40 bytes in a block of 48", "[storage]") {
 }
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__clang__)  // clang tells sanitizers in another way
-TEST_CASE("blocks take what malloc says", "[storage]") {
+    !defined(__clang__)  // clang reports sanitizers in another way
+TEST_CASE("heap_bytes() agrees with malloc", "[storage]") {
   CHECK(heap_bytes(0) == 0);
   for (std::size_t bytes = 1; bytes < 100'000; bytes += bytes < 200 ? 1 : 997) {
     CAPTURE(bytes);
     void* const block = std::malloc(bytes);
-    // Where less than a block would be left over, it goes along.
+    // malloc adds a rest that is too small for a block.
     const std::size_t taken = malloc_usable_size(block) + 8;
     CHECK((taken == heap_bytes(bytes) || taken == heap_bytes(bytes) + 16));
     std::free(block);

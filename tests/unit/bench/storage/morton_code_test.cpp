@@ -9,7 +9,7 @@ using namespace runstone::bench::storage;
 
 namespace {
 
-/// Bit by bit.
+/// Interleaves bit by bit.
 std::uint32_t interleaved(LocalPos at) {
   std::uint32_t out = 0;
   for (unsigned bit = 0; bit < 7; ++bit) {

@@ -20,7 +20,7 @@ TEST_CASE("a section keeps its voxels while its palette grows until it has none"
       REQUIRE(store.at(place(i)) == (i + 1 < materials ? material(i) : 3));
     return bytes;
   };
-  // Longs of 64 / bits numbers each, beside a palette of some bytes.
+  // Longs with 64 / bits numbers each, and a palette of some bytes.
   const std::size_t uniform = bytes_at(1);
   CHECK(uniform < 300);
   const auto grown = [&](unsigned materials) { return bytes_at(materials) - uniform; };
@@ -28,7 +28,8 @@ TEST_CASE("a section keeps its voxels while its palette grows until it has none"
   CHECK(grown(16) / 8 < 4096 / 16 + 10);
   CHECK(grown(17) / 8 > 4096 / 12);
   CHECK(grown(256) / 8 < 4096 / 8 + 80);
-  const std::size_t direct = 4096 / 4 - 2;  // the palette is gone, and its block of 32 bytes
+  // The palette is gone, with its block of 32 bytes.
+  const std::size_t direct = 4096 / 4 - 2;
   CHECK(grown(257) / 8 == direct);
   CHECK(grown(600) / 8 == direct);
 }

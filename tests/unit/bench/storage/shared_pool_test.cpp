@@ -7,7 +7,7 @@
 using namespace runstone;
 using bench::storage::SharedPool;
 
-TEST_CASE("a shared pool keeps equal records once, as long as somebody refers to them",
+TEST_CASE("a shared pool keeps equal records once, until the last reference is removed",
           "[storage]") {
   using Record = std::array<std::uint32_t, 2>;
   SharedPool<Record> pool;

@@ -7,7 +7,7 @@
 using namespace runstone;
 using bench::PackedLongs;
 
-TEST_CASE("packed numbers come back, whatever their bits, and lie where Minecraft has them",
+TEST_CASE("packed numbers of any width are read back, and lie at Minecraft's positions",
           "[storage]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (unsigned bits = 1; bits <= 16; ++bits) {

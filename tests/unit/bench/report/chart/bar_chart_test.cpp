@@ -11,7 +11,7 @@ using namespace runstone::bench::chart;
 
 namespace {
 
-/// Columns of one colour, in order; the first is the legend's swatch.
+/// Returns the columns of one colour, in order. The first is the legend's swatch.
 std::vector<Element> columns_of(const SvgText& svg, const std::string& colour) {
   std::vector<Element> out;
   for (const Element& element : svg.named("rect")) {
@@ -54,7 +54,7 @@ TEST_CASE("equal ratios are equal heights on a logarithmic scale", "[chart]") {
   CHECK(height(0) > 2);
 }
 
-TEST_CASE("what was not measured is a cross, and negative columns hang down", "[chart]") {
+TEST_CASE("a missing value is a cross, and negative columns point down", "[chart]") {
   const SvgText svg =
       read_svg(svg_of(BarChart{{"x", "y", "z"}, {{"a", Role::ours, {5, NAN, -5}}}, {"us"}, ""}));
   CHECK(svg.with_class("missing").size() == 1);
@@ -63,7 +63,7 @@ TEST_CASE("what was not measured is a cross, and negative columns hang down", "[
   REQUIRE(columns.size() == 2);
   CHECK(columns[0].number("y") + columns[0].number("height") ==
         Approx(columns[1].number("y")).margin(0.2));
-  // A series that is too short has not been measured there.
+  // The missing values of a short series were not measured.
   CHECK(read_svg(svg_of(BarChart{{"x", "y"}, {{"a", Role::ours, {5}}}, {}, ""}))
             .with_class("missing")
             .size() == 1);
@@ -90,7 +90,8 @@ TEST_CASE("many categories go into several rows", "[chart]") {
   CHECK(rows_in(Width::narrow) == 3);
 }
 
-TEST_CASE("the thesis is hatched, so that it is known without colour", "[chart]") {
+TEST_CASE("the thesis' columns are hatched, so that they are recognised without colour",
+          "[chart]") {
   const SvgText svg =
       read_svg(svg_of(BarChart{{"x"}, {{"t", Role::thesis, {5}}, {"a", Role::ours, {5}}}, {}, ""}));
   CHECK(svg.with_class("hatch").size() == 2);  // swatch and column

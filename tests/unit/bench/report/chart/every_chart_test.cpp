@@ -1,4 +1,4 @@
-// What holds for charts of every kind: any data gives a whole picture, with everything inside.
+// Rules for charts of every kind: any data gives a whole chart, with everything inside.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<std::string> plain_names(std::size_t count) {
   return out;
 }
 
-/// Where an element lies; empty for those that have no box of their own.
+/// Returns the box of an element; none for an element without a box of its own.
 std::vector<Box> boxes_of(const Element& element) {
   const auto at = [&](const char* key) { return element.number(key); };
   if (element.name == "rect") return {{at("x"), at("y"), at("width"), at("height")}};
@@ -53,7 +53,7 @@ std::vector<Box> boxes_of(const Element& element) {
   return {{at("x") - left, at("y") - 9, wide, 11}};
 }
 
-/// The first fault of a picture, or nothing.
+/// Returns the first fault of a chart, or an empty text.
 std::string fault_of(const std::string& picture) {
   const SvgText svg = read_svg(picture);
   if (!svg.error.empty()) return svg.error;
@@ -143,7 +143,8 @@ TEST_CASE("text does not overlap", "[chart][property]") {
           for (const auto& [name, svg] : sample_svgs({plain_names(count), value, is_log}, width)) {
             std::vector<std::pair<std::string, Box>> texts;
             for (const Element& element : read_svg(svg).named("text")) {
-              if (!element.at("transform").empty()) continue;  // slanted: apart by their pitch
+              // slanted: their pitch keeps them apart
+              if (!element.at("transform").empty()) continue;
               for (const Box& box : boxes_of(element)) texts.emplace_back(element.text, box);
             }
             for (std::size_t a = 0; a < texts.size(); ++a) {
@@ -161,7 +162,7 @@ TEST_CASE("text does not overlap", "[chart][property]") {
   }
 }
 
-TEST_CASE("a fault is found", "[chart]") {
+TEST_CASE("the fault finder of the chart tests finds planted faults", "[chart]") {
   const auto picture = [](const std::string& inside) {
     return R"(<svg viewBox="0 0 100 50" role="img" aria-label="x">)" + inside + "</svg>";
   };
@@ -174,7 +175,7 @@ TEST_CASE("a fault is found", "[chart]") {
   CHECK_FALSE(fault_of(R"(<svg viewBox="0 0 a" role="img" aria-label="x"/>)").empty());
 }
 
-TEST_CASE("nothing to show is said", "[chart]") {
+TEST_CASE("a chart without values says so", "[chart]") {
   for (const Width width : kWidths) {
     for (const auto& [name, svg] : sample_svgs({plain_names(3), [] { return NAN; }, true}, width)) {
       CAPTURE(name);
@@ -183,7 +184,7 @@ TEST_CASE("nothing to show is said", "[chart]") {
   }
 }
 
-TEST_CASE("every mark says in a tooltip what it is", "[chart]") {
+TEST_CASE("every mark has a tooltip with its name", "[chart]") {
   for (const auto& [name, svg] :
        sample_svgs({plain_names(4), [] { return 2.5; }, false}, Width::wide)) {
     CAPTURE(name);
@@ -199,7 +200,7 @@ TEST_CASE("every mark says in a tooltip what it is", "[chart]") {
   }
 }
 
-TEST_CASE("the style sheet knows every class, and both themes every colour", "[chart]") {
+TEST_CASE("the style sheet defines every class, and both themes every colour", "[chart]") {
   const std::string css = chart_css();
   for (const Width width : kWidths) {
     double value = 1;

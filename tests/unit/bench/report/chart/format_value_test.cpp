@@ -1,4 +1,4 @@
-// Numbers as charts write them.
+// The form of numbers in charts.
 #include "tests/bench/report/chart/format_value.hpp"
 
 #include <catch2/catch.hpp>
@@ -28,7 +28,7 @@ TEST_CASE("a value that rounds up takes the form of what it becomes", "[chart]")
   CHECK(format_value(999.9e6) == "1e9");
 }
 
-TEST_CASE("the very large, the very small and what is no number have a form", "[chart]") {
+TEST_CASE("very large values, very small values and NaN have a form", "[chart]") {
   CHECK(format_value(1.234e9) == "1.23e9");
   CHECK(format_value(-4.5e-7) == "-4.5e-7");
   CHECK(format_value(std::numeric_limits<double>::max()) == "1.8e308");

@@ -1,4 +1,4 @@
-// Names find room, and never the same.
+// Labels find room and never overlap.
 #include "tests/bench/report/chart/label_placer.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 using namespace runstone::bench::chart;
 
-TEST_CASE("positions are spread as little as can be", "[chart]") {
+TEST_CASE("positions are moved as little as possible", "[chart]") {
   CHECK(spread({10, 50, 90}, 15, 0, 100) == std::vector<double>{10, 50, 90});
   CHECK(spread({50, 50}, 10, 0, 100) == std::vector<double>{45, 55});
   CHECK(spread({52, 48, 50}, 10, 0, 100) == std::vector<double>{60, 40, 50});
@@ -39,8 +39,7 @@ TEST_CASE("spread positions keep their order, their distance and their bounds",
   }
 }
 
-TEST_CASE("labels keep off points, each other and the edge, and stay beside their point",
-          "[chart]") {
+TEST_CASE("labels avoid points, each other and the edge, and stay beside their point", "[chart]") {
   LabelPlacer placer({0, 0, 200, 100});
   placer.block({0, 0, 200, 20});
   placer.block_point(100, 50, 5);
@@ -56,7 +55,7 @@ TEST_CASE("labels keep off points, each other and the edge, and stay beside thei
   CHECK_FALSE(placer.place(100, 50, 5, 300, 14));  // wider than the room
 }
 
-TEST_CASE("labels of a crowd never overlap", "[chart][property]") {
+TEST_CASE("labels of many points never overlap", "[chart][property]") {
   std::mt19937 random(Catch::rngSeed());
   for (int round = 0; round < 100; ++round) {
     LabelPlacer placer({0, 0, 400, 200});

@@ -1,4 +1,4 @@
-// Charts over two scales, lines and points, and the table in colours.
+// Charts over two scales, lines and points, and the heat map.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace runstone::bench::chart;
 
 namespace {
 
-/// Names of marks: text that is neither tick nor note nor caption.
+/// Returns the names of marks: text that is neither tick nor note nor caption.
 std::vector<Element> names_in(const SvgText& svg) {
   std::vector<Element> out;
   for (const Element& element : svg.named("text")) {
@@ -115,7 +115,7 @@ TEST_CASE("names of points do not overlap, and ours is always there", "[chart][p
   }
 }
 
-TEST_CASE("points are where their values are, named when asked, with the good corner when asked",
+TEST_CASE("points lie at their values; labels and the arrow to the good corner are optional",
           "[chart]") {
   ScatterChart chart{{"x"},
                      {"y"},
@@ -135,7 +135,7 @@ TEST_CASE("points are where their values are, named when asked, with the good co
   CHECK(read_svg(svg_of(chart)).has_text("better"));
 }
 
-TEST_CASE("cells go from good to bad by ratio, and say their values", "[chart]") {
+TEST_CASE("cells are coloured from good to bad by ratio, and show their values", "[chart]") {
   HeatMap chart{{"r"}, {"a", "b", "c", "d"}, {1, 10, 100, NAN}, {"us", true}};
   const auto marks = [&](const std::string& colour) {
     std::size_t out = 0;
@@ -144,7 +144,7 @@ TEST_CASE("cells go from good to bad by ratio, and say their values", "[chart]")
     return out;
   };
   CHECK(marks("heat0") == 1);
-  CHECK(marks("heat4") == 1);  // half the way
+  CHECK(marks("heat4") == 1);  // half way
   CHECK(marks("heat8") == 1);
   CHECK(marks("no-heat") == 1);
   CHECK(read_svg(svg_of(chart)).with_class("on-heat8").at(0).text == "100");
@@ -157,7 +157,7 @@ TEST_CASE("cells go from good to bad by ratio, and say their values", "[chart]")
   CHECK(read_svg(svg_of(chart)).with_class("on-heat0").empty());
 }
 
-TEST_CASE("a table that is too wide goes on below", "[chart]") {
+TEST_CASE("a heat map that is too wide continues below", "[chart]") {
   HeatMap chart{{"r", "s"}, {}, std::vector<double>(32, 2.0), {"us", true}};
   for (int i = 0; i < 16; ++i) chart.columns.push_back("column " + std::to_string(i));
   const auto rows_named = [&](Width width) {

@@ -102,7 +102,7 @@ TEST_CASE("a range is a bar from low to high, a tick at the middle and a whisker
   CHECK(svg.has_text("bar: p10 to p90; tick and number: p50; whisker: p99"));
 }
 
-TEST_CASE("a range shows what there is of it", "[chart]") {
+TEST_CASE("a range shows its known values", "[chart]") {
   const auto drawn = [](const Range& range) {
     return read_svg(
         svg_of(RangeChart{{"a", "b"}, {range, {1, 2, 3, 4}}, {Role::ours}, {}, {}, ""}));
@@ -112,5 +112,5 @@ TEST_CASE("a range shows what there is of it", "[chart]") {
   CHECK(drawn({NAN, 2, NAN, 4}).with_class("c-ours").size() == 2);   // line and end
   CHECK(drawn({1, NAN, 3, NAN}).with_class("missing").size() == 1);  // no number to write
   CHECK(drawn({3, 2, 1, NAN}).with_class("c-ours")[0].number("width") ==
-        drawn({1, 2, 3, NAN}).with_class("c-ours")[0].number("width"));  // the wrong way round
+        drawn({1, 2, 3, NAN}).with_class("c-ours")[0].number("width"));  // high below low
 }

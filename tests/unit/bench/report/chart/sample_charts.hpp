@@ -1,4 +1,4 @@
-// One chart of each kind, with values of the caller's, for tests that hold for all kinds.
+// One chart of each kind with the caller's values, for tests of all kinds.
 #pragma once
 #include <functional>
 #include <string>
@@ -26,7 +26,7 @@ inline Role sample_role(std::size_t i) {
   return kRoles[i < 4 ? i : 3];
 }
 
-/// Kind and picture.
+/// Returns kind and chart.
 inline std::vector<std::pair<std::string, std::string>> sample_svgs(const SampleData& data,
                                                                     Width width) {
   const Axis axis{"time per chunk, \xC2\xB5s", data.is_log};

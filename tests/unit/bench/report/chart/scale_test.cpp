@@ -1,4 +1,4 @@
-// Scales: round ticks, straight maps, and an answer to any values.
+// Scales: round ticks, straight maps, and a result for any values.
 #include "tests/bench/report/chart/scale.hpp"
 
 #include <catch2/catch.hpp>
@@ -52,7 +52,7 @@ TEST_CASE("a logarithmic scale has ticks at 1, 2 and 5, at decades, or at some o
         Texts{"10", "100", "1,000", "10,000"});
   CHECK(texts_of(scale_of({1, 1e6}, true, lowest, Scale::Ends::round, 4)) ==
         Texts{"1", "100", "10,000", "1,000,000"});
-  // Between 2 and 5 there is nothing of the kind.
+  // Between 2 and 5 there is no 1-2-5 value.
   CHECK(texts_of(scale_of({2.2, 4.3}, true, lowest, Scale::Ends::tight, 5)) == Texts{"3", "4"});
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("the lowest bar of a logarithmic scale can be seen", "[chart]") {
   }
 }
 
-TEST_CASE("what has no place is known", "[chart]") {
+TEST_CASE("a scale knows the values that it cannot show", "[chart]") {
   for (const double value : {kNan, kInfinity, -kInfinity, 1e300, -1e300}) {
     CAPTURE(value);
     CHECK_FALSE(Scale::can_show(value, false));
@@ -102,7 +102,7 @@ TEST_CASE("what has no place is known", "[chart]") {
   CHECK(scale_of({kNan, 1}, true, Scale::Start::bars, Scale::Ends::round, 5).has_values());
 }
 
-TEST_CASE("any values give a scale with ends apart, few ticks, in order, and places for all",
+TEST_CASE("any values give a scale with separate ends, few ascending ticks, and positions for all",
           "[chart][property]") {
   std::mt19937 random(Catch::rngSeed());
   const auto any = [&] {

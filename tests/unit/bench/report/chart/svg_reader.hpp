@@ -1,5 +1,5 @@
-// Reads the XML that charts write, strictly, so that tests can look at what is drawn. It knows no comments, CDATA or
-// declarations: charts write none.
+// Reads the XML that charts write, strictly, so that tests can check what is drawn. It knows no
+// comments, CDATA or declarations, which charts do not write.
 #pragma once
 #include <algorithm>
 #include <map>

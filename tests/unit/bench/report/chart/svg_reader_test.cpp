@@ -1,4 +1,4 @@
-// The reader of the other tests sees what is wrong.
+// The XML reader of the other tests notices faults.
 #include "tests/unit/bench/report/chart/svg_reader.hpp"
 
 #include <catch2/catch.hpp>

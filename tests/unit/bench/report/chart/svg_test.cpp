@@ -1,4 +1,4 @@
-// The elements of a picture: whatever goes in, they are XML with numbers.
+// The elements of a chart are XML with valid numbers, whatever goes in.
 #include "tests/bench/report/chart/svg.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "tests/bench/network/lab.hpp"
+#include "tests/bench/network/testbed.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -31,7 +31,7 @@ std::string program_file(const std::string& name) {
 
 }  // namespace
 
-std::vector<test::LinkProfile> Lab::profiles() const {
+std::vector<test::LinkProfile> Testbed::profiles() const {
   std::vector<test::LinkProfile> out;
   for (const test::LinkProfile& profile : test::link_profiles()) {
     const auto& asked = options_.profiles;
@@ -41,16 +41,18 @@ std::vector<test::LinkProfile> Lab::profiles() const {
   return out;
 }
 
-Result<std::unique_ptr<LabLink>, std::string> Lab::make_link(const test::LinkProfile& profile) {
-  return LabLink::make(profile, kind_, options_.seed);
+Result<std::unique_ptr<TestbedLink>, std::string> Testbed::make_link(
+    const test::LinkProfile& profile) {
+  return TestbedLink::make(profile, kind_, options_.seed);
 }
 
-std::string Lab::fresh(const std::string& name) {
+std::string Testbed::fresh(const std::string& name) {
   return folder_ / fmt::format("{}-{}", names_++, name);
 }
 
-Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::string& world,
-                                                 const std::vector<std::string>& flags) {
+Result<TestbedServer, std::string> Testbed::start_server(TestbedLink& link,
+                                                         const std::string& world,
+                                                         const std::vector<std::string>& flags) {
   const std::string port_file = fresh("port");
   std::vector<std::string> words = {
       program_file("runstone-server"), "--world",     world,    "--create", "--listen",
@@ -58,7 +60,7 @@ Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::strin
   words.insert(words.end(), flags.begin(), flags.end());
   auto program = Child::start(link.server_side(), std::move(words), fresh("server.log"));
   if (!program) return failure(program.error());
-  LabServer out{*std::move(program), "", 0};
+  TestbedServer out{*std::move(program), "", 0};
   const bool listens = wait_until(kStartSeconds, [&] {
     std::ifstream in(port_file);
     return static_cast<bool>(in >> out.port) || out.program->wait(0).has_value();
@@ -70,19 +72,18 @@ Result<LabServer, std::string> Lab::start_server(LabLink& link, const std::strin
   return out;
 }
 
-Done Lab::stop_server(LabServer& server) {
+Done Testbed::stop_server(TestbedServer& server) {
   server.program->terminate();
   return finish(*server.program, kStartSeconds);
 }
 
-Result<std::unique_ptr<Child>, std::string> Lab::start_client(LabLink& link,
-                                                              const std::string& program,
-                                                              std::vector<std::string> arguments) {
+Result<std::unique_ptr<Child>, std::string> Testbed::start_client(
+    TestbedLink& link, const std::string& program, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program_file(program));
   return Child::start(link.client_side(), std::move(arguments), fresh(program + ".log"));
 }
 
-Done Lab::finish(Child& child, double seconds) {
+Done Testbed::finish(Child& child, double seconds) {
   const auto status = child.wait(seconds);
   if (interrupted()) return failure("interrupted");
   if (!status) return failure(child.explain("did not end in time"));
@@ -91,7 +92,7 @@ Done Lab::finish(Child& child, double seconds) {
   return {};
 }
 
-Result<std::string, std::string> Lab::imported_world() {
+Result<std::string, std::string> Testbed::imported_world() {
   if (!imported_.empty()) return imported_;
   const std::string world = fresh("luanti");
   const auto here = Place::here();

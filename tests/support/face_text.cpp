@@ -1,4 +1,4 @@
-#include "tests/support/face_picture.hpp"
+#include "tests/support/face_text.hpp"
 
 #include <algorithm>
 
@@ -17,7 +17,7 @@ reference::FacePlane face_plane(const std::vector<std::string>& rows) {
   return out;
 }
 
-std::vector<std::string> random_picture(SplitMix64& rng, unsigned side_max) {
+std::vector<std::string> random_face_text(SplitMix64& rng, unsigned side_max) {
   const std::size_t width = 1 + rng.below(side_max);
   const std::size_t height = 1 + rng.below(side_max);
   std::vector<std::string> rows(height, std::string(width, '.'));

@@ -1,6 +1,6 @@
-// The lab's links with real sockets: what goes in comes out, no earlier than the profile says. Nothing is said of
-// how much later.
-#include "tests/bench/network/lab_link.hpp"
+// The testbed's links with real sockets: what is sent arrives, not earlier than the profile allows.
+// No test checks how much later.
+#include "tests/bench/network/testbed_link.hpp"
 
 #include <array>
 #include <asio/buffer.hpp>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr test::LinkProfile kSlow{"slow", 20'000'000, 2'000'000, 50'000'000, 0};
 
-/// Sends back what it reads until its peer ends.
+/// Sends everything back that it reads, until its peer ends.
 class EchoServer {
  public:
   EchoServer(Place& place, const std::string& address) {
@@ -54,8 +54,9 @@ class EchoServer {
   std::thread thread_;
 };
 
-/// What came back of so many bytes sent through the link at once, and how long that took, in ms.
-double trip_ms(LabLink& link, std::size_t bytes) {
+/// Sends so many bytes through the link at once, checks what comes back, and returns the time in
+/// ms.
+double trip_ms(TestbedLink& link, std::size_t bytes) {
   EchoServer server(link.server_side(), link.server_address());
   const auto port = link.entrance(server.port());
   REQUIRE(port.has_value());
@@ -67,7 +68,7 @@ double trip_ms(LabLink& link, std::size_t bytes) {
   std::vector<std::uint8_t> sent(bytes), back(bytes);
   SplitMix64 random(bytes);
   for (std::uint8_t& byte : sent) byte = static_cast<std::uint8_t>(random.below(256));
-  // Twice: a connection through a proxy is there before its other half is.
+  // Twice: a connection through a proxy is open before its other half is.
   double ms = 0;
   for (int i = 0; i < 2; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -83,11 +84,11 @@ double trip_ms(LabLink& link, std::size_t bytes) {
 }
 
 void check_link(const test::LinkProfile& profile, LinkKind kind) {
-  auto link = LabLink::make(profile, kind, 1);
+  auto link = TestbedLink::make(profile, kind, 1);
   INFO((link ? std::string() : link.error()));
   REQUIRE(link.has_value());
   CHECK((*link)->kind() == kind);
-  CHECK(trip_ms(**link, 100) >= 16);  // a round trip less twice the jitter
+  CHECK(trip_ms(**link, 100) >= 16);  // a round trip minus twice the jitter
   const std::size_t many = 250'000;   // 40 ms at the link's rate
   CHECK(trip_ms(**link, many) >= 16 + 40);
   const auto counts = (*link)->stop();
@@ -100,18 +101,18 @@ void check_link(const test::LinkProfile& profile, LinkKind kind) {
 
 }  // namespace
 
-TEST_CASE("a shaper delays and slows what passes it, and changes nothing", "[lab]") {
+TEST_CASE("a shaper delays and slows bytes, and changes none", "[testbed]") {
   check_link(kSlow, LinkKind::shaper);
 }
 
-TEST_CASE("what a shaper loses comes later, and nothing is missing", "[lab]") {
-  auto link = LabLink::make({"lossy", 10'000'000, 0, 0, 0.2}, LinkKind::shaper, 1);
+TEST_CASE("a segment that a shaper loses arrives later, and none is missing", "[testbed]") {
+  auto link = TestbedLink::make({"lossy", 10'000'000, 0, 0, 0.2}, LinkKind::shaper, 1);
   REQUIRE(link.has_value());
   CHECK(trip_ms(**link, 200'000) >= 20);
 }
 
-TEST_CASE("namespaces joined by a link delay and slow what passes, and leave nothing behind",
-          "[lab]") {
+TEST_CASE("namespaces joined by a link delay and slow packets, and leave nothing behind",
+          "[testbed]") {
   const std::string why = why_no_namespaces();
   if (!why.empty()) {
     WARN("skipped: " + why);
@@ -128,18 +129,18 @@ TEST_CASE("namespaces joined by a link delay and slow what passes, and leave not
   CHECK(devices() == before);
 }
 
-TEST_CASE("namespaces lose packets, and TCP brings them back", "[lab]") {
+TEST_CASE("namespaces lose packets, and TCP sends them again", "[testbed]") {
   if (!why_no_namespaces().empty()) {
     WARN("skipped: " + why_no_namespaces());
     return;
   }
-  auto link = LabLink::make({"lossy", 1'000'000, 0, 0, 0.05}, LinkKind::namespaces, 1);
+  auto link = TestbedLink::make({"lossy", 1'000'000, 0, 0, 0.05}, LinkKind::namespaces, 1);
   REQUIRE(link.has_value());
   CHECK(trip_ms(**link, 500'000) >= 1);
   CHECK((*link)->stop()->to_client.lost > 0);
 }
 
-TEST_CASE("a program runs where it was started, and its output is kept", "[lab]") {
+TEST_CASE("a program runs where it was started, and its output is kept", "[testbed]") {
   const test::TempFolder folder;
   const auto run = [&](Place& place, const std::string& what) {
     const std::string log = folder / "log";
@@ -160,7 +161,7 @@ TEST_CASE("a program runs where it was started, and its output is kept", "[lab]"
   (*slow)->terminate();
   CHECK((*slow)->wait(30));
   if (!why_no_namespaces().empty()) return;
-  auto link = LabLink::make(kSlow, LinkKind::namespaces, 1);
+  auto link = TestbedLink::make(kSlow, LinkKind::namespaces, 1);
   REQUIRE(link.has_value());
   const std::string devices = run((*link)->client_side(), "cat /proc/net/dev");
   CHECK(devices.find("rs0:") != std::string::npos);

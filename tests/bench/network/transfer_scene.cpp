@@ -1,4 +1,4 @@
-#include "tests/bench/network/picture.hpp"
+#include "tests/bench/network/transfer_scene.hpp"
 
 #include <zstd.h>
 
@@ -17,7 +17,7 @@
 #include "common/runs/reorder.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
-#include "tests/bench/meshing/mesher_case.hpp"
+#include "tests/bench/harness/clocks.hpp"
 #include "tests/reference/binary_greedy.hpp"
 
 namespace runstone::bench {
@@ -29,7 +29,7 @@ using reference::DenseGrid;
 constexpr int kZstdLevel = 3;
 constexpr AxisOrder kDenseOrder = AxisOrder::xyz;
 
-/// Before the voxels of a dense chunk.
+/// The header before the voxels of a dense chunk.
 struct DenseHeader {
   std::uint32_t body_bytes = 0;
   ChunkCoord at;
@@ -70,12 +70,12 @@ std::uint64_t faces_of(const ChunkMesh& mesh) {
   return out;
 }
 
-/// Dense chunks as they arrive.
+/// Reads dense chunks from a stream of bytes.
 class DenseReader {
  public:
   DenseReader(unsigned edge, bool compressed) : edge_(edge), compressed_(compressed) {}
 
-  /// Calls take(coordinate, voxels) for each chunk that is whole.
+  /// Calls take(coordinate, voxels) for each complete chunk.
   template <class Take>
   Result<void, std::string> feed(ByteView bytes, std::uint64_t& unpack_ns, Take take) {
     append(buffer_, bytes.data(), bytes.size());
@@ -129,7 +129,8 @@ void fill_inside(DenseGrid& grid, unsigned edge, std::span<const Material> voxel
   }
 }
 
-/// The border layer in one direction, from the voxels of the grid there; empty if there is none.
+/// Fills the border layer in one direction from the grid beside it; with empty voxels if there is
+/// none.
 void fill_border(DenseGrid& grid, const DenseGrid* beside, Direction direction, unsigned edge) {
   const Axis axis = axis_of(direction);
   const auto axes = axes_of(kDenseOrder);
@@ -155,7 +156,7 @@ const char* name_of(Transfer transfer) {
   return kNames[static_cast<std::size_t>(transfer)];
 }
 
-Bytes encode_picture(const PictureScene& scene, Transfer transfer) {
+Bytes encode_scene(const TransferScene& scene, Transfer transfer) {
   Bytes out;
   FrameWriter frames;
   for (const auto& [at, voxels] : scene.chunks) {
@@ -172,8 +173,8 @@ Bytes encode_picture(const PictureScene& scene, Transfer transfer) {
   return out;
 }
 
-struct PictureReceiver::Parts {
-  Parts(const PictureScene& of, Transfer transfer)
+struct SceneReceiver::Parts {
+  Parts(const TransferScene& of, Transfer transfer)
       : scene(of),
         is_dense(transfer == Transfer::dense || transfer == Transfer::dense_zstd),
         dense(of.edge, transfer == Transfer::dense_zstd) {}
@@ -211,7 +212,7 @@ struct PictureReceiver::Parts {
     return is_dense ? grids.contains(at) : runs.contains(at);
   }
 
-  /// Meshes it and what is beside it where nothing is missing any more.
+  /// Meshes the chunk and its neighbours, as far as their neighbours have arrived.
   void arrived(const ChunkCoord& at) {
     const std::uint64_t start = now_ns();
     mesh_if_ready(at);
@@ -251,7 +252,7 @@ struct PictureReceiver::Parts {
     mesh_rdm(runs.at(at), neighbours, *scene.visibility, rdm, mesh);
   }
 
-  const PictureScene& scene;
+  const TransferScene& scene;
   const bool is_dense;
   DenseReader dense;
   FrameReader frames{Sender::server};
@@ -261,16 +262,16 @@ struct PictureReceiver::Parts {
   BinaryScratch binary;
   RdmScratch rdm;
   ChunkMesh mesh;
-  PictureTimes times;
+  TransferTimes times;
 };
 
-PictureReceiver::PictureReceiver(const PictureScene& scene, Transfer transfer)
+SceneReceiver::SceneReceiver(const TransferScene& scene, Transfer transfer)
     : parts_(std::make_unique<Parts>(scene, transfer)) {}
-PictureReceiver::~PictureReceiver() = default;
-Result<void, std::string> PictureReceiver::feed(ByteView bytes) { return parts_->feed(bytes); }
-bool PictureReceiver::complete() const {
+SceneReceiver::~SceneReceiver() = default;
+Result<void, std::string> SceneReceiver::feed(ByteView bytes) { return parts_->feed(bytes); }
+bool SceneReceiver::complete() const {
   return parts_->meshed.size() == parts_->scene.chunks.size();
 }
-const PictureTimes& PictureReceiver::times() const { return parts_->times; }
+const TransferTimes& SceneReceiver::times() const { return parts_->times; }
 
 }  // namespace runstone::bench

@@ -1,5 +1,5 @@
-// The four forms of a picture: whatever pieces the stream comes in, they end in the same faces.
-#include "tests/bench/network/picture.hpp"
+// The four forms of a scene end in the same faces, in whatever pieces the stream arrives.
+#include "tests/bench/network/transfer_scene.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,8 +11,8 @@ using namespace runstone::bench;
 
 namespace {
 
-PictureScene scene_of(SplitMix64& rng) {
-  PictureScene out;
+TransferScene scene_of(SplitMix64& rng) {
+  TransferScene out;
   out.name = "random";
   out.edge = 16;
   out.visibility = std::make_shared<const VisibilityTable>(test::mesh_visibility());
@@ -25,10 +25,10 @@ PictureScene scene_of(SplitMix64& rng) {
 
 }  // namespace
 
-TEST_CASE("a picture has the same faces in every form and in pieces of any size", "[lab]") {
+TEST_CASE("a scene has the same faces in every form and in pieces of any size", "[testbed]") {
   SplitMix64 rng(Catch::rngSeed() + 3);
-  const PictureScene scene = scene_of(rng);
-  // Every chunk by itself, against the oracle.
+  const TransferScene scene = scene_of(rng);
+  // Every chunk alone, compared with the oracle.
   std::uint64_t expected = 0;
   for (const auto& [at, chunk] : scene.chunks) {
     test::MeshScene alone{chunk, {}};
@@ -41,9 +41,9 @@ TEST_CASE("a picture has the same faces in every form and in pieces of any size"
   REQUIRE(expected > 0);
   for (const Transfer transfer : kTransfers) {
     CAPTURE(name_of(transfer));
-    const Bytes stream = encode_picture(scene, transfer);
+    const Bytes stream = encode_scene(scene, transfer);
     for (const std::size_t piece : {std::size_t{7}, std::size_t{1000}, stream.size()}) {
-      PictureReceiver receiver(scene, transfer);
+      SceneReceiver receiver(scene, transfer);
       for (std::size_t at = 0; at < stream.size(); at += piece) {
         REQUIRE_FALSE(receiver.complete());
         REQUIRE(receiver.feed(ByteView(stream).subspan(at, std::min(piece, stream.size() - at))));
@@ -54,13 +54,13 @@ TEST_CASE("a picture has the same faces in every form and in pieces of any size"
   }
 }
 
-TEST_CASE("a stream that is none is refused", "[lab]") {
+TEST_CASE("bytes that are no scene are rejected", "[testbed]") {
   SplitMix64 rng(5);
-  const PictureScene scene = scene_of(rng);
+  const TransferScene scene = scene_of(rng);
   const Bytes junk(100'000, 0xff);
   for (const Transfer transfer : kTransfers) {
     CAPTURE(name_of(transfer));
-    PictureReceiver receiver(scene, transfer);
+    SceneReceiver receiver(scene, transfer);
     CHECK_FALSE(receiver.feed(junk));
   }
 }

@@ -1,4 +1,4 @@
-#include "tests/bench/network/lab_link.hpp"
+#include "tests/bench/network/testbed_link.hpp"
 
 #include <utility>
 
@@ -23,11 +23,11 @@ std::string why_no_namespaces() {
   return link ? "" : link.error();
 }
 
-Result<std::unique_ptr<LabLink>, std::string> LabLink::make(const test::LinkProfile& profile,
-                                                            LinkKind kind, std::uint64_t seed) {
+Result<std::unique_ptr<TestbedLink>, std::string> TestbedLink::make(
+    const test::LinkProfile& profile, LinkKind kind, std::uint64_t seed) {
   if (profile.passes_all()) kind = LinkKind::loopback;
   RUNSTONE_ASSERT(profile.passes_all() || kind != LinkKind::loopback);
-  std::unique_ptr<LabLink> link(new LabLink(kind, profile, seed));
+  std::unique_ptr<TestbedLink> link(new TestbedLink(kind, profile, seed));
   if (kind == LinkKind::namespaces) {
     auto tun = TunLink::make(profile, seed);
     if (!tun) return Unexpected<std::string>{tun.error()};
@@ -38,7 +38,7 @@ Result<std::unique_ptr<LabLink>, std::string> LabLink::make(const test::LinkProf
   return link;
 }
 
-Result<std::uint16_t, std::string> LabLink::entrance(std::uint16_t server_port) {
+Result<std::uint16_t, std::string> TestbedLink::entrance(std::uint16_t server_port) {
   if (kind_ != LinkKind::shaper) return server_port;
   auto shaper = Shaper::start(profile_, seed_++, server_port);
   if (!shaper) return Unexpected<std::string>{shaper.error()};
@@ -46,7 +46,7 @@ Result<std::uint16_t, std::string> LabLink::entrance(std::uint16_t server_port) 
   return shapers_.back()->port();
 }
 
-std::optional<TunCounts> LabLink::stop() {
+std::optional<TunCounts> TestbedLink::stop() {
   shapers_.clear();
   if (!tun_) return std::nullopt;
   return tun_->stop();

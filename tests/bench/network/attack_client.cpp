@@ -1,4 +1,4 @@
-#include "tests/bench/network/hostile_client.hpp"
+#include "tests/bench/network/attack_client.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -33,7 +33,7 @@ bool would_block(int error) {
 }
 
 void set_option(int socket, int level, int name, int value) {
-  // A socket without the option still attacks.
+  // The attack works without the option, too.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
@@ -46,11 +46,12 @@ KeyPair key_of(std::uint64_t identity) {
 
 }  // namespace
 
-HostileClient::HostileClient(std::uint16_t port, std::uint32_t from, int receive_bytes)
+AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!socket_) return;
   if (receive_bytes > 0) set_option(socket_.get(), SOL_SOCKET, SO_RCVBUF, receive_bytes);
-  // Its port counts only together with the server's address, and is free again at once: there are thousands of sockets.
+  // The port then counts only together with the server's address and is free again at once: there
+  // are thousands of sockets.
   set_option(socket_.get(), IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, 1);
   const linger no_wait{1, 0};
   (void)::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &no_wait, sizeof no_wait);
@@ -63,7 +64,7 @@ HostileClient::HostileClient(std::uint16_t port, std::uint32_t from, int receive
   // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
-bool HostileClient::open_session(std::uint64_t identity, int wait_ms) {
+bool AttackClient::open_session(std::uint64_t identity, int wait_ms) {
   const KeyPair keys = key_of(identity);
   Hello hello;
   hello.key = keys.public_key;
@@ -85,16 +86,16 @@ bool HostileClient::open_session(std::uint64_t identity, int wait_ms) {
   return is_open() && has_session_;
 }
 
-void HostileClient::queue_bytes(ByteView bytes) {
+void AttackClient::queue_bytes(ByteView bytes) {
   out_.insert(out_.end(), bytes.begin(), bytes.end());
 }
 
-void HostileClient::flush() {
+void AttackClient::flush() {
   while (is_open_ && queued() > 0) {
     const ssize_t count = ::send(socket_.get(), out_.data() + sent_, queued(), MSG_NOSIGNAL);
     if (count < 0) {
       if (would_block(errno) || errno == ENOTCONN) return;
-      // What the server said before it closed may still be there.
+      // The server's goodbye may still be in the socket.
       read();
       is_open_ = false;
       return;
@@ -106,7 +107,7 @@ void HostileClient::flush() {
   sent_ = 0;
 }
 
-void HostileClient::read(std::size_t bytes_max) {
+void AttackClient::read(std::size_t bytes_max) {
   std::array<std::uint8_t, 16 * 1024> buffer;
   for (std::size_t got = 0; is_open_ && got < bytes_max;) {
     const ssize_t count =
@@ -125,22 +126,22 @@ void HostileClient::read(std::size_t bytes_max) {
   }
 }
 
-void HostileClient::wait(int wait_ms, bool reads) {
+void AttackClient::wait(int wait_ms, bool reads) {
   pollfd wanted{socket_.get(), 0, 0};
   if (reads) wanted.events |= POLLIN;
   if (queued() > 0) wanted.events |= POLLOUT;
   (void)::poll(&wanted, 1, wait_ms);
 }
 
-void HostileClient::shutdown_send() { ::shutdown(socket_.get(), SHUT_WR); }
+void AttackClient::shutdown_send() { ::shutdown(socket_.get(), SHUT_WR); }
 
-std::string HostileClient::ending() const {
+std::string AttackClient::ending() const {
   if (!goodbye_) return is_open_ ? "still connected" : "closed without a word";
   return std::string(to_string(goodbye_->reason)) + ": " + goodbye_->text;
 }
 
-// Terrain and commits are only counted: to decode them would slow the attack down.
-Result<void> HostileClient::take(FrameClass frame_class, ByteView body) {
+// Terrain and commits are only counted: decoding them would slow the attack down.
+Result<void> AttackClient::take(FrameClass frame_class, ByteView body) {
   if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_))
     return {};
   auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);

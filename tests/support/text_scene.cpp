@@ -1,4 +1,4 @@
-#include "tests/support/picture_scene.hpp"
+#include "tests/support/text_scene.hpp"
 
 #include "tests/support/random_chunk.hpp"
 

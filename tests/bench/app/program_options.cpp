@@ -1,0 +1,66 @@
+#include "tests/bench/app/program_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+#include "tests/bench/edits/edit_options.hpp"
+#include "tests/bench/meshing/mesh_options.hpp"
+#include "tests/bench/storage/storage_options.hpp"
+#include "tests/bench/wire/bytes_options.hpp"
+
+namespace runstone::bench {
+namespace {
+
+constexpr const char* kSmallLuanti = RUNSTONE_SOURCE_DIR "/tests/data/luanti_v7_small";
+
+struct Subcommand {
+  Command command;
+  CLI::App* (*add)(CLI::App&, BenchOptions&);
+};
+/// The subcommands whose options are BenchOptions.
+constexpr std::array<Subcommand, 7> kSubcommands = {{{Command::mesh, add_mesh_command},
+                                                     {Command::chunk_edge, add_chunk_edge_command},
+                                                     {Command::edits, add_edits_command},
+                                                     {Command::log, add_log_command},
+                                                     {Command::bytes, add_bytes_command},
+                                                     {Command::storage, add_storage_command},
+                                                     {Command::mesh_once, add_mesh_once_command}}};
+
+}  // namespace
+
+ParsedProgramOptions parse_program_options(int argc, const char* const* argv, std::ostream& out,
+                                           std::ostream& err) {
+  CLI::App app(
+      "Measures meshing, storage, edits, the log, the network and frames, and prints tables of "
+      "Markdown, or makes a page of them all.",
+      "runstone-bench");
+  app.require_subcommand(1);
+  ProgramOptions options;
+  options.net.luanti = options.frames.luanti = options.report.luanti = kSmallLuanti;
+  // Each subcommand has defaults of its own.
+  std::array<BenchOptions, kSubcommands.size()> bench;
+  std::array<const CLI::App*, kSubcommands.size()> parsers{};
+  for (std::size_t i = 0; i < kSubcommands.size(); ++i) {
+    bench[i].luanti = kSmallLuanti;
+    parsers[i] = kSubcommands[i].add(app, bench[i]);
+  }
+  const CLI::App* net = add_net_command(app, options.net);
+  const CLI::App* frames = add_frames_command(app, options.frames);
+  const CLI::App* report = add_report_command(app, options.report);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error, out, err) == 0 ? 0 : 2};
+  }
+  if (net->parsed()) options.command = Command::net;
+  if (frames->parsed()) options.command = Command::frames;
+  if (report->parsed()) options.command = Command::report;
+  for (std::size_t i = 0; i < kSubcommands.size(); ++i) {
+    if (!parsers[i]->parsed()) continue;
+    options.command = kSubcommands[i].command;
+    options.bench = std::move(bench[i]);
+  }
+  return {std::move(options), 0};
+}
+
+}  // namespace runstone::bench

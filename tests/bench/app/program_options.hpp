@@ -1,0 +1,33 @@
+// ProgramOptions: the command line of runstone-bench.
+#pragma once
+#include <iosfwd>
+#include <optional>
+
+#include "tests/bench/frames/frames_options.hpp"
+#include "tests/bench/harness/bench_options.hpp"
+#include "tests/bench/network/net_options.hpp"
+#include "tests/bench/report/report_options.hpp"
+
+namespace runstone::bench {
+
+enum class Command { mesh, chunk_edge, mesh_once, edits, log, bytes, storage, net, frames, report };
+
+struct ProgramOptions {
+  Command command = Command::mesh;
+  BenchOptions bench;    // of every command without an entry below
+  NetOptions net;        // of Command::net
+  FramesOptions frames;  // of Command::frames
+  ReportOptions report;  // of Command::report
+};
+
+/// The options, or the exit code of a program that ends here: 0 after help, 2 after a mistake.
+struct ParsedProgramOptions {
+  std::optional<ProgramOptions> options;
+  int exit_code = 0;
+};
+
+/// Parses the command line. Prints help to `out` and mistakes to `err`.
+ParsedProgramOptions parse_program_options(int argc, const char* const* argv, std::ostream& out,
+                                           std::ostream& err);
+
+}  // namespace runstone::bench

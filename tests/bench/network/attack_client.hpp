@@ -1,0 +1,70 @@
+// AttackClient: one raw connection to a server that may do what the product's clients never do:
+// not read, read one byte, send bytes without meaning. It performs the handshake correctly with a
+// key of its own, which anybody can make. It decodes only the handshake and the goodbye. Calls
+// block only for the given times. Thread: one.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/codec/frame.hpp"
+#include "protocol/codec/messages.hpp"
+#include "tests/bench/network/descriptor.hpp"
+
+namespace runstone::bench {
+
+class AttackClient {
+ public:
+  /// Starts to connect to 127.0.0.1:`port` from the IPv4 address `from` (host order, of
+  /// 127.0.0.0/8). `receive_bytes` is the size of the socket's buffer; 0 leaves it to the kernel.
+  AttackClient(std::uint16_t port, std::uint32_t from, int receive_bytes = 0);
+
+  /// Performs the handshake with a key drawn from `identity`. It offers commands. It does not offer
+  /// to report what it read, so that nothing paces what it is sent. Returns false if the server
+  /// ended the connection, or after `wait_ms`.
+  bool open_session(std::uint64_t identity, int wait_ms);
+
+  /// Queues a message; flush() sends. Bytes are sent unchanged, outside of any frame.
+  void queue(const Message& message) { queue(encode_message(message)); }
+  void queue(const EncodedMessage& message) { frames_.append(message, out_); }
+  void queue_bytes(ByteView bytes);
+  std::size_t queued() const { return out_.size() - sent_; }
+  /// Sends as much as the socket takes now.
+  void flush();
+  /// Reads what is there now, at most `bytes_max`.
+  void read(std::size_t bytes_max = 256 * 1024);
+  /// Waits, at most `wait_ms`, until it can send what is queued, or, if `reads`, until there is
+  /// something to read.
+  void wait(int wait_ms, bool reads);
+
+  void shutdown_send();
+
+  /// Returns false after the server's goodbye, after it closed the connection, and after an error.
+  bool is_open() const { return is_open_ && !goodbye_; }
+  /// Returns the session's Welcome; empty before the session is open.
+  const Welcome& welcome() const { return welcome_; }
+  /// Returns what the server said or did: "flooding: more messages than the rate allows", "closed",
+  /// "still connected".
+  std::string ending() const;
+
+  std::uint64_t bytes_sent() const { return bytes_sent_; }
+  std::uint64_t bytes_received() const { return bytes_received_; }
+
+ private:
+  Result<void> take(FrameClass frame_class, ByteView body);
+
+  Descriptor socket_;
+  bool is_open_ = false, has_session_ = false;
+  FrameWriter frames_;
+  FrameReader reader_{Sender::server};
+  Bytes out_;
+  std::size_t sent_ = 0;  // of out_
+  std::uint16_t chunk_edge_ = 0;
+  std::optional<Welcome> came_;
+  Welcome welcome_;
+  std::optional<Goodbye> goodbye_;
+  std::uint64_t bytes_sent_ = 0, bytes_received_ = 0;
+};
+
+}  // namespace runstone::bench

@@ -1,0 +1,56 @@
+// AttackThread: the state of each thread of an attack: its time, its random numbers, its
+// connections and their outcomes.
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "common/core/hash.hpp"
+#include "tests/bench/network/attack.hpp"
+#include "tests/bench/network/attack_client.hpp"
+
+namespace runstone::bench {
+
+/// A rate above and one below what a server takes in a second from one session: the first ends with
+/// a goodbye, the second stays.
+inline constexpr double kNoLimit = 0;
+inline constexpr double kJustBelowFlooding = 9'000;
+
+class AttackThread {
+ public:
+  static constexpr std::uint32_t kLoopback = 0x7F000001;  // 127.0.0.1
+  static constexpr unsigned kConnectionsMax = 20'000;     // of each thread
+
+  AttackThread(std::uint16_t port, unsigned index, double seconds, std::uint64_t seed);
+
+  unsigned index() const { return index_; }
+  SplitMix64& random() { return random_; }
+  bool is_over() const;
+  double seconds() const;  // since it began
+  void pause_ms(int ms) const;
+
+  /// Returns a new connection, or null if the attack is over or has used its connections.
+  std::unique_ptr<AttackClient> connect(std::uint32_t from = kLoopback, int receive_bytes = 0);
+  /// Returns a new connection with a session. Returns null after a pause if the server rejected it.
+  std::unique_ptr<AttackClient> join(int receive_bytes = 0);
+  /// Records the ending of a connection.
+  void end(AttackClient& client);
+
+  /// Joins, and joins again whenever the server ends the session, until the attack is over. Calls
+  /// `begin` once for each session. Then calls `add`, which queues messages, at a rate a second, or
+  /// as often as the socket takes them. Reads everything that arrives, or nothing.
+  using Step = std::function<void(AttackClient&)>;
+  void flood(const Step& begin, const Step& add, double per_second, bool reads = true);
+
+  AttackOutcome outcome;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const std::uint16_t port_;
+  const unsigned index_;
+  const Clock::time_point began_, ends_;
+  SplitMix64 random_;
+};
+
+}  // namespace runstone::bench
