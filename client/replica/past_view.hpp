@@ -1,5 +1,6 @@
-// PastView: whether a replica shows the live world or a moment of the past, and what a change between them means for its
-// chunks. In the past the chunks are read-only: snapshots replace them, and nothing is predicted or applied. One thread.
+// PastView: whether a replica shows the live world or a moment of the past, and what a change
+// between them means for its chunks. In the past the chunks are read-only: snapshots replace them,
+// and nothing is predicted or applied. One thread.
 #pragma once
 #include <optional>
 
@@ -20,9 +21,11 @@ class PastView {
   const std::optional<PastMoment>& moment() const { return moment_; }
   bool is_past() const { return moment_.has_value(); }
 
-  /// Shows a moment of the past, or the live world if `moment` is nullopt. What is shown stays until snapshots arrive.
+  /// Shows a moment of the past, or the live world if `moment` is nullopt. What is shown stays
+  /// until snapshots arrive.
   ///   - Into the past: pending edits and inboxes are cleared.
-  ///   - From moment to moment: chunks stay current, because the server sends only those that differ.
+  ///   - From moment to moment: chunks stay current, because the server sends only those that
+  ///     differ.
   ///   - Otherwise every chunk is expected again.
   /// Cost: O(chunks).
   void show(const std::optional<PastMoment>& moment, ChunkTable& chunks);

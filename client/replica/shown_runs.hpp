@@ -1,5 +1,6 @@
-// ShownRuns: replaces the runs that a replica shows, and queues the change for the mesher: for the chunk itself, and for
-// the neighbours at whose border a voxel changed. Every change of shown runs goes through here. One thread.
+// ShownRuns: replaces the runs that a replica shows, and queues the change for the mesher: for the
+// chunk itself, and for the neighbours at whose border a voxel changed. Every change of shown runs
+// goes through here. One thread.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -16,10 +17,11 @@ class ShownRuns {
   ShownRuns(const ShownRuns&) = delete;
   ShownRuns& operator=(const ShownRuns&) = delete;
 
-  /// Shows `next`, which contains the edits `cause` that were not shown before. Queues nothing if no voxel differs.
-  /// Cost: O(runs of both).
+  /// Shows `next`, which contains the edits `cause` that were not shown before. Queues nothing if
+  /// no voxel differs. Cost: O(runs of both).
   void show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* const> cause);
-  /// Shows nothing any more. Queues the removal even if nothing was shown, because neighbours wait for the chunk.
+  /// Shows nothing any more. Queues the removal even if nothing was shown, because neighbours wait
+  /// for the chunk.
   void hide(TrackedChunk& chunk);
 
  private:

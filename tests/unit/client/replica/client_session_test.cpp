@@ -24,7 +24,7 @@ SessionConfig config() {
   return out;
 }
 
-/// The server's side, answered by hand.
+/// The server, played by the test.
 struct Server {
   KeyPair own = keys(9);
   WorldId world_id{1, 2, 3};
@@ -92,8 +92,7 @@ EditDescriptor set(VoxelPos at, Material material) { return {SetVoxel{at}, {}, m
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture,
-                 "a session opens by hello, welcome, proof and ready, then asks for its view",
+TEST_CASE_METHOD(Fixture, "a session opens with the handshake and then sends its view",
                  "[replica]") {
   auto out = open();
   CHECK(server.hello.name == "ada");
@@ -117,7 +116,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to be unavailable",
+TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk arrived or is unavailable",
                  "[replica]") {
   static_cast<void>(open());
   const ChunkKey damaged{0, {0, -1, 1}};
@@ -138,7 +137,8 @@ TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to 
   CHECK_FALSE(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that welcome announces",
+TEST_CASE_METHOD(Fixture,
+                 "a session refuses edits beyond the heights and the volume in the welcome",
                  "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
@@ -154,7 +154,8 @@ TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that we
   CHECK_FALSE(session.submit({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add any", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a welcome with a feature that hello did not offer is rejected",
+                 "[replica]") {
   SessionConfig offering = config();
   offering.features = 0b110;
   session = ClientSession(offering);
@@ -176,7 +177,7 @@ TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add an
 TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
-  welcome.epoch += 1;  // signed something else
+  welcome.epoch += 1;  // not what was signed
   receive(welcome);
   CHECK(session.wants_close());
   REQUIRE(session.end());
@@ -199,7 +200,7 @@ TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "
   CHECK(session.end()->final);
 }
 
-TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
+TEST_CASE_METHOD(Fixture, "messages in the wrong state end the session", "[replica]") {
   const auto refused = [&](Message message) {
     session = ClientSession(config());
     greet();
@@ -231,13 +232,14 @@ TEST_CASE_METHOD(Fixture,
   CHECK(edits[0].client_seq == 1);
   CHECK(edits[0].submitted_us == now - 300 + kClockLead);
   CHECK(edits[0].edit == set({1, 2, 3}, 4));
-  // From now on they go at once.
+  // From now on edits are sent at once.
   REQUIRE(session.submit(set({1, 2, 3}, 5), now, now).has_value());
   out = sent();
   CHECK(take<EditRequest>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unknown time",
+TEST_CASE_METHOD(Fixture,
+                 "without a pong edits are sent after kOffsetWaitUsMax, with an unknown time",
                  "[replica]") {
   static_cast<void>(open());
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -253,7 +255,7 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
   CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
-  // In the mask and in a clipboard, too.
+  // The same in the mask and in a clipboard.
   const auto masked = [](Material material) {
     return EditDescriptor{SetVoxel{{1, 2, 3}}, {MaskKind::only_material, material}, 1};
   };
@@ -265,7 +267,7 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
     return EditDescriptor{Paste{{1, 2, 3}, *cells.finish(), {}}, {}, kEmpty};
   };
   CHECK_FALSE(session.submit(paste(last), now, now).has_value());
-  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // no clipboard at all
+  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // without a clipboard
   CHECK(session.replica().local_edits().all().empty());
   const auto known = static_cast<Material>(last - 1);
   CHECK(session.submit(masked(known), now, now).has_value());
@@ -273,20 +275,20 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "after a cut the undecided edits are offered again in order, before newer ones",
+                 "after a reconnection pending edits are sent again in order, before newer ones",
                  "[replica]") {
   static_cast<void>(open());
   pong();
   for (int i = 0; i < 3; ++i) REQUIRE(session.submit(set({i, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   session.disconnected();
-  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while away
+  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while disconnected
   CHECK(sent().empty());
   server.resolved = 1;
   auto out = open();
   const auto edits = take<EditRequest>(out);
   REQUIRE(edits.size() == 4);
-  CHECK(edits[0].client_seq == 1);  // decided, but how? The server answers or ignores it
+  CHECK(edits[0].client_seq == 1);  // resolved: sent again to get the answer
   CHECK(edits[1].client_seq == 2);
   CHECK(edits[2].client_seq == 3);
   CHECK(edits[3].client_seq == 4);
@@ -306,7 +308,8 @@ TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
   CHECK_FALSE(session.clock().known());
 }
 
-TEST_CASE_METHOD(Fixture, "another world under the same address starts from nothing", "[replica]") {
+TEST_CASE_METHOD(Fixture, "another world at the same address starts with an empty replica",
+                 "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -318,7 +321,7 @@ TEST_CASE_METHOD(Fixture, "another world under the same address starts from noth
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a chunk with a gap is requested with the next tick", "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
   static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
@@ -330,8 +333,7 @@ TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") 
   CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "an edit without an answer is offered again after a while, once per while",
+TEST_CASE_METHOD(Fixture, "an edit without an answer is sent again once per kAnswerUsMax",
                  "[replica]") {
   static_cast<void>(open());
   pong();
@@ -351,7 +353,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "the wished view is cut to the server's limit and sent when it changes",
+TEST_CASE_METHOD(Fixture, "the requested view is limited by the server and sent when it changes",
                  "[replica]") {
   static_cast<void>(open());
   session.set_view({{1, 0, 0}, 60, 60});
@@ -364,7 +366,7 @@ TEST_CASE_METHOD(Fixture, "the wished view is cut to the server's limit and sent
   CHECK(take<View>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a second", "[replica]") {
+TEST_CASE_METHOD(Fixture, "poses are sent when they change, at most twenty a second", "[replica]") {
   static_cast<void>(open());
   Pose pose;
   pose.at = {1, 2, 3};
@@ -387,8 +389,7 @@ TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a secon
   CHECK(take<Move>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "other players come from the player list and their poses", "[replica]") {
   static_cast<void>(open());
   receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
   REQUIRE(session.others().size() == 1);
@@ -412,8 +413,7 @@ TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their p
   CHECK(session.others().empty());
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "a silent server and a goodbye both end the connection, the former not for good",
+TEST_CASE_METHOD(Fixture, "a silent server and a goodbye end the connection; silence is not final",
                  "[replica]") {
   static_cast<void>(open());
   session.tick(now + kServerSilenceUsMax + 1);
@@ -448,7 +448,7 @@ std::vector<ChunkKey> view_keys(const ClientSession& session) {
 
 TEST_CASE_METHOD(
     Fixture,
-    "what was kept over a cut is claimed before the view, and called the same it is loaded",
+    "chunks held over a reconnection are claimed before the view, and loaded if not modified",
     "[replica]") {
   static_cast<void>(open());
   for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
@@ -504,7 +504,7 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     REQUIRE(take<CachedChunks>(out).size() == 1);
     CHECK(take<CachedChunks>(out)[0].chunks.size() == 1);
     CHECK(take<View>(out).size() == 1);
-    // It is kept in the cache as it is: only others are to be written.
+    // The cache has it already: only other chunks are handed over.
     for (const ChunkKey& other : view_keys(session)) receive(server.world.snapshot(other.at));
     CHECK(session.replica().take_for_cache(100).size() == 14);
     CHECK(session.replica().take_for_cache(100).empty());
@@ -512,7 +512,7 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
     const auto unkept = session.replica().take_for_cache(100);
     REQUIRE(unkept.size() == 1);
     CHECK(unkept[0].first == key);
-    // What leaves the view is kept as it was.
+    // A chunk that leaves the view is handed over.
     receive(server.world.commit({9, 1, 2}, set({1, -2, 1}, 3)));
     session.set_view({{50, 0, 0}, 0, 0});
     const auto left = session.replica().take_for_cache(100);
@@ -545,8 +545,7 @@ TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[re
   }
 }
 
-TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever it stands",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "missing edits complete a cached chunk from any sequence", "[replica]") {
   static_cast<void>(open());
   const ChunkKey key{0, {0, 0, 0}};
   receive(server.world.snapshot(key.at));

@@ -91,8 +91,7 @@ TEST_CASE_METHOD(Fixture, "where nothing is pending the shown runs are the confi
   CHECK(material_at(replica.confirmed(kHere)->voxels, {1, 1, 1}) == kEmpty);
 }
 
-TEST_CASE_METHOD(Fixture, "an edit at the border tells the neighbour to mesh its side again",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "an edit at the border changes the mesh of the neighbour", "[replica]") {
   load(kHere);
   load(kRight);
   take(world.commit(other(1), set({15, 4, 5}, 2)));
@@ -121,7 +120,7 @@ TEST_CASE_METHOD(Fixture, "commits that overtake their snapshot are held back an
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a snapshot that contains held back commits replaces them and still names them",
+                 "a snapshot that contains held back commits replaces them and reports them",
                  "[replica]") {
   take(world.commit(other(1), set({1, 2, 3}, 2)));
   replica.receive(world.snapshot(kHere.at), kNow);
@@ -133,7 +132,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(changes.edits[0].chunks == std::vector{kHere});
 }
 
-TEST_CASE_METHOD(Fixture, "chunks of one material come as snapshots do, and with their digest",
+TEST_CASE_METHOD(Fixture, "chunks of one material are taken like snapshots, with their digest",
                  "[replica]") {
   const ChunkKey above{0, {kHere.at.x, kHere.at.y + 1, kHere.at.z}};
   const Version old{1, 4}, newer{1, 9};
@@ -162,8 +161,7 @@ TEST_CASE_METHOD(Fixture, "a stale snapshot never erases a newer edit", "[replic
   CHECK(replica.shown_at({1, 2, 3}) == Material{2});
 }
 
-TEST_CASE_METHOD(Fixture, "a gap stops the chunk and asks for a snapshot until it comes",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "a chunk with a gap requests a snapshot until it arrives", "[replica]") {
   load(kHere);
   static_cast<void>(world.commit(other(1), set({1, 2, 3}, 2)));  // lost
   take(world.commit(other(2), set({2, 2, 3}, 4)));
@@ -215,7 +213,8 @@ TEST_CASE_METHOD(Fixture, "the same commit twice is applied once", "[replica]") 
   CHECK(replica.counters().gaps == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "a commit in several chunks counts each chunk's own order", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a commit in several chunks follows the order of each chunk",
+                 "[replica]") {
   load(kHere);
   load(kRight);
   take(world.commit({{other(1), set({1, 1, 1}, 2)},
@@ -235,7 +234,7 @@ TEST_CASE_METHOD(Fixture, "a commit whose previous list does not fit its edit is
   CHECK_FALSE(replica.receive(commit, kNow).has_value());
 }
 
-TEST_CASE_METHOD(Fixture, "chunks outside the view are neither kept nor taken", "[replica]") {
+TEST_CASE_METHOD(Fixture, "chunks outside the view are dropped and not accepted", "[replica]") {
   load(kHere);
   replica.set_view({{10, 0, 0}, 1, 1});
   CHECK(replica.confirmed(kHere) == nullptr);
@@ -249,7 +248,7 @@ TEST_CASE_METHOD(Fixture, "chunks outside the view are neither kept nor taken", 
   CHECK(replica.confirmed_count() == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "the own edit shows at once and is not meshed again when it is confirmed",
+TEST_CASE_METHOD(Fixture, "a local edit shows at once and is not meshed again when it is confirmed",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -271,7 +270,8 @@ TEST_CASE_METHOD(Fixture, "the own edit shows at once and is not meshed again wh
   CHECK(changes.edits[0].chunks.empty());
 }
 
-TEST_CASE_METHOD(Fixture, "an own edit leaves when the durable watermark passes it, and not before",
+TEST_CASE_METHOD(Fixture,
+                 "a local edit leaves when the durable watermark reaches it, and not before",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -285,7 +285,7 @@ TEST_CASE_METHOD(Fixture, "an own edit leaves when the durable watermark passes 
   CHECK(replica.drain_changes().durable == std::vector{seq});
 }
 
-TEST_CASE_METHOD(Fixture, "a watermark that overtakes the commit still lets the own edit go",
+TEST_CASE_METHOD(Fixture, "a watermark that overtakes the commit retires the local edit",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -296,7 +296,7 @@ TEST_CASE_METHOD(Fixture, "a watermark that overtakes the commit still lets the 
   CHECK(replica.local_edits().all().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the others", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a reject removes its prediction and no other", "[replica]") {
   load(kHere);
   const ClientSequence first = submit(set({3, 4, 5}, 2));
   submit(box({3, 4, 5}, {5, 5, 6}, 6, {MaskKind::only_empty, kEmpty}));
@@ -304,7 +304,7 @@ TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the oth
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
   static_cast<void>(replica.drain_changes());
   replica.receive(Reject{first, RejectReason::rate_limited, "slow down"}, 2000);
-  // The second edit is applied afresh: what the first one had filled is empty to it now.
+  // The second edit is applied again: it finds empty what the first one had filled.
   CHECK(replica.shown_at({3, 4, 5}) == Material{6});
   CHECK(replica.shown_at({4, 4, 5}) == Material{6});
   const ReplicaChanges changes = replica.drain_changes();
@@ -316,7 +316,8 @@ TEST_CASE_METHOD(Fixture, "a reject takes the prediction back and leaves the oth
   CHECK(replica.local_edits().all().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "pending edits lie on top of commits that come in between", "[replica]") {
+TEST_CASE_METHOD(Fixture, "pending edits stay on top of commits that arrive in between",
+                 "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   take(world.commit(other(1), set({3, 4, 5}, 7)));
@@ -330,8 +331,7 @@ TEST_CASE_METHOD(Fixture, "pending edits lie on top of commits that come in betw
   CHECK(replica.shown(kHere).get() == &replica.confirmed(kHere)->voxels);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "an own edit in a chunk that is not here yet shows once its snapshot comes",
+TEST_CASE_METHOD(Fixture, "a local edit in a chunk that has not arrived shows with its snapshot",
                  "[replica]") {
   submit(set({3, 4, 5}, 2));
   CHECK_FALSE(replica.shown_at({3, 4, 5}).has_value());
@@ -341,7 +341,7 @@ TEST_CASE_METHOD(Fixture,
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "an own edit confirmed by a snapshot that overtook its commit is not shown twice",
+                 "a local edit confirmed by a snapshot that overtook its commit is not shown twice",
                  "[replica]") {
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
@@ -357,8 +357,7 @@ TEST_CASE_METHOD(Fixture,
 }
 
 TEST_CASE_METHOD(
-    Fixture,
-    "after a restart chunks newer than what was kept are distrusted and own edits offered again",
+    Fixture, "after a restart chunks that may be lost are dropped and local edits offered again",
     "[replica]") {
   load(kHere);
   load(kRight);
@@ -377,7 +376,7 @@ TEST_CASE_METHOD(
   CHECK(replica.confirmed(kHere) != nullptr);
   CHECK(replica.confirmed(kRight) == nullptr);
   CHECK(replica.counters().dropped_by_epoch == 1);
-  CHECK(replica.shown_at({20, 1, 1}) == Material{3});  // the picture stays until the snapshot
+  CHECK(replica.shown_at({20, 1, 1}) == Material{3});  // shown until the snapshot
   replica.receive(world.snapshot(kRight.at), kNow);
   CHECK(replica.shown_at({20, 1, 1}) == Material{3});  // predicted again
   CHECK(material_at(replica.confirmed(kRight)->voxels, {4, 1, 1}) == kEmpty);
@@ -389,15 +388,15 @@ TEST_CASE_METHOD(
   CHECK(replica.local_edits().all().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is not offered again",
+TEST_CASE_METHOD(Fixture,
+                 "after a reconnection an edit that the server has resolved is not offered again",
                  "[replica]") {
   load(kHere);
   const EditDescriptor fill = box({4, 4, 4}, {6, 5, 5}, 3, {MaskKind::only_empty, kEmpty});
   const ClientSequence seq = submit(fill);
-  static_cast<void>(
-      world.commit(mine(seq), fill));  // applied, but the connection broke before we heard
+  static_cast<void>(world.commit(mine(seq), fill));  // applied, but the commit did not arrive
   static_cast<void>(world.commit(other(1), set({5, 4, 4}, kEmpty)));
-  CHECK(replica.open(parameters(seq)) == std::vector{seq});  // to ask how it was decided
+  CHECK(replica.open(parameters(seq)) == std::vector{seq});  // to get the answer
   CHECK(replica.local_edits().counters().offered_again == 0);
   CHECK(replica.shown_at({5, 4, 4}) == Material{3});  // until the snapshot
   CHECK(replica.local_edits().all().size() == 1);     // and it is kept until durable
@@ -416,7 +415,7 @@ TEST_CASE_METHOD(Fixture, "after a cut connection an edit the server knows is no
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a prediction that was rejected while we were away goes with an equal snapshot",
+                 "a prediction rejected while disconnected is removed by an equal snapshot",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -424,12 +423,12 @@ TEST_CASE_METHOD(Fixture,
   replica.receive(world.snapshot(kHere.at), kNow);
   CHECK(replica.shown_at({3, 4, 5}) == kEmpty);
   replica.receive(Reject{seq, RejectReason::rate_limited, "", 0},
-                  2000);  // the answer, heard at last
+                  2000);  // the late answer
   CHECK(replica.drain_changes().rejects.size() == 1);
   CHECK(replica.local_edits().all().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "already decided means: the commit was missed, so ask for the chunk",
+TEST_CASE_METHOD(Fixture, "an edit that was resolved unseen makes its chunk be requested",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
@@ -445,14 +444,14 @@ TEST_CASE_METHOD(Fixture, "already decided means: the commit was missed, so ask 
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "an audit finds a chunk whose runs went wrong and the next snapshot repairs it",
+                 "a digest check finds a chunk with wrong runs and the next snapshot repairs it",
                  "[replica]") {
   ChunkSnapshot damaged = world.snapshot(kHere.at);
-  REQUIRE(fill(damaged.chunk.voxels, 100, 3, 9));  // one run too many; the digest claims otherwise
+  REQUIRE(fill(damaged.chunk.voxels, 100, 3, 9));  // one run too many; the digest does not follow
   replica.receive(damaged, kNow);
   const Chunk& truth = world.chunk(kHere.at);
   replica.receive(DigestCheck{{{kHere, {3, 99}, truth.digest}}},
-                  2000);  // another version says nothing
+                  2000);  // no comparison at another version
   CHECK(replica.counters().audited == 0);
   replica.receive(DigestCheck{{{kHere, truth.version, truth.digest}}}, 2000);
   CHECK(replica.counters().audited == 1);
@@ -471,15 +470,15 @@ TEST_CASE_METHOD(Fixture,
   CHECK(replica.counters().drifted == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, one does not",
+TEST_CASE_METHOD(Fixture, "two digest checks find a chunk whose last commit was lost, one does not",
                  "[replica]") {
   replica.receive(world.snapshot(kHere.at), kNow);
-  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never comes
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // never arrives
   const auto audit = [&] {
     replica.receive(
         DigestCheck{{{kHere, world.chunk(kHere.at).version, world.chunk(kHere.at).digest}}}, 2000);
   };
-  audit();  // may have overtaken the commit
+  audit();  // it may have overtaken the commit
   CHECK(replica.take_requests().empty());
   audit();
   CHECK(replica.take_requests() == std::vector{kHere});
@@ -491,8 +490,7 @@ TEST_CASE_METHOD(Fixture, "two audits find a chunk whose last commit got lost, o
   CHECK(replica.counters().drifted == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "edits that keep coming are no reason to call a chunk behind",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "a chunk that keeps up with its edits is not behind", "[replica]") {
   replica.receive(world.snapshot(kHere.at), kNow);
   for (ClientSequence i = 1; i <= 3; ++i) {
     const auto commit = world.commit(other(i), set({1, 1, 1}, static_cast<Material>(1 + i)));
@@ -504,8 +502,7 @@ TEST_CASE_METHOD(Fixture, "edits that keep coming are no reason to call a chunk 
   CHECK(replica.take_requests().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a full inbox is dropped and made good by a newer snapshot",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "a full inbox is dropped and replaced by a newer snapshot", "[replica]") {
   const ChunkSnapshot early = world.snapshot(kHere.at);
   for (ClientSequence i = 1; i <= kInboxEditsMax + 5; ++i) {
     take(world.commit(
@@ -519,7 +516,7 @@ TEST_CASE_METHOD(Fixture, "a full inbox is dropped and made good by a newer snap
   CHECK(replica.awaiting_count() == 0);
 }
 
-TEST_CASE("own edits beyond the bound are refused before anything is shown", "[replica]") {
+TEST_CASE("local edits beyond the bound are refused before anything is shown", "[replica]") {
   Replica replica;
   CHECK_FALSE(replica.submit(set({0, 0, 0}, 1), 0, 0).has_value());  // no world yet
   static_cast<void>(replica.open({kEdge, kMe, kInstance, 1, 0, 0, 0}));
@@ -530,12 +527,13 @@ TEST_CASE("own edits beyond the bound are refused before anything is shown", "[r
   CHECK(replica.local_edits().all().size() == kLocalEditsMax);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "a stale snapshot after a resumption still settles what was answered meanwhile",
-                 "[replica]") {
+TEST_CASE_METHOD(
+    Fixture,
+    "a stale snapshot after a reconnection removes predictions that were answered meanwhile",
+    "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
-  static_cast<void>(replica.open(parameters(seq)));  // rejected, unheard
+  static_cast<void>(replica.open(parameters(seq)));  // rejected, but the answer was lost
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
   take(world.commit(other(1), set({1, 1, 1}, 2)));
   replica.receive(overtaken, kNow);
@@ -544,13 +542,13 @@ TEST_CASE_METHOD(Fixture,
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a prediction whose edit is gone does not survive a crash that forgets the reject",
+                 "a prediction whose edit is gone does not survive a restart that lost the reject",
                  "[replica]") {
   load(kHere);
   const ClientSequence seq = submit(set({3, 4, 5}, 2));
   static_cast<void>(replica.open(parameters(seq)));
   replica.receive(Reject{seq, RejectReason::already_resolved, "", 0},
-                  2000);  // nobody knows how any more
+                  2000);  // the server has lost the outcome
   CHECK(replica.local_edits().all().empty());
   world.restart({});
   CHECK(replica.open(parameters(0)).empty());
@@ -559,7 +557,7 @@ TEST_CASE_METHOD(Fixture,
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a log that grew past its old end with other edits does not vouch for ours",
+                 "a log that grew past its old end with other edits makes old versions untrusted",
                  "[replica]") {
   load(kHere);
   take(world.commit(other(1), set({3, 4, 5}, 2)));  // sequence 1, seen, lost in the crash
@@ -573,11 +571,11 @@ TEST_CASE_METHOD(Fixture,
   require_in_step(kHere);
 }
 
-TEST_CASE_METHOD(
-    Fixture, "after a resumption a commit ahead of its snapshot waits for it and asks for nothing",
-    "[replica]") {
+TEST_CASE_METHOD(Fixture,
+                 "after a reconnection a commit before its snapshot waits and requests nothing",
+                 "[replica]") {
   load(kHere);
-  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // while we were away
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // while disconnected
   CHECK(replica.open(parameters()).empty());
   CHECK(replica.current_count() == 0);
   const ChunkSnapshot overtaken = world.snapshot(kHere.at);
@@ -590,13 +588,12 @@ TEST_CASE_METHOD(
   CHECK(replica.counters().gaps == 0);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "a gap that the first snapshot after a resumption does not close is asked for",
+TEST_CASE_METHOD(Fixture, "a gap that the first snapshot after a reconnection leaves is requested",
                  "[replica]") {
   load(kHere);
   CHECK(replica.open(parameters()).empty());
   const ChunkSnapshot equal = world.snapshot(kHere.at);
-  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // dropped for us
+  static_cast<void>(world.commit(other(1), set({1, 1, 1}, 2)));  // not sent to this client
   take(world.commit(other(2), set({2, 1, 1}, 2)));
   CHECK(replica.take_requests().empty());
   replica.receive(equal, kNow);
@@ -605,11 +602,10 @@ TEST_CASE_METHOD(Fixture,
   require_in_step(kHere);
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "an unavailable chunk is settled: nothing is shown, and edits into it are refused",
+TEST_CASE_METHOD(Fixture, "an unavailable chunk shows nothing, and edits of it are refused",
                  "[replica]") {
   load(kRight);
-  take(world.commit(other(1), set({1, 1, 1}, 2)));  // held back for a snapshot that will not come
+  take(world.commit(other(1), set({1, 1, 1}, 2)));  // held back for a snapshot that does not arrive
   replica.receive(ChunkUnavailable{{kHere, {0, {9, 0, 0}}}, UnavailableReason::damaged});
   CHECK(replica.unavailable(kHere));
   CHECK_FALSE(replica.unavailable(kRight));
@@ -630,14 +626,14 @@ TEST_CASE_METHOD(Fixture,
   CHECK(replica.counters().chunk_edits_buffered == 1);
   CHECK(replica.take_requests().empty());
 
-  replica.receive(world.snapshot(kHere.at), kNow);  // the server has it after all
+  replica.receive(world.snapshot(kHere.at), kNow);  // the server can send it now
   CHECK_FALSE(replica.unavailable(kHere));
   CHECK(replica.unavailable_count() == 0);
   require_in_step(kHere);
   submit(set({3, 3, 3}, 2));
 }
 
-TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is shown no longer",
+TEST_CASE_METHOD(Fixture, "a chunk of an earlier connection that became unavailable is hidden",
                  "[replica]") {
   load(kHere);
   load(kRight);
@@ -652,7 +648,7 @@ TEST_CASE_METHOD(Fixture, "a chunk held from before that became unavailable is s
   VisibleLayers beside;
   beside.beyond[static_cast<std::size_t>(Direction::neg_x)] = all_layers(Extent::cube(kEdge));
   CHECK(changes.chunks[1].layers == beside);
-  static_cast<void>(replica.open(parameters()));  // the next server may have it repaired
+  static_cast<void>(replica.open(parameters()));  // it may have been repaired
   CHECK(replica.unavailable_count() == 0);
   replica.receive(ChunkUnavailable{{kHere}, UnavailableReason::damaged});
   replica.set_view({{3, 0, 0}, 2, 2});
@@ -686,8 +682,7 @@ TEST_CASE_METHOD(Fixture, "an edit larger than the server allows is refused befo
   CHECK(replica.local_edits().all().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing that was edited",
-                 "[replica]") {
+TEST_CASE_METHOD(Fixture, "after a restored backup no edited chunk is trusted", "[replica]") {
   load(kRight);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   replica.receive(world.snapshot(kHere.at), kNow);
@@ -708,13 +703,12 @@ TEST_CASE_METHOD(Fixture, "a server that went back in time vouches for nothing t
     restored.head = 1;
     restored.durable = 2;
   }
-  CHECK(replica.open(restored)
-            .empty());  // the own edit was durable: it is not ours to offer any more
+  CHECK(replica.open(restored).empty());  // the local edit was durable and is not offered again
   CHECK(replica.confirmed(kHere) == nullptr);
   CHECK(replica.confirmed(kRight) == nullptr);
 }
 
-TEST_CASE_METHOD(Fixture, "news of an edit says which earlier one it answers", "[replica]") {
+TEST_CASE_METHOD(Fixture, "an edit change names the earlier edit that it refers to", "[replica]") {
   load(kHere);
   take(world.commit(other(1), set({3, 4, 5}, 2)));
   Commit undo = world.commit(other(2), set({3, 4, 5}, kEmpty));
