@@ -27,8 +27,8 @@ namespace runstone {
 /// Counts since the session was made. Those of its local edits are in local_edits().counters().
 struct HeadlessCounts {
   std::uint64_t commits = 0, edits = 0;  // verified
-  Histogram
-      confirm_us;  // local edits: from the due time until the commit was received and verified
+  /// Local edits: from the due time until the commit was received and verified.
+  Histogram confirm_us;
 };
 
 class HeadlessSession {

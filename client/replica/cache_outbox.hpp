@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/replica/cache_lookup.hpp"
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 namespace runstone {
 
@@ -21,7 +21,7 @@ class CacheOutbox {
   /// Returns at most `count_max` chunks: first those that left the view, then those in `chunks`
   /// that changed since they were last taken. `chunks` is null while the past is shown. Cost:
   /// O(chunks).
-  std::vector<KeyedChunk> take(ChunkTable* chunks, std::size_t count_max);
+  std::vector<KeyedChunk> take(ReplicaChunks* chunks, std::size_t count_max);
   void clear() { left_.clear(); }
 
  private:

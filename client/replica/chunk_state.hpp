@@ -1,5 +1,5 @@
 // ChunkState: what the server has said about a chunk on this connection. The transitions are pure
-// functions; ChunkTable performs them and counts.
+// functions; ReplicaChunks performs them and counts.
 //
 //   expected --request--> requested      answer: requested --> repairing, the others --> current
 //   current  --request--> repairing      take_snapshot: every state --> current

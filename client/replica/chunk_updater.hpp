@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "client/replica/shown_runs.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "protocol/codec/messages.hpp"
@@ -23,7 +23,7 @@ inline constexpr TimeUs kRequestAgainUs = 2'000'000;
 class ChunkUpdater {
  public:
   /// All three must outlive this object.
-  ChunkUpdater(ChunkTable& chunks, ChangeQueue& changes, ReplicaCounters& counters)
+  ChunkUpdater(ReplicaChunks& chunks, ChangeQueue& changes, ReplicaCounters& counters)
       : chunks_(chunks), changes_(changes), counters_(counters), shown_(chunks, changes) {}
 
   /// Takes a snapshot, and applies the edits in the inbox that follow. Returns false if the
@@ -73,7 +73,7 @@ class ChunkUpdater {
   void vouch(TrackedChunk& chunk, TimeUs now_us);
   bool is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool was_vouched);
 
-  ChunkTable& chunks_;
+  ReplicaChunks& chunks_;
   ChangeQueue& changes_;
   ReplicaCounters& counters_;
   ShownRuns shown_;

@@ -2,7 +2,7 @@
 
 namespace runstone {
 
-std::vector<HeldChunk> Claims::take(const ChunkTable& chunks) {
+std::vector<HeldChunk> Claims::take(const ReplicaChunks& chunks) {
   std::vector<HeldChunk> claims;
   for (const auto& [key, chunk] : chunks) {
     if (waiting_.size() >= kClaimsMax) break;

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
@@ -20,7 +20,7 @@ class Claims {
   /// and were not claimed on this connection, while fewer than kClaimsMax claims wait for an
   /// answer. The digests are computed from the runs, so that a copy that has drifted is found.
   /// Cost: O(runs of the claimed chunks + chunks).
-  std::vector<HeldChunk> take(const ChunkTable& chunks);
+  std::vector<HeldChunk> take(const ReplicaChunks& chunks);
   /// The server answered for the chunk, with whatever message.
   void answer(const ChunkKey& key) { waiting_.erase(key); }
   /// The chunk left the view: it may be claimed again.

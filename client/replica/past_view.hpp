@@ -4,7 +4,7 @@
 #pragma once
 #include <optional>
 
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -28,7 +28,7 @@ class PastView {
   ///     differ.
   ///   - Otherwise every chunk is expected again.
   /// Cost: O(chunks).
-  void show(const std::optional<PastMoment>& moment, ChunkTable& chunks);
+  void show(const std::optional<PastMoment>& moment, ReplicaChunks& chunks);
   /// A new connection shows the live world.
   void reset() { moment_.reset(); }
 

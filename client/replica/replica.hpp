@@ -36,12 +36,12 @@
 
 #include "client/replica/cache_outbox.hpp"
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
 #include "client/replica/chunk_updater.hpp"
 #include "client/replica/claims.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/past_view.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/runs/chunk.hpp"
@@ -169,7 +169,7 @@ class Replica {
 
   std::optional<SessionParameters> parameters_;
   std::optional<View> view_;
-  ChunkTable chunks_;
+  ReplicaChunks chunks_;
   PastView past_;
   Claims claims_;
   CacheOutbox outbox_;

@@ -113,8 +113,8 @@ struct ReplicaCounters {
   std::uint64_t claimed = 0;         // chunks that this client claimed to hold
   std::uint64_t same_taken = 0;      // claimed chunks that the server has not modified
   std::uint64_t updates_taken = 0;   // claimed chunks that were completed by the edits they lacked
-  std::uint64_t dropped_by_epoch =
-      0;  // chunks newer than what a restarted server is known to have kept
+  /// Chunks newer than what a restarted server is known to have kept.
+  std::uint64_t dropped_by_epoch = 0;
 };
 
 }  // namespace runstone

@@ -6,14 +6,14 @@
 #include <span>
 
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 namespace runstone {
 
 class ShownRuns {
  public:
   /// Both must outlive this object.
-  ShownRuns(ChunkTable& chunks, ChangeQueue& changes) : chunks_(chunks), changes_(changes) {}
+  ShownRuns(ReplicaChunks& chunks, ChangeQueue& changes) : chunks_(chunks), changes_(changes) {}
   ShownRuns(const ShownRuns&) = delete;
   ShownRuns& operator=(const ShownRuns&) = delete;
 
@@ -28,7 +28,7 @@ class ShownRuns {
   void change_border(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
                      std::span<EditChange* const> cause);
 
-  ChunkTable& chunks_;
+  ReplicaChunks& chunks_;
   ChangeQueue& changes_;
   std::uint64_t last_serial_ = 0;
 };

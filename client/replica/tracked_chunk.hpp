@@ -2,7 +2,8 @@
 //   - the confirmed runs and the shown runs;
 //   - the pending edits: local edits that the confirmed runs do not contain yet;
 //   - the inbox: ordered edits that arrived before the edits or the snapshot that they follow.
-// The state and the confirmed chunk are changed by ChunkTable only, which counts them. One thread.
+// The state and the confirmed chunk are changed by ReplicaChunks only, which counts them. One
+// thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -102,7 +103,7 @@ class TrackedChunk {
   VoxelPos origin(const RunChunk& voxels) const;
 
  private:
-  friend class ChunkTable;
+  friend class ReplicaChunks;
   ChunkState state_ = ChunkState::expected;
   ChunkPtr confirmed_;
 };

@@ -1,98 +1,13 @@
 #include "client/replica/client_session.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/edits/clipboard/clipboard_builder.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/unit/client/replica/session_bench.hpp"
 
 using namespace runstone;
-using runstone::test::AuthorityModel;
+using namespace runstone::test::session_bench;
 using runstone::test::keys;
 
-namespace {
-
-constexpr std::int32_t kEdge = 16;
-constexpr TimeUs kClockLead = 5'000'000;  // server clock minus client clock
-
-SessionConfig config() {
-  SessionConfig out;
-  out.keys = keys(1);
-  out.name = "ada";
-  out.instance = 42;
-  out.view = {{0, 0, 0}, 1, 1};
-  return out;
-}
-
-/// The server, played by the test.
-struct Server {
-  KeyPair own = keys(9);
-  WorldId world_id{1, 2, 3};
-  Hello hello;
-  Welcome welcome;
-  ClientSequence resolved = 0;
-  AuthorityModel world{kEdge, 3};
-
-  Welcome make_welcome() {
-    welcome = {};
-    welcome.world_id = world_id;
-    welcome.epoch = world.epoch();
-    welcome.durable = welcome.head = world.head();
-    welcome.chunk_edge = kEdge;
-    welcome.materials = default_material_table();
-    welcome.server_key = own.public_key;
-    welcome.challenge = {7};
-    welcome.view_radius_max = 8;
-    welcome.edit_volume_max = 1000;
-    welcome.signature = sign(own, server_transcript(hello, welcome));
-    return welcome;
-  }
-};
-
-template <class T>
-std::vector<T> take(std::vector<Message>& messages) {
-  std::vector<T> out;
-  for (const Message& message : messages) {
-    if (const auto* wanted = std::get_if<T>(&message)) out.push_back(*wanted);
-  }
-  return out;
-}
-
-struct Fixture {
-  void receive(Message message) { session.receive(std::move(message), {now, now, now}); }
-  std::vector<Message> sent() { return session.take_outgoing(); }
-
-  void greet() {
-    session.connected({5}, now);
-    auto out = sent();
-    const auto hellos = take<Hello>(out);
-    REQUIRE(hellos.size() == 1);
-    server.hello = hellos[0];
-  }
-  std::vector<Message> open() {
-    greet();
-    receive(server.make_welcome());
-    auto out = sent();
-    const auto proofs = take<ClientAuth>(out);
-    REQUIRE(proofs.size() == 1);
-    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome),
-                 proofs[0].signature));
-    receive(SessionAccepted{6, server.resolved});
-    REQUIRE(session.is_open());
-    return sent();
-  }
-  void pong() { receive(Pong{now - 200, now - 100 + kClockLead}); }
-
-  Server server;
-  ClientSession session{config()};
-  TimeUs now = 1'000'000;
-};
-
-EditDescriptor set(VoxelPos at, Material material) { return {SetVoxel{at}, {}, material}; }
-
-}  // namespace
-
-TEST_CASE_METHOD(Fixture, "a session opens with the handshake and then sends its view",
+TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then sends its view",
                  "[replica]") {
   auto out = open();
   CHECK(server.hello.name == "ada");
@@ -103,7 +18,7 @@ TEST_CASE_METHOD(Fixture, "a session opens with the handshake and then sends its
   CHECK(views[0] == View{{0, 0, 0}, 1, 1});
   CHECK(take<Ping>(out).size() == 1);
   CHECK(session.author() == 6);
-  CHECK(session.pinned().at(server.world_id) == server.own.public_key);
+  CHECK(session.pinned().at(server.world_id) == server.keys_of_server.public_key);
   CHECK_FALSE(session.loaded());
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
@@ -116,7 +31,7 @@ TEST_CASE_METHOD(Fixture, "a session opens with the handshake and then sends its
   CHECK(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk arrived or is unavailable",
+TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is unavailable",
                  "[replica]") {
   static_cast<void>(open());
   const ChunkKey damaged{0, {0, -1, 1}};
@@ -137,14 +52,14 @@ TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk arrived or is unavai
   CHECK_FALSE(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(SessionBench,
                  "a session refuses edits beyond the heights and the volume in the welcome",
                  "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.heights = {-4, 4};
   welcome.edit_volume_max = 27;
-  welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+  welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
   receive(welcome);
   receive(SessionAccepted{6, 0});
   REQUIRE(session.is_open());
@@ -154,7 +69,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK_FALSE(session.submit({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture, "a welcome with a feature that hello did not offer is rejected",
+TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offer is rejected",
                  "[replica]") {
   SessionConfig offering = config();
   offering.features = 0b110;
@@ -164,7 +79,7 @@ TEST_CASE_METHOD(Fixture, "a welcome with a feature that hello did not offer is 
     CHECK(server.hello.features == 0b110);
     Welcome welcome = server.make_welcome();
     welcome.features = features;
-    welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+    welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
     receive(welcome);
     return !session.wants_close();
   };
@@ -174,7 +89,7 @@ TEST_CASE_METHOD(Fixture, "a welcome with a feature that hello did not offer is 
   CHECK(session.end()->reason == GoodbyeReason::malformed_message);
 }
 
-TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server that cannot prove its key is refused", "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.epoch += 1;  // not what was signed
@@ -189,7 +104,7 @@ TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[rep
   CHECK(take<Goodbye>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server key other than the pinned one is refused", "[replica]") {
   SessionConfig pinned = config();
   pinned.pinned[server.world_id] = keys(8).public_key;
   session = ClientSession(pinned);
@@ -200,7 +115,7 @@ TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "
   CHECK(session.end()->final);
 }
 
-TEST_CASE_METHOD(Fixture, "messages in the wrong state end the session", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[replica]") {
   const auto refused = [&](Message message) {
     session = ClientSession(config());
     greet();
@@ -216,7 +131,7 @@ TEST_CASE_METHOD(Fixture, "messages in the wrong state end the session", "[repli
   CHECK(session.wants_close());
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(SessionBench,
                  "edits wait for the clock offset and carry the server's time of the click",
                  "[replica]") {
   static_cast<void>(open());
@@ -238,7 +153,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(take<EditRequest>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(SessionBench,
                  "without a pong edits are sent after kOffsetWaitUsMax, with an unknown time",
                  "[replica]") {
   static_cast<void>(open());
@@ -251,7 +166,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(edits[0].submitted_us == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is shown", "[replica]") {
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
   CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
@@ -274,7 +189,7 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
   CHECK(session.submit(paste(known), now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(SessionBench,
                  "after a reconnection pending edits are sent again in order, before newer ones",
                  "[replica]") {
   static_cast<void>(open());
@@ -295,7 +210,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(session.connect_count() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[replica]") {
   static_cast<void>(open());
   pong();
   CHECK(session.clock().known());
@@ -308,7 +223,7 @@ TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
   CHECK_FALSE(session.clock().known());
 }
 
-TEST_CASE_METHOD(Fixture, "another world at the same address starts with an empty replica",
+TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an empty replica",
                  "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
@@ -321,7 +236,7 @@ TEST_CASE_METHOD(Fixture, "another world at the same address starts with an empt
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a chunk with a gap is requested with the next tick", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next tick", "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
   static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
@@ -333,7 +248,7 @@ TEST_CASE_METHOD(Fixture, "a chunk with a gap is requested with the next tick", 
   CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
 }
 
-TEST_CASE_METHOD(Fixture, "an edit without an answer is sent again once per kAnswerUsMax",
+TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per kAnswerUsMax",
                  "[replica]") {
   static_cast<void>(open());
   pong();
@@ -353,7 +268,8 @@ TEST_CASE_METHOD(Fixture, "an edit without an answer is sent again once per kAns
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "the requested view is limited by the server and sent when it changes",
+TEST_CASE_METHOD(SessionBench,
+                 "the requested view is limited by the server and sent when it changes",
                  "[replica]") {
   static_cast<void>(open());
   session.set_view({{1, 0, 0}, 60, 60});
@@ -366,7 +282,8 @@ TEST_CASE_METHOD(Fixture, "the requested view is limited by the server and sent 
   CHECK(take<View>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "poses are sent when they change, at most twenty a second", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty a second",
+                 "[replica]") {
   static_cast<void>(open());
   Pose pose;
   pose.at = {1, 2, 3};
@@ -389,7 +306,8 @@ TEST_CASE_METHOD(Fixture, "poses are sent when they change, at most twenty a sec
   CHECK(take<Move>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "other players come from the player list and their poses", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "other players come from the player list and their poses",
+                 "[replica]") {
   static_cast<void>(open());
   receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
   REQUIRE(session.others().size() == 1);
@@ -413,7 +331,8 @@ TEST_CASE_METHOD(Fixture, "other players come from the player list and their pos
   CHECK(session.others().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a silent server and a goodbye end the connection; silence is not final",
+TEST_CASE_METHOD(SessionBench,
+                 "a silent server and a goodbye end the connection; silence is not final",
                  "[replica]") {
   static_cast<void>(open());
   session.tick(now + kServerSilenceUsMax + 1);
@@ -427,182 +346,4 @@ TEST_CASE_METHOD(Fixture, "a silent server and a goodbye end the connection; sil
   CHECK(session.end()->by_server);
   CHECK(session.end()->text == "restarting");
   CHECK_FALSE(session.end()->final);
-}
-
-namespace {
-
-/// All chunks of the fixture's view.
-std::vector<ChunkKey> view_keys(const ClientSession& session) {
-  std::vector<ChunkKey> keys;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (session.view().contains({x, y, z})) keys.push_back({0, {x, y, z}});
-      }
-    }
-  }
-  return keys;
-}
-
-}  // namespace
-
-TEST_CASE_METHOD(
-    Fixture,
-    "chunks held over a reconnection are claimed before the view, and loaded if not modified",
-    "[replica]") {
-  static_cast<void>(open());
-  for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
-  REQUIRE(session.loaded());
-  session.disconnected();
-  auto out = open();
-  REQUIRE(out.size() >= 2);
-  REQUIRE(std::holds_alternative<CachedChunks>(out[0]));
-  CHECK(std::holds_alternative<View>(out[1]));
-  const auto& held = std::get<CachedChunks>(out[0]).chunks;
-  REQUIRE(held.size() == 15);
-  CHECK(held[0].digest == claim_digest(server.world.chunk(held[0].key.at).digest));
-  CHECK_FALSE(session.loaded());
-  ChunksNotModified same;
-  for (const HeldChunk& chunk : held) same.chunks.push_back({chunk.key, chunk.version.seq});
-  receive(same);
-  CHECK(session.loaded());
-  // Nothing is claimed twice.
-  session.set_view({{0, 0, 0}, 2, 1});
-  auto more = sent();
-  CHECK(take<CachedChunks>(more).empty());
-}
-
-TEST_CASE_METHOD(Fixture, "chunks that a restarted server may have lost are not claimed",
-                 "[replica]") {
-  static_cast<void>(open());
-  for (const ChunkKey& key : view_keys(session)) receive(server.world.snapshot(key.at));
-  receive(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));  // never durable
-  session.disconnected();
-  server.world.restart({});
-  auto out = open();
-  const auto held = take<CachedChunks>(out);
-  REQUIRE(held.size() == 1);
-  CHECK(held[0].chunks.size() == 14);
-}
-
-TEST_CASE_METHOD(Fixture, "the view waits for the cache, but not for long", "[replica]") {
-  SessionConfig caching = config();
-  caching.has_cache = true;
-  session = ClientSession(caching);
-  auto out = open();
-  CHECK(take<View>(out).empty());
-  auto question = session.take_cache_lookup();
-  REQUIRE(question.has_value());
-  CHECK(question->keys == view_keys(session));
-  CHECK(question->world.id == server.world_id);
-  CHECK_FALSE(session.take_cache_lookup().has_value());
-  const ChunkKey key{0, {0, -1, 0}};
-  SECTION("its answer is shown and claimed, and the view follows") {
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
-    CHECK(session.replica().shown(key) != nullptr);
-    out = sent();
-    REQUIRE(take<CachedChunks>(out).size() == 1);
-    CHECK(take<CachedChunks>(out)[0].chunks.size() == 1);
-    CHECK(take<View>(out).size() == 1);
-    // The cache has it already: only other chunks are handed over.
-    for (const ChunkKey& other : view_keys(session)) receive(server.world.snapshot(other.at));
-    CHECK(session.replica().take_for_cache(100).size() == 14);
-    CHECK(session.replica().take_for_cache(100).empty());
-    receive(server.world.commit({9, 1, 1}, set({1, -2, 1}, 2)));
-    const auto unkept = session.replica().take_for_cache(100);
-    REQUIRE(unkept.size() == 1);
-    CHECK(unkept[0].first == key);
-    // A chunk that leaves the view is handed over.
-    receive(server.world.commit({9, 1, 2}, set({1, -2, 1}, 3)));
-    session.set_view({{50, 0, 0}, 0, 0});
-    const auto left = session.replica().take_for_cache(100);
-    REQUIRE(left.size() == 1);
-    CHECK(left[0].second->version.seq == 2);
-  }
-  SECTION(
-      "without an answer the view goes out after a while, and a late answer counts all the same") {
-    now += kCacheWaitUsMax;
-    receive(Pong{0, 0});
-    session.tick(now);
-    out = sent();
-    CHECK(take<View>(out).size() == 1);
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
-    out = sent();
-    CHECK(take<CachedChunks>(out).size() == 1);
-  }
-  SECTION("an answer to an earlier connection is not taken for one of this") {
-    session.disconnected();
-    server.world_id = {9};
-    out = open();
-    REQUIRE(session.take_cache_lookup().has_value());
-    session.receive_cached({{key, std::make_shared<const Chunk>(server.world.chunk(key.at))}}, now);
-    CHECK(session.replica().shown(key) == nullptr);
-    out = sent();
-    CHECK(take<View>(out).empty());
-    session.receive_cached({}, now);
-    out = sent();
-    CHECK(take<View>(out).size() == 1);
-  }
-}
-
-TEST_CASE_METHOD(Fixture, "missing edits complete a cached chunk from any sequence", "[replica]") {
-  static_cast<void>(open());
-  const ChunkKey key{0, {0, 0, 0}};
-  receive(server.world.snapshot(key.at));
-  session.disconnected();
-  ChunkEdits update{key, 0, {}, {}, {}};
-  std::vector<Commit> commits;
-  for (Sequence seq = 1; seq <= 3; ++seq) {
-    const auto edit = set({static_cast<int>(seq), 1, 1}, static_cast<Material>(seq));
-    commits.push_back(server.world.commit({9, 1, seq}, edit));
-    update.edits.push_back({seq, edit});
-  }
-  update.to = server.world.chunk(key.at).version;
-  update.digest = server.world.chunk(key.at).digest;
-  static_cast<void>(open());
-  const auto is_newest = [&] {
-    const ChunkPtr held = session.replica().confirmed(key);
-    return held->version == update.to && digest_of(held->voxels) == update.digest;
-  };
-  SECTION("from the version claimed") {
-    receive(update);
-    CHECK(is_newest());
-    CHECK(session.replica().counters().updates_taken == 1);
-  }
-  SECTION("a commit that overtook them has led part of the way") {
-    receive(commits[0]);
-    receive(update);
-    CHECK(is_newest());
-  }
-  SECTION("commits that follow came before them") {
-    const Commit next = server.world.commit({9, 1, 4}, set({9, 9, 9}, 4));
-    receive(next);
-    receive(update);
-    CHECK(session.replica().confirmed(key)->version.seq == 4);
-    CHECK(session.replica().confirmed(key)->digest == server.world.chunk(key.at).digest);
-  }
-  SECTION(
-      "edits that start elsewhere, or end in another digest, are not taken: the chunk is asked "
-      "for") {
-    const bool starts_elsewhere = GENERATE(true, false);
-    if (starts_elsewhere) {
-      update.from = 1;
-      update.edits.erase(update.edits.begin());
-    } else {
-      update.digest.lane[0] ^= 1;
-    }
-    receive(update);
-    CHECK(session.replica().confirmed(key)->version.seq == 0);
-    session.tick(now);
-    auto out = sent();
-    CHECK(take<ChunkRequest>(out).size() == 1);
-    receive(server.world.snapshot(key.at));
-    CHECK(session.replica().confirmed(key)->version == server.world.chunk(key.at).version);
-  }
-  SECTION("the same, of a newer version than is held, is not believed") {
-    receive(ChunksNotModified{{{key, 2}}});
-    session.tick(now);
-    auto out = sent();
-    CHECK(take<ChunkRequest>(out).size() == 1);
-  }
 }

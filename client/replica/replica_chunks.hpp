@@ -1,6 +1,6 @@
-// ChunkTable: the chunks that a replica tracks, by key. It performs the transitions of their states
-// (chunk_state.hpp) and counts chunks by state, so that no count walks the view. One thread. Cost:
-// O(log chunks) unless stated.
+// ReplicaChunks: the chunks that a replica tracks, by key. It performs the transitions of their
+// states (chunk_state.hpp) and counts chunks by state, so that no count walks the view. One thread.
+// Cost: O(log chunks) unless stated.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace runstone {
 
-class ChunkTable {
+class ReplicaChunks {
  public:
   using Map = std::map<ChunkKey, TrackedChunk>;
 
