@@ -12,12 +12,13 @@
 namespace runstone {
 namespace {
 
-constexpr double kEyeAbove = 12;  // voxels above the spawn's height: sees ground and roofs
+constexpr double kEyeAbove =
+    12;  // voxels above the height of the spawn: ground and roofs are in view
 constexpr double kWalkSpeed = 4;  // voxels a second
 constexpr double kRunSpeed = 64;  // two chunks of edge 32 a second
 constexpr std::int32_t kPlotsAlong = kSiteSide / kPlotSide;
-constexpr std::int32_t kBuriedMax =
-    24;  // voxels from a plot's highest ground to its lowest that are filled
+/// Depth in voxels, below the highest ground of a plot, down to which a foundation is filled.
+constexpr std::int32_t kBuriedMax = 24;
 
 std::int32_t down(double v) { return static_cast<std::int32_t>(std::floor(v)); }
 
@@ -59,8 +60,8 @@ class RunAway final : public Behaviour {
     angle_ = random.between(0, 359) * std::numbers::pi / 180;
   }
   WorldPos position(double seconds) const override {
-    const double way = seconds * kRunSpeed;
-    return {from_.x + way * std::cos(angle_), from_.y, from_.z + way * std::sin(angle_)};
+    const double distance = seconds * kRunSpeed;
+    return {from_.x + distance * std::cos(angle_), from_.y, from_.z + distance * std::sin(angle_)};
   }
   std::optional<EditDescriptor> next_edit(const Ground& /*ground*/) override {
     return std::nullopt;
@@ -90,7 +91,7 @@ class Build final : public Behaviour {
   }
 
  private:
-  // Makes the plot even, with a foundation below, and plans the house. A plot that is built on is begun anew.
+  // Clears the plot, fills a foundation below it the first time, and plans the house.
   bool begin_plot(const Ground& ground) {
     const VoxelPos plot = {corner_.x + plot_ % kPlotsAlong * kPlotSide, 0,
                            corner_.z + plot_ / kPlotsAlong % kPlotsAlong * kPlotSide};
@@ -126,10 +127,10 @@ class Build final : public Behaviour {
   VoxelPos corner_;
   const MaterialTable& materials_;
   SplitMix64 random_;
-  std::int32_t plot_ = 0;  // goes round the site again and again
+  std::int32_t plot_ = 0;  // rises without end; plots are reused in order
   std::array<std::optional<std::int32_t>, static_cast<std::size_t>(kPlotsAlong) * kPlotsAlong>
       levels_;
-  std::vector<EditDescriptor> ground_;  // last one first
+  std::vector<EditDescriptor> ground_;  // the next edit is the last element
   std::vector<Placement> plan_;
   std::size_t next_ = 0;
 };
@@ -170,13 +171,13 @@ class Grief final : public Behaviour {
  public:
   Grief(const BotPlace& place, const MaterialTable& materials, std::uint64_t seed)
       : place_(place), materials_(materials), random_(seed) {
-    visit_next();
+    move_to_next_site();
   }
 
   WorldPos position(double /*seconds*/) const override { return above_middle(corner_); }
 
   std::optional<EditDescriptor> next_edit(const Ground& ground) override {
-    if (left_ == 0) visit_next();
+    if (left_ == 0) move_to_next_site();
     const std::int32_t x = corner_.x + random_.between(0, kSiteSide - 1);
     const std::int32_t z = corner_.z + random_.between(0, kSiteSide - 1);
     const auto y = ground.surface(x, z);
@@ -187,11 +188,11 @@ class Grief final : public Behaviour {
       case 0:  // a crater
         return EditDescriptor{
             FillSphere{at, static_cast<std::uint16_t>(random_.between(2, 6))}, {}, kEmpty};
-      case 1: {  // a pillar through whatever stands there
+      case 1: {  // a pillar through what is built there
         const VoxelBox box = {{x - 1, *y - 2, z - 1}, {x + 1, *y + 12, z + 1}};
         return EditDescriptor{FillBox{box}, {}, paint()};
       }
-      default: {  // a smear across the roofs
+      default: {  // a stroke across the roofs
         const VoxelPos end = {x + random_.between(1, 16), *y + random_.between(0, 3),
                               z + random_.between(1, 16)};
         return EditDescriptor{FillStroke{{at, end}, 1}, {}, paint()};
@@ -200,8 +201,8 @@ class Grief final : public Behaviour {
   }
 
  private:
-  // A few edits here, a few there: the bot goes from site to site, and its view with it.
-  void visit_next() {
+  // Moves to a random site for some edits. The view moves, too.
+  void move_to_next_site() {
     BotPlace victim = place_;
     victim.index = random_.below(static_cast<std::uint32_t>(place_.count));
     corner_ = site_corner(victim);

@@ -7,10 +7,10 @@
 namespace runstone {
 namespace {
 
-/// Edits handed in by one step at most: a crowd that was held up catches up little by little.
+/// Bound of the edits of one step. A fleet that was delayed catches up in several steps.
 constexpr int kStepEditsMax = 64;
-constexpr TimeUs kJoinStepUs = 5'000;   // how closely the end of a join is watched
-constexpr TimeUs kMoveStepUs = 50'000;  // between two places of who walks
+constexpr TimeUs kJoinStepUs = 5'000;   // resolution of the join time
+constexpr TimeUs kMoveStepUs = 50'000;  // between two positions of a walking bot
 constexpr TimeUs kAwayStepUs = 20'000;  // while there is no open session
 
 }  // namespace
@@ -32,12 +32,12 @@ void BotCounts::merge(const BotCounts& other) {
 Bot::Bot(BotConfig config)
     : config_(std::move(config)), schedule_(config_.rate, config_.phase, config_.edits_max) {}
 
-// The behaviour is made when the world is known, and lives through reconnections.
+// Makes the behaviour once the world is known. It is kept when the bot connects again.
 bool Bot::enter() {
   const Welcome* open = world();
   if (open == nullptr) return false;
   if (behaviour_) return true;
-  if (open->materials.size() < 2) return false;  // nothing to build with
+  if (open->materials.size() < 2) return false;  // no material to build with
   behaviour_ = make_behaviour(config_.role, {open->spawn, config_.site, config_.sites},
                               open->materials, config_.seed);
   return true;
@@ -49,11 +49,11 @@ void Bot::follow(TimeUs now_us) {
   const WorldPos at = behaviour_->position(seconds);
   set_pose({at, 0, 0});
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
-  View wished = config_.session.view;
-  wished.centre = chunk_of({down(at.x), down(at.y), down(at.z)}, world()->chunk_edge);
-  if (wished_ == wished) return;
-  wished_ = wished;
-  set_view(wished);
+  View requested = config_.session.view;
+  requested.centre = chunk_of({down(at.x), down(at.y), down(at.z)}, world()->chunk_edge);
+  if (requested_view_ == requested) return;
+  requested_view_ = requested;
+  set_view(requested);
 }
 
 void Bot::step(TimeUs now_us) {
@@ -69,7 +69,7 @@ void Bot::step(TimeUs now_us) {
   for (int i = 0; i < kStepEditsMax; ++i) {
     const auto due_us = schedule_.due_us();
     if (!due_us || *due_us > now_us) return;
-    // A storm goes when it has seen what it came for, and comes back at once.
+    // A join storm disconnects when its view is loaded, and connects again at once.
     if (config_.role == BotRole::join_storm && joining_us_) return;
     schedule_.pass();
     ++counts_.due;

@@ -1,6 +1,7 @@
-// DueTimes: when the edits of all bots of this process were due, on its one steady clock. A bot that receives an edit of another
-// one looks here, so no clock is estimated. Bound: of each client instance the newest kLocalEditsMax edits, as many as may be
-// without an answer. One thread.
+// DueTimes: when the edits of all bots of this process were due, on its steady clock. A bot that
+// receives an edit of another bot looks the due time up here, so that no clock offset is estimated.
+// Bound: the newest kLocalEditsMax edits per client instance, as many as may be without an answer.
+// One thread.
 #pragma once
 #include <deque>
 #include <optional>
@@ -13,7 +14,7 @@ namespace runstone {
 
 class DueTimes {
  public:
-  /// Sequences of an instance ascend.
+  /// Adds a due time. Requires ascending sequences per instance.
   void add(ClientInstance instance, ClientSequence seq, TimeUs due_us) {
     Row& row = rows_[instance];
     if (row.due_us.empty() || seq != row.first + row.due_us.size()) {
@@ -26,7 +27,7 @@ class DueTimes {
       ++row.first;
     }
   }
-  /// Nothing for an edit that none of the bots here made.
+  /// Returns nullopt for an edit that no bot of this process made.
   std::optional<TimeUs> find(ClientInstance instance, ClientSequence seq) const {
     const auto found = rows_.find(instance);
     if (found == rows_.end()) return std::nullopt;
@@ -40,7 +41,7 @@ class DueTimes {
     ClientSequence first = 0;
     std::deque<TimeUs> due_us;
   };
-  std::unordered_map<ClientInstance, Row> rows_;  // only looked up
+  std::unordered_map<ClientInstance, Row> rows_;  // never iterated
 };
 
 }  // namespace runstone

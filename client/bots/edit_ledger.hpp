@@ -1,4 +1,5 @@
-// EditLedger: what a bot has set voxel by voxel, so that it can say at the end what of it still stands.
+// EditLedger: the voxels that a bot has set one by one, so that it can report at the end which are
+// intact.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -12,17 +13,17 @@ namespace runstone {
 
 class EditLedger {
  public:
-  /// An own edit was handed in: a single voxel without a mask is kept; what any other one may have written over
-  /// is forgotten.
+  /// Takes a submitted local edit. Keeps a single voxel without a mask. Forgets the voxels that any
+  /// other edit may have changed.
   void add(const EditDescriptor& edit);
-  /// It was refused: what stands there now is nobody's word.
+  /// Takes a rejected edit: forgets its voxels, because what they hold now is unknown.
   void forget(const EditDescriptor& edit);
 
   struct Standing {
     std::uint64_t held = 0;     // voxels kept
-    std::uint64_t intact = 0;   // hold what the bot set last
-    std::uint64_t changed = 0;  // hold something else
-    std::uint64_t unseen = 0;   // in chunks that are not here
+    std::uint64_t intact = 0;   // they hold what the bot set last
+    std::uint64_t changed = 0;  // they hold something else
+    std::uint64_t unseen = 0;   // in chunks that are not loaded
   };
   Standing compare(const Replica& replica) const;
 

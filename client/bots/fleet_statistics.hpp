@@ -1,5 +1,5 @@
-// FleetStatistics: what all bots of one process share: when their edits were due, what the ground was like, and how soon each edit
-// was seen by each bot that got it. One thread.
+// FleetStatistics: what all bots of one process share: when their edits were due, how the ground
+// was, and how soon each bot received each edit. One thread.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -13,16 +13,17 @@
 
 namespace runstone {
 
-inline constexpr std::size_t kWorstSecondsMax = 3'600;  // of which the slowest edit is kept
+/// Seconds of which the slowest edit is kept.
+inline constexpr std::size_t kWorstSecondsMax = 3'600;
 
 class FleetStatistics {
  public:
   DueTimes due;
   SharedGround ground;
 
-  /// Seconds are counted from here.
+  /// Starts the count of seconds.
   void begin(TimeUs now_us) { began_us_ = now_us; }
-  /// A bot has received and verified an edit that was due then.
+  /// A bot received and verified an edit that was due at `due_us`.
   void see(TimeUs due_us, TimeUs seen_us) {
     seen_us_.add(seen_us - due_us);
     if (due_us < began_us_) return;
@@ -31,12 +32,12 @@ class FleetStatistics {
     if (worst_us_.size() <= second) worst_us_.resize(second + 1);
     worst_us_[second] = std::max(worst_us_[second], seen_us - due_us);
   }
-  /// A bot has received an edit that none of this process made, or that is too old to be known.
+  /// A bot received an edit that no bot of this process made, or that is too old for DueTimes.
   void see_unknown() { ++unattributed_; }
 
-  /// Due to received and verified, each edit at each bot that got its commit.
+  /// Returns the times from due to verified, one per edit and bot that received it.
   const Histogram& seen_us() const { return seen_us_; }
-  /// The slowest of the edits that were due in each second.
+  /// Returns, by second, the time of the slowest edit that was due in it.
   const std::vector<TimeUs>& worst_us() const { return worst_us_; }
   std::uint64_t unattributed() const { return unattributed_; }
 

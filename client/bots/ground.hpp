@@ -1,4 +1,4 @@
-// Ground: how high the world is, for behaviours that build upon it.
+// Ground: the height of the world, for behaviours that build on it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,11 +10,11 @@ namespace runstone {
 class Ground {
  public:
   virtual ~Ground() = default;
-  /// y of the highest voxel of the column that is not empty; nothing if that is not known.
+  /// Returns y of the highest voxel of the column that is not empty, or nullopt if it is unknown.
   virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
 };
 
-/// As a replica shows it now.
+/// The ground that a replica shows now.
 class ReplicaGround final : public Ground {
  public:
   explicit ReplicaGround(const Replica& replica) : replica_(replica) {}

@@ -1,4 +1,5 @@
-// HeadlessBot: a bot without voxels, of which one thread carries a thousand: it verifies all that comes, and measures.
+// HeadlessBot: a bot without voxels. It verifies all messages and measures. One thread can step a
+// thousand of them.
 #pragma once
 #include "client/bots/bot.hpp"
 #include "client/bots/headless_session.hpp"
@@ -7,7 +8,7 @@ namespace runstone {
 
 class HeadlessBot final : public Bot {
  public:
-  /// `crowd` must outlive the bot; `clock` as in HeadlessSession.
+  /// `fleet` must outlive the bot. `clock`: see HeadlessSession.
   HeadlessBot(BotConfig config, FleetStatistics& fleet, TimeUs (*clock)());
 
   HeadlessSession& session() { return session_; }

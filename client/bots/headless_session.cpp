@@ -23,7 +23,7 @@ Result<bool> HeadlessSession::receive_bytes(FrameClass frame_class, ByteView bod
   walked_local_due_us_.clear();
   const auto walked = walk_.read(body, chunk_edge, on_walked_);
   if (!walked || !*walked) return walked;
-  connection_.heard(received_us);
+  connection_.note_message(received_us);
   ++counts_.commits;
   const TimeUs verified_us = clock_now_();
   for (const TimeUs due_us : walked_due_us_) fleet_.see(due_us, verified_us);
@@ -40,7 +40,7 @@ void HeadlessSession::receive(Message message, const Arrival& arrival) {
       local_edits_.clear();
       durable_ = 0;
       return;
-    case ServerConnection::Dispatch::ready:
+    case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
     case ServerConnection::Dispatch::for_session:
       break;
@@ -173,7 +173,8 @@ void HeadlessSession::on_reject(const Reject& reject) {
     if (rejection->is_resolved) local_edits_.retire(durable_);
     return;
   }
-  // The commit of an edit that was offered again may arrive before the reject that says it is resolved already.
+  // The commit of an edit that was offered again may arrive before the reject that says it is
+  // resolved already.
   if (reject.reason == RejectReason::already_resolved) return;
   versions_.violations().add(
       "answer twice", "local edit " + std::to_string(reject.client_seq) +

@@ -1,11 +1,13 @@
-// HeadlessSession: a client's side of the protocol without a world. It edits and reconnects as ClientSession does, with the
-// same ServerConnection and LocalEdits, but keeps only the version of each chunk (VersionTracker). It decodes and verifies
-// every message. It counts as a violation what no decoder can see:
+// HeadlessSession: a client's side of the protocol without a world. It edits and reconnects as
+// ClientSession does, with the same ServerConnection and LocalEdits, but keeps only the version of
+// each chunk (VersionTracker). It decodes and verifies every message. It counts as a violation what
+// no decoder can see:
 //   - a commit of another epoch, or a sequence that comes twice;
 //   - a version that does not continue that of its chunk (VersionTracker);
 //   - an answer to a local edit that waits for none, or a durable watermark that decreases.
-// For each edit of a commit it records how long after the edit's due time the commit was received and verified. Pure: time
-// and randomness are arguments, in microseconds of the process' steady clock. One thread.
+// For each edit of a commit it records how long after the edit's due time the commit was received
+// and verified. Pure: time and randomness are arguments, in microseconds of the process' steady
+// clock. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -25,8 +27,8 @@ namespace runstone {
 /// Counts since the session was made. Those of its local edits are in local_edits().counters().
 struct HeadlessCounts {
   std::uint64_t commits = 0, edits = 0;  // verified
-  Histogram
-      confirm_us;  // local edits: from the due time until the commit was received and verified
+  /// Local edits: from the due time until the commit was received and verified.
+  Histogram confirm_us;
 };
 
 class HeadlessSession {
@@ -54,8 +56,9 @@ class HeadlessSession {
   /// Returns true if every chunk of the view arrived or is unavailable, and none lacks edits.
   bool loaded() const;
 
-  /// Reads a frame without decoding it into a message, see LinkEvents::on_bytes(). Returns true if it was a commit of an
-  /// open connection and was read. Returns false, and reads nothing, for other frames. Fails if the commit is malformed.
+  /// Reads a frame without decoding it into a message, see LinkEvents::on_bytes(). Returns true if
+  /// it was a commit of an open connection and was read. Returns false, and reads nothing, for
+  /// other frames. Fails if the commit is malformed.
   Result<bool> receive_bytes(FrameClass frame_class, ByteView body, std::uint16_t chunk_edge,
                              TimeUs received_us);
   /// Returns when tick() has something to do next.

@@ -62,7 +62,7 @@ std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materia
     for (std::int32_t x = width - 2; x >= 0; --x) wall(x, depth - 1, x, width);
     for (std::int32_t z = depth - 2; z >= 1; --z) wall(0, z, z, depth);
   }
-  // Each step of the roof is a frame one voxel further in; the eaves reach out by one.
+  // Each step of the roof is a frame, one voxel further inside. The eaves are one voxel outside.
   for (std::int32_t step = -1; 2 * step < width && 2 * step < depth; ++step) {
     const std::int32_t y = walls + 2 + step;
     if (y >= kHouseHeight) break;

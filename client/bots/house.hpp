@@ -1,5 +1,6 @@
-// House: what builders build: a small house, voxel after voxel in the order in which a person would set them:
-// floor, walls with a door and windows from the ground up, then a stepped roof.
+// House: what builders build: a small house, voxel by voxel in the order in which a person would
+// set them. First the floor, then the walls with a door and windows from the ground up, then a
+// stepped roof.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -17,8 +18,8 @@ inline constexpr std::int32_t kHouseHeight = 10;  // voxels above its floor at m
 struct HouseMaterials {
   Material floor = 1, wall = 1, window = 1, roof = 1, foundation = 1;
 };
-/// Drawn from the builders' palette of the table; of a table without it, from all its materials. Requires one
-/// that is not empty.
+/// Draws materials from the builders' palette of the table, or from all its materials if it has no
+/// such palette. Requires a table with a material that is not empty.
 HouseMaterials draw_house_materials(const MaterialTable& table, SplitMix64& random);
 
 struct Placement {
@@ -27,8 +28,8 @@ struct Placement {
   friend bool operator==(const Placement&, const Placement&) = default;
 };
 
-/// `corner`: of the plot's smallest x and z, at the height of the floor. No voxel twice; all within the plot and
-/// below corner.y + kHouseHeight.
+/// Plans a house. `corner`: the corner of smallest x and z of the plot, at the height of the floor.
+/// Returns no voxel twice, and only voxels within the plot and below corner.y + kHouseHeight.
 std::vector<Placement> plan_house(VoxelPos corner, const HouseMaterials& materials,
                                   SplitMix64& random);
 

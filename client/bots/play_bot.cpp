@@ -8,10 +8,10 @@
 namespace runstone {
 namespace {
 
-/// Bytes of requests without an answer, at most: a link that holds much more is cut.
+/// Bound of the bytes of requests without an answer. A link with a much longer queue is closed.
 constexpr std::size_t kOpenBytesMax = 2 * 1024 * 1024;
-constexpr std::int32_t kAloftHeight =
-    kWorldLimit / 2;  // voxels: in every world, and far from what is built
+/// Voxels. In every world, and far from what is built.
+constexpr std::int32_t kAloftHeight = kWorldLimit / 2;
 
 std::vector<TimeUs> offsets_of(const RecordedAuthor& recorded) {
   std::vector<TimeUs> offsets;
@@ -31,7 +31,7 @@ std::size_t bytes_bound(const EditDescriptor& edit) {
          (paste == nullptr ? descriptor_bytes_max(kind_of(edit)) : paste->clipboard->byte_size());
 }
 
-bool is_pushed_back(RejectReason reason) {
+bool is_temporary(RejectReason reason) {
   return reason == RejectReason::rate_limited || reason == RejectReason::busy;
 }
 
@@ -47,7 +47,7 @@ bool PlayBot::waits() const {
          !session_.replica().local_edits().all().empty();
 }
 
-void PlayBot::look_away() {
+void PlayBot::view_empty_chunk() {
   const Welcome& world = *session_.welcome();
   const auto down = [](double v) { return static_cast<std::int32_t>(std::floor(v)); };
   const View view{
@@ -61,24 +61,24 @@ void PlayBot::step(TimeUs now_us) {
   drain_changes(now_us);
   counts_.due = schedule_.due(now_us);
   if (!session_.is_open()) return;
-  look_away();
-  hand_in(now_us);
+  view_empty_chunk();
+  submit_due(now_us);
 }
 
-void PlayBot::hand_in(TimeUs now_us) {
+void PlayBot::submit_due(TimeUs now_us) {
   while (open_bytes_ < kOpenBytesMax &&
          session_.replica().local_edits().all().size() < kLocalEditsMax) {
-    const auto turn = schedule_.next(now_us);
-    if (!turn) return;
-    const EditDescriptor& edit = recorded_.edits[turn->index].edit;
-    const auto sequence = session_.submit(edit, turn->due_us, now_us);
+    const auto due = schedule_.next(now_us);
+    if (!due) return;
+    const EditDescriptor& edit = recorded_.edits[due->index].edit;
+    const auto sequence = session_.submit(edit, due->due_us, now_us);
     if (!sequence) {
       ++counts_.refused[sequence.error().what];
       schedule_.dropped();
       continue;
     }
     ++counts_.submitted;
-    const Open open{*turn, bytes_bound(edit)};
+    const Open open{*due, bytes_bound(edit)};
     open_bytes_ += open.bytes;
     open_.emplace(*sequence, open);
   }
@@ -97,17 +97,18 @@ void PlayBot::drain_changes(TimeUs now_us) {
   for (const EditChange& edit : changes.edits) {
     if (edit.predicted || !edit.is_local) continue;
     const auto open = close(edit.op.seq);
-    if (!open) continue;  // ordered again by a server that had lost it
-    counts_.confirm_us.add(edit.applied_us - open->turn.due_us);
+    // Not open: a server that had lost the edit ordered it again.
+    if (!open) continue;
+    counts_.confirm_us.add(edit.applied_us - open->due.due_us);
     ++counts_.confirmed;
     schedule_.accepted();
   }
   for (const RejectedEdit& reject : changes.rejects) {
     const auto open = close(reject.seq);
     if (!open) continue;
-    if (is_pushed_back(reject.reason)) {
-      ++counts_.again;
-      schedule_.pushed_back(open->turn, now_us);
+    if (is_temporary(reject.reason)) {
+      ++counts_.retried;
+      schedule_.retry(open->due, now_us);
     } else {
       ++counts_.rejected[to_string(reject.reason)];
       schedule_.dropped();

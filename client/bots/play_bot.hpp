@@ -1,6 +1,6 @@
-// PlayBot: a session that makes one author's recorded edits again. It looks at one chunk far above the spawn, where
-// nobody builds: it needs the answers, not the world. Pure, as the session: messages and times come in as arguments
-// (microseconds of the client's steady clock). One thread.
+// PlayBot: a session that makes the recorded edits of one author again. Its view is one chunk far
+// above the spawn, where nobody builds, because it needs the answers and not the world. Pure:
+// messages and times are arguments, in microseconds of the client's steady clock. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,16 +15,14 @@
 namespace runstone {
 
 struct PlayCounts {
-  std::uint64_t due = 0;        // edits whose time came
-  std::uint64_t submitted = 0;  // handed in, those offered again included
-  std::uint64_t again =
-      0;  // pushed back (`rate_limited`, `busy`), and so offered again as new edits
+  std::uint64_t due = 0;        // edits that were due
+  std::uint64_t submitted = 0;  // retries included
+  std::uint64_t retried = 0;    // rejected for a while (`rate_limited`, `busy`)
   std::uint64_t confirmed = 0, durable = 0;
-  std::uint64_t unseen = 0;  // decided while the connection was down: nobody knows how
-  std::map<std::string, std::uint64_t> rejected;  // by the server for good, by reason
-  std::map<std::string, std::uint64_t>
-      refused;       // by the session: beyond what this world takes; by reason
-  Histogram confirm_us;  // due -> own commit applied
+  std::uint64_t unseen = 0;  // resolved while not connected: the outcome is unknown
+  std::map<std::string, std::uint64_t> rejected;  // by the server, finally; by reason
+  std::map<std::string, std::uint64_t> refused;   // by the session; by reason
+  Histogram confirm_us;                           // from the due time until the commit was applied
 };
 
 class PlayBot {
@@ -37,24 +35,25 @@ class PlayBot {
   const std::string& name() const { return recorded_.name; }
 
   void begin(TimeUs now_us) { schedule_.begin(now_us); }
-  /// Hands in what is due, and takes the replica's news. Call every few milliseconds and after messages.
+  /// Submits what is due, and takes the changes of the replica. Call it every few milliseconds and
+  /// after messages.
   void step(TimeUs now_us);
-  /// Every edit was handed in and answered, and what was applied is on disk.
-  bool settled() const {
+  /// Returns true if every edit was submitted and answered, and every applied edit is on disk.
+  bool is_done() const {
     return schedule_.done() && session_.replica().local_edits().all().empty();
   }
-  /// Something is owed to it: an answer, a place on the disk, or room for an edit.
+  /// Returns true if the bot waits for an answer, for the disk, or for room for an edit.
   bool waits() const;
 
   const PlayCounts& counts() const { return counts_; }
 
  private:
   struct Open {
-    PlaySchedule::Turn turn;
-    std::size_t bytes = 0;  // at most, of its request
+    PlaySchedule::DueEdit due;
+    std::size_t bytes = 0;  // upper bound of its request
   };
-  void look_away();
-  void hand_in(TimeUs now_us);
+  void view_empty_chunk();
+  void submit_due(TimeUs now_us);
   void drain_changes(TimeUs now_us);
 
   const RecordedAuthor& recorded_;

@@ -1,12 +1,13 @@
-// PlaySchedule: when one author's recorded edits are handed in again. Open loop: each is due at its time, whatever
-// became of the ones before. It gives way in three cases only:
-//   - kPlayUnansweredMax edits wait for an answer;
-//   - kPlayRateMax, since a server ends a session that sends more messages than it takes;
-//   - the server pushed edits back (its rate limit, a full log): then nothing is handed in until all that is on its
-//     way is answered and a pause is over; what was pushed back comes first again, in its old order, and from the
-//     second time on the rate stays below what the server took since the time before.
-// So where `pushed_back()` was never called, the server gets the edits in their order. Pure: times are arguments
-// (microseconds of one steady clock). One thread.
+// PlaySchedule: when the recorded edits of one author are submitted again. Open loop: each edit is
+// due at its time, whatever became of the edits before. It is late in three cases only:
+//   - kPlayUnansweredMax edits wait for an answer.
+//   - The rate would exceed kPlayRateMax. A server ends a session that sends too many messages.
+//   - The server rejected edits for a while, because of a rate limit or a full log. Then nothing is
+//     submitted until every open edit is answered and a pause is over. The retries come first, in
+//     their old order. From the second pause on, the rate stays below what the server accepted
+//     since the last.
+// If retry() was never called, the server gets the edits in their order. Pure: times are arguments,
+// in microseconds of one steady clock. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,37 +20,40 @@
 namespace runstone {
 
 inline constexpr std::size_t kPlayUnansweredMax = 1024;
-inline constexpr double kPlayRateMax =
-    8'000;  // edits a second; servers take 10,000 messages a second by default
+/// Edits per second. By default servers accept 10,000 messages per second.
+inline constexpr double kPlayRateMax = 8'000;
 inline constexpr TimeUs kPlayPauseUs = 250'000;
 
 class PlaySchedule {
  public:
-  /// `offsets_us`: of each edit since the start as recorded, never falling, not negative. `speed`: 2 plays twice as
-  /// fast; 0 hands in whenever there is room, then each is due when it is handed in.
+  /// `offsets_us`: the recorded time of each edit since the start. Requires values that are not
+  /// negative and never decrease. `speed`: 2 plays twice as fast. 0 submits whenever there is room;
+  /// then each edit is due when it is submitted.
   PlaySchedule(std::vector<TimeUs> offsets_us, double speed);
 
   void begin(TimeUs now_us);
 
-  struct Turn {
+  struct DueEdit {
     std::size_t index = 0;  // of the edit
     TimeUs due_us = 0;
   };
-  /// The edit to hand in now; nothing if none is due, or none may be. The caller owes one of the answers below for it.
-  std::optional<Turn> next(TimeUs now_us);
-  /// Applied.
+  /// Returns the edit to submit now, or nullopt if none is due or allowed. The caller must answer
+  /// it with accepted(), dropped() or retry().
+  std::optional<DueEdit> next(TimeUs now_us);
+  /// The edit was applied.
   void accepted();
-  /// Refused for good, or nobody knows.
+  /// The edit was rejected finally, or its outcome is unknown.
   void dropped();
-  /// To be offered again.
-  void pushed_back(const Turn& turn, TimeUs now_us);
+  /// The edit was rejected for a while and must be submitted again.
+  void retry(const DueEdit& due, TimeUs now_us);
 
-  std::uint64_t due(TimeUs now_us) const;  // edits whose time came
+  /// Returns the number of edits that were due until now.
+  std::uint64_t due(TimeUs now_us) const;
   std::size_t unanswered() const { return unanswered_; }
-  /// Pushed back and not handed in again yet.
-  std::size_t waiting() const { return again_.size(); }
-  /// Every edit was handed in and answered.
-  bool done() const { return next_ == offsets_us_.size() && again_.empty() && unanswered_ == 0; }
+  /// Returns the number of retries that were not submitted yet.
+  std::size_t waiting() const { return retries_.size(); }
+  /// Returns true if every edit was submitted and answered.
+  bool done() const { return next_ == offsets_us_.size() && retries_.empty() && unanswered_ == 0; }
 
  private:
   TimeUs due_of(std::size_t index, TimeUs now_us) const;
@@ -58,13 +62,13 @@ class PlaySchedule {
   double speed_;
   std::optional<TimeUs> began_us_;
   std::size_t next_ = 0;
-  std::map<std::size_t, TimeUs> again_;  // when each was due
+  std::map<std::size_t, TimeUs> retries_;  // due times, by index
   std::size_t unanswered_ = 0;
-  double rate_ = kPlayRateMax, free_us_ = 0;  // the next one may be handed in from then on
-  // Since the last time that the server pushed back.
-  bool is_held_ = false;  // until all is answered and the pause is over
-  std::uint64_t pushes_ = 0, accepted_ = 0;
-  TimeUs pushed_us_ = 0;
+  double rate_ = kPlayRateMax, free_us_ = 0;  // the next edit is allowed from then on
+  // Since the last pause.
+  bool is_paused_ = false;  // until every edit is answered and the pause is over
+  std::uint64_t pauses_ = 0, accepted_ = 0;
+  TimeUs paused_us_ = 0;
 };
 
 }  // namespace runstone

@@ -13,7 +13,8 @@ namespace {
 
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
-/// Times of a file never fall, but may lie anywhere.
+/// Returns the time between two times of a file. They never decrease, but their difference may
+/// overflow.
 TimeUs between(TimeUs first, TimeUs later) {
   const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(first);
   return static_cast<TimeUs>(std::min<std::uint64_t>(

@@ -1,5 +1,5 @@
-// RecordedLog: the edits of an .rlog, sorted by who made them, to be made again elsewhere. Whole in memory: every
-// descriptor of the file (clipboards of pastes included) and a time each. Plain values.
+// RecordedLog: the edits of an .rlog by author, to be made again elsewhere. It is whole in memory:
+// every descriptor of the file, clipboards of pastes included, and a time for each.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,13 +12,13 @@
 namespace runstone {
 
 struct RecordedEdit {
-  TimeUs offset_us = 0;  // since the first edit of the file; never falls
+  TimeUs offset_us = 0;  // since the first edit of the file; never decreases
   EditDescriptor edit;
 };
 
 struct RecordedAuthor {
   AuthorId author = 0;  // in the recorded world; 0: its server
-  std::string name;     // one that a session may have
+  std::string name;     // valid as the name of a session
   std::vector<RecordedEdit> edits;
 };
 
@@ -26,19 +26,19 @@ struct RecordedLog {
   std::vector<RecordedAuthor> authors;  // those with edits, ascending
   std::uint64_t edits = 0;
   MaterialTable materials;     // of the recorded world
-  std::vector<Material> used;  // by the edits, masks included, ascending; `materials` knows them
+  std::vector<Material> used;  // used by the edits and their masks, ascending; all in `materials`
 };
 
-/// Reads and verifies all of it; nothing of a file that is damaged anywhere. The error is one line that names
-/// edit and byte of the file.
+/// Reads and verifies the whole file. Fails if it is damaged anywhere. The error is one line that
+/// names the edit and the byte of the file.
 Result<RecordedLog, std::string> read_recorded_log(RlogSource source);
 
-/// Whether each material that the edits use has the same name in this table. The error names the first that
-/// has not.
+/// Fails if a material that the edits use has another name in `live`. The error names the first
+/// one.
 Result<void, std::string> check_materials(const RecordedLog& log, const MaterialTable& live);
 
-/// The recorded player's name as far as a session may have it: cut to kPlayerNameBytesMax; "author 7" in place of one
-/// that is empty or no text.
+/// Returns the recorded name of the player, cut to kPlayerNameBytesMax. Returns a name like "author
+/// 7" if it is empty or not text.
 std::string session_name(const std::string& recorded, AuthorId author);
 
 }  // namespace runstone

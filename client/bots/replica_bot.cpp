@@ -5,7 +5,7 @@
 namespace runstone {
 namespace {
 
-constexpr TimeUs kTickUs = 10'000;  // as ClientSession::tick() wants it
+constexpr TimeUs kTickUs = 10'000;  // see ClientSession::tick()
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void ReplicaBot::drain_changes() {
   const ReplicaChanges changes = session_.replica().drain_changes();
   for (const EditChange& edit : changes.edits) {
     if (edit.predicted) continue;
-    // An edit whose chunks come in parts is told, and counted, with each of them.
+    // An edit whose chunks arrive in parts is reported, and counted, with each part.
     if (const auto due_us = fleet_.due.find(edit.op.instance, edit.op.seq)) {
       fleet_.see(*due_us, edit.applied_us);
     } else {
@@ -39,7 +39,7 @@ void ReplicaBot::drain_changes() {
       continue;
     }
     const auto found = open_.find(edit.op.seq);
-    if (found == open_.end()) continue;  // a chunk of it came later than the others
+    if (found == open_.end()) continue;  // a later part of the edit
     counts_.confirm_us.add(edit.applied_us - found->second.due_us);
     ++counts_.confirmed;
     open_.erase(found);

@@ -1,4 +1,5 @@
-// ReplicaBot: a bot with a whole replica: it applies every edit, compares the digests of audits, and knows what became of what it built.
+// ReplicaBot: a bot with a whole replica. It applies every edit, compares digests, and knows which
+// voxels that it built are intact.
 #pragma once
 #include <map>
 
@@ -10,7 +11,7 @@ namespace runstone {
 
 class ReplicaBot final : public Bot {
  public:
-  /// `crowd` must outlive the bot.
+  /// `fleet` must outlive the bot.
   ReplicaBot(BotConfig config, FleetStatistics& fleet);
 
   ClientSession& session() { return session_; }
@@ -42,7 +43,7 @@ class ReplicaBot final : public Bot {
     EditDescriptor edit;
   };
   std::map<ClientSequence, Open> open_;  // edits without an answer
-  bool is_answered_ = true;              // all of them, and the news of it was taken
+  bool is_answered_ = true;              // all edits, as of the last drain_changes()
 };
 
 }  // namespace runstone

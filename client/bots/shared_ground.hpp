@@ -1,6 +1,6 @@
-// SharedGround: the ground of a crowd of light bots, who keep no voxels of their own: each chunk as the first of them saw it. Later
-// edits do not show, so who builds here builds on what stood at the start. Bound: kGroundChunksMax chunks; further ones are
-// not kept. One thread.
+// SharedGround: the ground of a fleet of headless bots, which keep no voxels. It has each chunk as
+// it first arrived at any bot. Later edits do not show, so bots build on the ground as it was at
+// the start. Bound: kGroundChunksMax chunks; further ones are dropped. One thread.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -16,9 +16,10 @@ inline constexpr std::size_t kGroundChunksMax = 65'536;
 
 class SharedGround final : public Ground {
  public:
-  /// Keeps the voxels unless the chunk is known. All chunks are of one edge, 16, 32, 64 or 128.
+  /// Keeps the voxels unless the chunk is known. Requires chunks of one edge: 16, 32, 64 or 128.
   void add(ChunkCoord at, const RunChunk& voxels);
-  /// Looks from the highest chunk of the column that is known to the lowest. O(chunks of the column * edge * log runs).
+  /// Searches the known chunks of the column from the highest to the lowest. Cost: O(chunks of the
+  /// column * edge * log runs).
   std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
   std::size_t chunks() const { return chunks_; }
 

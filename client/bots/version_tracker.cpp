@@ -75,7 +75,7 @@ void VersionTracker::receive(const UniformChunks& uniform, TimeUs now_us) {
   for (const UniformChunk& chunk : uniform.chunks) take(chunk.key, chunk.version, now_us);
 }
 
-/// A snapshot, of which the voxels do not matter any more.
+/// Takes a snapshot whose voxels are verified already.
 void VersionTracker::take(const ChunkKey& key, Version version, TimeUs now_us) {
   if (version.epoch > epoch_) {
     violations_.add("epoch",
@@ -92,13 +92,13 @@ void VersionTracker::take(const ChunkKey& key, Version version, TimeUs now_us) {
     ++counts_.stale;
     return;
   }
-  // Only a snapshot that says more than what is held stands for commits.
+  // Only a snapshot newer than what is held replaces commits.
   if (chunk.held && version.seq > chunk.at) ++counts_.resent;
   if (!std::exchange(chunk.held, true)) ++held_;
   chunk.at = version.seq;
   chunk.latest = std::max(chunk.latest, version.seq);
   chunk.is_asked = false;
-  settle(chunk, now_us);
+  advance(chunk, now_us);
 }
 
 void VersionTracker::receive(const ChunkUnavailable& unavailable) {
@@ -117,9 +117,9 @@ void VersionTracker::receive(const DigestCheck& audit, TimeUs now_us) {
     const auto found = chunks_.find(entry.key.at);
     if (entry.key.lod != 0 || found == chunks_.end() || !found->second.held) continue;
     ++counts_.audited;
-    // Commits are gathered for a while, and an audit may overtake them.
+    // Commits are batched for a while, and a digest check may overtake them.
     found->second.latest = std::max(found->second.latest, entry.version.seq);
-    settle(found->second, now_us);
+    advance(found->second, now_us);
   }
 }
 
@@ -135,17 +135,18 @@ void VersionTracker::follow(ChunkCoord at, Sequence previous, Sequence seq, Time
   if (chunk.held && chunk.waiting.empty() && chunk.at == previous) {
     chunk.at = seq;
     ++counts_.followed;
-    if (chunk.behind_us) settle(chunk, now_us);
+    if (chunk.behind_us) advance(chunk, now_us);
     return;
   }
   ++counts_.held_back;
   if (chunk.waiting.size() == kWaitingLinksMax) chunk.waiting.clear();
   chunk.waiting.push_back({previous, seq});
-  if (chunk.held) settle(chunk, now_us);
+  if (chunk.held) advance(chunk, now_us);
 }
 
-/// Takes what continues the version, and notes whether something is missing. Requires a held chunk.
-void VersionTracker::settle(Known& chunk, TimeUs now_us) {
+/// Follows the edits that continue the version, and notes whether edits are missing. Requires a
+/// held chunk.
+void VersionTracker::advance(Known& chunk, TimeUs now_us) {
   std::size_t taken = 0;
   for (; taken < chunk.waiting.size(); ++taken) {
     const Link& link = chunk.waiting[taken];
@@ -179,7 +180,7 @@ void VersionTracker::tick(TimeUs now_us) {
     const ChunkKey key{0, at};
     violations_.add("gap", "chunk " + text_of(key) + " stands at seq " + std::to_string(chunk.at) +
                                ", edit " + std::to_string(chunk.latest) +
-                               " touched it, and what is between did not come");
+                               " touched it, and the edits between did not arrive");
     chunk.is_asked = true;
     requests_.push_back(key);
   }

@@ -1,10 +1,13 @@
-// VersionTracker: what a light bot knows of the world: of each chunk in view the sequence it stands at, and no voxels. It follows
-// snapshots and commits by the rules of docs/protocol.md, "Order", and says where a server broke them:
-//   - an edit continues its chunk's version, or is in the snapshot already; where neither holds, the server may have marked
-//     the chunk stale because this session's queue was full, and sends a snapshot on its own within kResendUsMax;
-//   - an audit may not name a newer version than what came, but for as long;
-//   - the digest of a snapshot is that of its voxels.
-// A chunk that is not resent in time is a violation, and asked for. Pure: times are arguments. One thread.
+// VersionTracker: what a headless bot knows of the world: the sequence of each chunk in view, and
+// no voxels. It follows snapshots and commits by the rules of docs/protocol.md, "Order", and
+// reports a server that breaks them:
+//   - An edit continues the version of its chunk, or is contained in the snapshot. Otherwise the
+//     server may have marked the chunk stale because the queue of this session was full. Then it
+//     sends a snapshot within kResendUsMax, without a request.
+//   - A digest check may name a version newer than what arrived for kResendUsMax at most.
+//   - The digest of a snapshot is that of its voxels.
+// A chunk that is not sent again in time is a violation, and is requested. Pure: times are
+// arguments. One thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,12 +23,12 @@
 
 namespace runstone {
 
-/// How long a chunk that the server dropped edits of may take to be sent again.
+/// Bound of the time until the server sends a chunk again after it dropped edits of it.
 inline constexpr TimeUs kResendUsMax = 5'000'000;
-inline constexpr std::size_t kWaitingLinksMax =
-    1024;  // edits held back per chunk; more: only the newest is remembered
+/// Bound of the edits held back per chunk. Beyond it, only the newest sequence is remembered.
+inline constexpr std::size_t kWaitingLinksMax = 1024;
 
-/// What a server did that it must not do: by name, with how often. The first one of each is described.
+/// The rules that a server broke: how often, by name, and a description of the first case of each.
 class Violations {
  public:
   void add(const std::string& name, std::string what);
@@ -41,43 +44,43 @@ class Violations {
   std::map<std::string, Entry> all_;
 };
 
-/// Counts since the book was made. An edit counts once per chunk in view.
+/// Counts since the tracker was made. An edit counts once per chunk in view.
 struct VersionCounts {
   std::uint64_t snapshots = 0;  // verified, digest included
-  std::uint64_t stale = 0;      // of them older than what was known: legal, and ignored
-  std::uint64_t outside = 0;    // of chunks that are not in view any more
-  std::uint64_t followed = 0;   // chunk edits that continued their chunk's version
-  std::uint64_t contained = 0;  // that a snapshot had already
-  std::uint64_t held_back = 0;  // that came ahead of their snapshot
-  std::uint64_t resent = 0;     // snapshots that stood for commits which did not come
-  std::uint64_t audited = 0;    // versions of audits compared
-  Histogram behind_us;          // of resent chunks: from the first sign that something is missing
+  std::uint64_t stale = 0;      // older than what is known: allowed, and ignored
+  std::uint64_t outside = 0;    // not in view any more
+  std::uint64_t followed = 0;   // chunk edits that continued the version of their chunk
+  std::uint64_t contained = 0;  // chunk edits that a snapshot contained
+  std::uint64_t held_back = 0;  // chunk edits that arrived before their snapshot
+  std::uint64_t resent = 0;     // snapshots in place of commits that did not arrive
+  std::uint64_t audited = 0;    // versions compared with digest checks
+  Histogram behind_us;          // of chunks sent again: since the first sign of a missing edit
   void merge(const VersionCounts& other);
 };
 
 class VersionTracker {
  public:
-  /// A connection opens: all chunks are expected anew.
+  /// Opens a connection. All chunks are expected again.
   void open(Epoch epoch);
-  /// Chunks outside are forgotten.
+  /// Forgets the chunks outside of the view.
   void set_view(const View& view);
 
   void receive(const ChunkSnapshot& snapshot, TimeUs now_us);
   void receive(const UniformChunks& uniform, TimeUs now_us);
   void receive(const ChunkUnavailable& unavailable);
   void receive(const DigestCheck& audit, TimeUs now_us);
-  /// One edit of a commit touches this chunk, which stood at `previous` before.
+  /// An edit of a commit touches this chunk, whose sequence was `previous` before it.
   void follow(ChunkCoord at, Sequence previous, Sequence seq, TimeUs now_us);
-  /// Looks for chunks that were not resent in time. O(1) while none is behind.
+  /// Finds chunks that were not sent again in time. Cost: O(1) while none is behind.
   void tick(TimeUs now_us);
-  /// Chunks to ask the server for.
+  /// Returns the chunks to request from the server.
   std::vector<ChunkKey> take_requests();
 
-  /// Chunks of the view that came, or are said not to be had.
+  /// Returns the number of chunks of the view that arrived or are unavailable.
   std::size_t known() const { return held_ + unavailable_; }
-  /// Chunks that lack edits.
+  /// Returns the number of chunks that lack edits.
   std::size_t behind() const { return behind_; }
-  /// The version's sequence of a chunk that came.
+  /// Returns the sequence of a chunk, or nullopt if it has not arrived.
   std::optional<Sequence> version(ChunkCoord at) const;
   const VersionCounts& counts() const { return counts_; }
   Violations& violations() { return violations_; }
@@ -88,14 +91,14 @@ class VersionTracker {
     Sequence previous = 0, seq = 0;
   };
   struct Known {
-    Sequence at = 0, latest = 0;  // stands at; newest edit heard of
+    Sequence at = 0, latest = 0;  // sequence reached; newest one seen
     bool held = false, unavailable = false;
     std::optional<TimeUs> behind_us;  // since when edits are missing
-    bool is_asked = false;            // it was too long
+    bool is_asked = false;            // a request was made
     std::vector<Link> waiting;        // ascending
   };
   void take(const ChunkKey& key, Version version, TimeUs now_us);
-  void settle(Known& chunk, TimeUs now_us);
+  void advance(Known& chunk, TimeUs now_us);
   void forget(const Known& chunk);
 
   Epoch epoch_ = 0;

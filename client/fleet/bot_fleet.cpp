@@ -179,7 +179,7 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
                  report.bots, files, allowed);
   }
   const auto is_loaded = [](FleetBot& member) { return member.bot().counts().joins != 0; };
-  const auto is_settled = [](FleetBot& member) { return member.bot().settled(); };
+  const auto is_settled = [](FleetBot& member) { return member.bot().is_done(); };
   const auto is_refused = [](FleetBot& member) { return member.is_final(); };
 
   fleet.began_us = steady_now_us();

@@ -30,7 +30,7 @@ using Member = FleetMember<PlayBot>;
 void add_up(PlayCounts& sum, const PlayCounts& one) {
   sum.due += one.due;
   sum.submitted += one.submitted;
-  sum.again += one.again;
+  sum.retried += one.retried;
   sum.confirmed += one.confirmed;
   sum.durable += one.durable;
   sum.unseen += one.unseen;
@@ -113,7 +113,7 @@ PlayReport PlayFleet::run(const volatile std::sig_atomic_t& stop) {
     spdlog::info("{} bots play {} edits", report.bots, report.edits);
     const TimeUs began_us = steady_now_us();
     for (const auto& member : fleet.members) member->bot().begin(began_us);
-    report.failure = fleet.play_until([](Member& member) { return member.bot().settled(); }, stop);
+    report.failure = fleet.play_until([](Member& member) { return member.bot().is_done(); }, stop);
     report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
   }
   for (const auto& member : fleet.members) {
@@ -134,7 +134,7 @@ std::string to_json(const PlayReport& report) {
                                         {{"recorded", report.edits},
                                          {"due", c.due},
                                          {"submitted", c.submitted},
-                                         {"again", c.again},
+                                         {"again", c.retried},
                                          {"confirmed", c.confirmed},
                                          {"rejected", c.rejected},
                                          {"refused", c.refused},
@@ -152,7 +152,7 @@ std::string to_table(const PlayReport& report) {
       "offered "
       "again, {} rejected, {} refused here, {} without an answer\n{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable,
-      c.again, total(c.rejected), total(c.refused), c.unseen,
+      c.retried, total(c.rejected), total(c.refused), c.unseen,
       histogram_line("due to confirmed", c.confirm_us));
   for (const auto& [reason, count] : c.rejected)
     table += fmt::format("rejected: {} {}\n", count, reason);

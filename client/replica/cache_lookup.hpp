@@ -1,4 +1,5 @@
-// CacheLookup: chunks that a session wants to look up in a cache before it asks the server for them.
+// CacheLookup: chunks that a session wants to look up in a cache before it asks the server for
+// them.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -11,7 +12,8 @@
 
 namespace runstone {
 
-/// A world as its server describes it now. A cache returns only chunks whose history the server still shares.
+/// A world as its server describes it now. A cache returns only chunks whose history the server
+/// still shares.
 struct CachedWorld {
   WorldId id{};
   std::uint16_t chunk_edge = 32;

@@ -9,7 +9,7 @@ void CacheOutbox::add(const TrackedChunk& chunk) {
   left_.emplace_back(chunk.key, chunk.confirmed());
 }
 
-std::vector<KeyedChunk> CacheOutbox::take(ChunkTable* chunks, std::size_t count_max) {
+std::vector<KeyedChunk> CacheOutbox::take(ReplicaChunks* chunks, std::size_t count_max) {
   const std::size_t count = std::min(count_max, left_.size());
   const auto end = left_.begin() + static_cast<std::ptrdiff_t>(count);
   std::vector<KeyedChunk> out(left_.begin(), end);

@@ -1,11 +1,12 @@
-// CacheOutbox: confirmed chunks on their way to a cache. Only chunks that the server has vouched for on this connection,
-// in the live world, are handed over. Bound: kCacheOutboxMax chunks that left the view; more are dropped. One thread.
+// CacheOutbox: confirmed chunks on their way to a cache. Only chunks that the server has vouched
+// for on this connection, in the live world, are handed over. Bound: kCacheOutboxMax chunks that
+// left the view; more are dropped. One thread.
 #pragma once
 #include <cstddef>
 #include <vector>
 
 #include "client/replica/cache_lookup.hpp"
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 namespace runstone {
 
@@ -17,9 +18,10 @@ class CacheOutbox {
   void enable() { is_enabled_ = true; }
   /// The chunk leaves the view.
   void add(const TrackedChunk& chunk);
-  /// Returns at most `count_max` chunks: first those that left the view, then those in `chunks` that changed since they
-  /// were last taken. `chunks` is null while the past is shown. Cost: O(chunks).
-  std::vector<KeyedChunk> take(ChunkTable* chunks, std::size_t count_max);
+  /// Returns at most `count_max` chunks: first those that left the view, then those in `chunks`
+  /// that changed since they were last taken. `chunks` is null while the past is shown. Cost:
+  /// O(chunks).
+  std::vector<KeyedChunk> take(ReplicaChunks* chunks, std::size_t count_max);
   void clear() { left_.clear(); }
 
  private:

@@ -1,5 +1,5 @@
-// ChangeQueue: gathers what changed in a replica until it is drained. It has one entry per changed chunk, one per
-// confirmed edit, and one per prediction. One thread.
+// ChangeQueue: gathers what changed in a replica until it is drained. It has one entry per changed
+// chunk, one per confirmed edit, and one per prediction. One thread.
 #pragma once
 #include <map>
 #include <memory>
@@ -18,7 +18,8 @@ class ChangeQueue {
   ChunkChange& chunk(const ChunkKey& key);
   /// Nothing of this chunk is shown any more. Replaces what was noted of it before.
   void removed(const ChunkKey& key);
-  /// Returns the entry of a confirmed edit. Adds it if there is none. The reference holds until drain().
+  /// Returns the entry of a confirmed edit. Adds it if there is none. The reference holds until
+  /// drain().
   EditChange& edit(const OrderedInfo& info, TimeUs applied_us);
   /// Adds an entry for the prediction of a local edit. The reference holds until drain().
   EditChange& prediction(const OperationId& op, TimeUs applied_us);

@@ -1,12 +1,12 @@
-// ChunkState: what the server has said about a chunk on this connection. The transitions are pure functions; ChunkTable
-// performs them and counts.
+// ChunkState: what the server has said about a chunk on this connection. The transitions are pure
+// functions; ReplicaChunks performs them and counts.
 //
-//   expected ----request----> requested
-//      | answer                  | answer
-//      v                         v
-//   current ----request----> repairing          take_snapshot: each --> current
-//      ^ answer                                 withhold:      each --> unavailable
-//   unavailable                                 expect:        each --> expected (another connection or moment)
+//   expected --request--> requested      answer: requested --> repairing, the others --> current
+//   current  --request--> repairing      take_snapshot: every state --> current
+//                                        withhold:      every state --> unavailable
+//                                        expect:        every state --> expected
+//
+// `expect` begins another connection, or another moment of the past.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,11 +16,17 @@
 namespace runstone {
 
 enum class ChunkState : std::uint8_t {
-  expected,  // The server has not answered. A copy from a cache or an earlier connection may be shown.
-  requested,  // As expected, but a snapshot was requested. Nothing but a snapshot is applied.
-  current,    // The server has vouched for the confirmed chunk. Commits are applied to it.
-  repairing,  // As current, but commits got lost or the digest differs: a snapshot was requested, as above.
-  unavailable,  // The server cannot send the chunk. Nothing is held, shown or held back.
+  /// The server has not answered. A copy from a cache or an earlier connection may be shown.
+  expected,
+  /// As expected, but a snapshot was requested. Nothing but a snapshot is applied.
+  requested,
+  /// The server has vouched for the confirmed chunk. Commits are applied to it.
+  current,
+  /// As current, but edits got lost or the digest differs, and a snapshot was requested. Nothing
+  /// but a snapshot is applied.
+  repairing,
+  /// The server cannot send the chunk. Nothing is held, shown or held back.
+  unavailable,
 };
 inline constexpr std::size_t kChunkStateCount = 5;
 
@@ -33,7 +39,8 @@ constexpr bool is_awaiting(ChunkState state) {
   return state == ChunkState::requested || state == ChunkState::repairing;
 }
 
-/// A message arrived that carries the chunk or vouches for the copy that is held. A request stays open.
+/// A message arrived that carries the chunk or vouches for the copy that is held. A request stays
+/// open.
 constexpr ChunkState after_answer(ChunkState state) {
   return is_awaiting(state) ? ChunkState::repairing : ChunkState::current;
 }

@@ -8,7 +8,8 @@ bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now
   const bool was_vouched = is_vouched(chunk.state());
   chunks_.answer(chunk);
   if (chunk.confirmed() && !is_needed(chunk, snapshot, was_vouched)) {
-    // Nothing new. But a local edit whose answer was missed is in this snapshot, and so in the confirmed chunk.
+    // Nothing new. But a local edit whose answer was missed is in this snapshot, and so in the
+    // confirmed chunk.
     const bool has_dropped = chunk.drop_answered(0) != 0;
     if (chunk.is_current()) {
       advance(chunk, true, now_us);
@@ -25,7 +26,8 @@ bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now
   return true;
 }
 
-/// Returns true if the snapshot must replace the confirmed chunk: it is newer, or it repairs a chunk in doubt.
+/// Returns true if the snapshot must replace the confirmed chunk: it is newer, or it repairs a
+/// chunk in doubt.
 bool ChunkUpdater::is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool was_vouched) {
   const Chunk& held = *chunk.confirmed();
   if (snapshot.version > held.version) return true;
@@ -45,7 +47,8 @@ void ChunkUpdater::replace(TrackedChunk& chunk, Chunk snapshot) {
   show(chunk);
 }
 
-/// The confirmed chunk was the server's when it subscribed this client: later commits have arrived, or will.
+/// The confirmed chunk was the server's when it subscribed this client: later commits have arrived,
+/// or will.
 void ChunkUpdater::vouch(TrackedChunk& chunk, TimeUs now_us) {
   chunk.drop_answered(0);
   advance(chunk, true, now_us);
@@ -103,7 +106,8 @@ bool ChunkUpdater::take_missing_edits(TrackedChunk& chunk, const ChunkEdits& upd
 
 void ChunkUpdater::withhold(TrackedChunk& chunk, UnavailableReason reason) {
   if (chunk.is_unavailable()) return;
-  // A copy of an earlier connection would get no more edits: showing nothing is better than showing something stale.
+  // A copy of an earlier connection would get no more edits: showing nothing is better than showing
+  // something stale.
   chunks_.withhold(chunk);
   shown_.hide(chunk);
   changes_.unavailable({chunk.key, reason});
@@ -132,7 +136,8 @@ void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_u
   counters_.chunk_edits_applied += taken.applied.size();
   counters_.chunk_edits_contained += taken.contained.size();
   std::vector<EditChange*> cause;
-  // An edit that a snapshot brings before its commit was applied is a change. Any other contained edit is a duplicate.
+  // An edit that a snapshot brings before its commit was applied is a change. Any other contained
+  // edit is a duplicate.
   if (from_snapshot) {
     for (const OrderedPtr& info : taken.contained) {
       cause.push_back(&changes_.edit(*info, now_us));
@@ -147,10 +152,12 @@ void ChunkUpdater::advance(TrackedChunk& chunk, bool from_snapshot, TimeUs now_u
     next->version = taken.version;
     chunks_.set_confirmed(chunk, std::move(next));
   }
-  // Before the server answers for the chunk, a gap is expected: commits overtook the snapshot that closes it.
+  // Before the server answers for the chunk, a gap is expected: commits overtook the snapshot that
+  // closes it.
   if (chunk.latest > taken.version.seq && chunk.is_current()) {
     ++counters_.gaps;
-    // A requested snapshot that leaves a gap was made too early. tick() requests the next one after a pause.
+    // A requested snapshot that leaves a gap was made too early. tick() requests the next one after
+    // a pause.
     if (from_snapshot && chunk.requested_us && now_us - *chunk.requested_us < kRequestAgainUs) {
       chunks_.request(chunk);
     } else {
@@ -164,7 +171,8 @@ void ChunkUpdater::check_digest(TrackedChunk& chunk, const DigestCheckEntry& che
   if (!chunk.confirmed() || is_awaiting(chunk.state())) return;
   const Chunk& held = *chunk.confirmed();
   if (held.version < check.version) {
-    // A digest check may overtake commits, but not by a whole round: the commits before the last check are lost.
+    // A digest check may overtake commits, but not by a whole round: the commits before the last
+    // check are lost.
     if (held.version < chunk.behind_of) {
       ++counters_.fell_behind;
       request(chunk, now_us);

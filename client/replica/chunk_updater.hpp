@@ -1,53 +1,58 @@
-// ChunkUpdater: what a message of the server does to one chunk of the live world. It brings the confirmed chunk forward,
-// finds gaps and drift, requests snapshots, and shows the confirmed runs with the pending edits on top. One thread.
+// ChunkUpdater: what a message of the server does to one chunk of the live world. It brings the
+// confirmed chunk forward, finds gaps and drift, requests snapshots, and shows the confirmed runs
+// with the pending edits on top. One thread.
 #pragma once
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "client/replica/shown_runs.hpp"
 #include "common/edits/apply/edit_stack.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
-inline constexpr std::size_t kInboxEditsMax = 1024;  // edits held back per chunk
-inline constexpr TimeUs kRequestAgainUs =
-    2'000'000;  // a request without a snapshot is repeated after this
+/// Edits held back per chunk.
+inline constexpr std::size_t kInboxEditsMax = 1024;
+/// A request without a snapshot is repeated after this.
+inline constexpr TimeUs kRequestAgainUs = 2'000'000;
 
 class ChunkUpdater {
  public:
   /// All three must outlive this object.
-  ChunkUpdater(ChunkTable& chunks, ChangeQueue& changes, ReplicaCounters& counters)
+  ChunkUpdater(ReplicaChunks& chunks, ChangeQueue& changes, ReplicaCounters& counters)
       : chunks_(chunks), changes_(changes), counters_(counters), shown_(chunks, changes) {}
 
-  // Messages. Each of these marks the chunk as answered for, and then applies what waits in its inbox.
-
-  /// Takes a snapshot. Returns false if the confirmed chunk is as new and not in doubt: then the snapshot is ignored.
+  /// Takes a snapshot, and applies the edits in the inbox that follow. Returns false if the
+  /// confirmed chunk is as new and not in doubt: then the snapshot is ignored.
   bool take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now_us);
   /// Takes a snapshot of another moment, whatever its version. Applies nothing.
   void replace(TrackedChunk& chunk, Chunk snapshot);
-  /// The confirmed chunk at `seq` is the server's. Requests a snapshot if the confirmed chunk is older.
+  /// The server says that the claimed chunk, at `seq`, is as it has it. Requests a snapshot if the
+  /// confirmed chunk is older.
   void take_not_modified(TrackedChunk& chunk, Sequence seq, TimeUs now_us);
-  /// Takes the edits that a claimed chunk lacked. Requests a snapshot if they do not follow the confirmed chunk, or if
-  /// the digest differs after them. Returns true if they became part of the confirmed chunk.
+  /// Takes the edits that a claimed chunk lacked. Requests a snapshot if they do not follow the
+  /// confirmed chunk, or if the digest differs after them. Returns true if they became part of the
+  /// confirmed chunk.
   bool take_missing_edits(TrackedChunk& chunk, const ChunkEdits& update, TimeUs now_us);
   /// The server cannot send the chunk.
   void withhold(TrackedChunk& chunk, UnavailableReason reason);
-  /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a confirmed one.
+  /// Takes a chunk from a cache. The server has not vouched for it. Requires a chunk without a
+  /// confirmed one.
   void adopt(TrackedChunk& chunk, ChunkPtr cached, TimeUs now_us);
 
-  /// Appends an ordered edit to the inbox. `is_held_back`: it cannot be applied before a snapshot. Then the inbox is
-  /// bounded by kInboxEditsMax: beyond it, the edits are dropped, and a snapshot that contains them is requested later.
+  /// Appends an ordered edit to the inbox. `is_held_back`: it cannot be applied before a snapshot.
+  /// Then the inbox is bounded by kInboxEditsMax: beyond it, the edits are dropped, and a snapshot
+  /// that contains them is requested later.
   void hold(TrackedChunk& chunk, TrackedChunk::InboxEdit edit, bool is_held_back);
-  /// Applies what follows in the inbox, requests a snapshot at a gap, and shows the result. Does nothing without a
-  /// confirmed chunk, and while a snapshot is awaited.
+  /// Applies what follows in the inbox, requests a snapshot at a gap, and shows the result. Does
+  /// nothing without a confirmed chunk, and while a snapshot is awaited.
   void advance(TrackedChunk& chunk, TimeUs now_us) { advance(chunk, false, now_us); }
-  /// Compares the chunk with a digest of the server. Requests a snapshot if it differs at equal version, or if the
-  /// check before named a version that the chunk has not reached.
+  /// Compares the chunk with a digest of the server. Requests a snapshot if it differs at equal
+  /// version, or if the check before named a version that the chunk has not reached.
   void check_digest(TrackedChunk& chunk, const DigestCheckEntry& check, TimeUs now_us);
 
   /// Shows a new pending edit on top of what is shown.
@@ -68,7 +73,7 @@ class ChunkUpdater {
   void vouch(TrackedChunk& chunk, TimeUs now_us);
   bool is_needed(TrackedChunk& chunk, const Chunk& snapshot, bool was_vouched);
 
-  ChunkTable& chunks_;
+  ReplicaChunks& chunks_;
   ChangeQueue& changes_;
   ReplicaCounters& counters_;
   ShownRuns shown_;

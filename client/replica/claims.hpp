@@ -1,15 +1,16 @@
-// Claims: which chunks this connection has claimed to hold, so that the server sends nothing or the missing edits in
-// place of a snapshot. Bound: kClaimsMax claims without an answer. One thread.
+// Claims: which chunks this connection has claimed to hold, so that the server sends nothing or the
+// missing edits in place of a snapshot. Bound: kClaimsMax claims without an answer. One thread.
 #pragma once
 #include <cstddef>
 #include <set>
 #include <vector>
 
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
+<<<<<<< HEAD
 /// Claims that wait for an answer. Half of what a server accepts, so that the claims for the next view fit beside them.
 inline constexpr std::size_t kClaimsMax = kClaimsPerSessionMax / 2;
 
@@ -19,6 +20,19 @@ class Claims {
   /// on this connection, while fewer than kClaimsMax claims wait for an answer. The digests are computed from the
   /// runs, so that a copy that has drifted is found. Cost: O(runs of the claimed chunks + chunks).
   std::vector<CachedChunk> take(const ChunkTable& chunks);
+=======
+/// Claims that wait for an answer. Half of what a server accepts, so that the claims for the next
+/// view fit beside them.
+inline constexpr std::size_t kClaimsMax = kHeldClaimsMax / 2;
+
+class Claims {
+ public:
+  /// Returns the chunks to claim now, ascending: those with a confirmed chunk that are `expected`
+  /// and were not claimed on this connection, while fewer than kClaimsMax claims wait for an
+  /// answer. The digests are computed from the runs, so that a copy that has drifted is found.
+  /// Cost: O(runs of the claimed chunks + chunks).
+  std::vector<HeldChunk> take(const ReplicaChunks& chunks);
+>>>>>>> h-replica
   /// The server answered for the chunk, with whatever message.
   void answer(const ChunkKey& key) { waiting_.erase(key); }
   /// The chunk left the view: it may be claimed again.

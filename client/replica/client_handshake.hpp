@@ -1,4 +1,5 @@
-// Greeting: who a client says it is, and whether it believes the server's answer. Pure: randomness is an argument.
+// Client handshake: the hello that a client sends, and the check of the server's welcome. Pure:
+// randomness is an argument.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -16,21 +17,22 @@ struct SessionConfig {
   ClientInstance instance = 1;               // random per process
   std::uint8_t encodings = kEncodingsKnown;  // as in Hello
   std::uint64_t features = kFeaturesKnown;
-  View view;                            // wished; the server's limit cuts the radii
+  View view;                            // requested; the server's limit cuts the radii
   std::map<WorldId, PublicKey> pinned;  // server keys seen before
-  bool has_cache = false;               // of a ClientSession: somebody answers take_cache_lookup()
+  bool has_cache = false;               // a ClientSession looks chunks up in a cache
 };
 
-/// `nonce` must be fresh and random: it keeps old welcomes from being replayed.
+/// Returns the hello. `nonce` must be fresh and random, so that old welcomes cannot be replayed.
 Hello make_hello(const SessionConfig& config, const Nonce& nonce);
 
-/// Why a welcome is not believed; trying again with the same configuration is pointless.
+/// Why a welcome is rejected. Trying again with the same configuration is pointless.
 struct WelcomeFault {
   GoodbyeReason reason = GoodbyeReason::not_authenticated;
   std::string text;
 };
-/// Nothing: the server speaks our protocol and proved its key, which is the one in `pinned` for its world, and is put there if
-/// there was none. One signature is verified: some 0.1 ms.
+/// Returns nullopt if the server has this protocol version, has proved its key, and the key is the
+/// pinned one of its world. Adds the key to `pinned` if the world has none. Otherwise returns the
+/// reason for the rejection. Cost: one signature check, about 0.1 ms.
 std::optional<WelcomeFault> check_welcome(const Hello& hello, const Welcome& welcome,
                                           std::map<WorldId, PublicKey>& pinned);
 

@@ -42,7 +42,7 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
       return;
     case ServerConnection::Dispatch::another_world:
       return replica_->reset();
-    case ServerConnection::Dispatch::ready:
+    case ServerConnection::Dispatch::session_accepted:
       return on_session_accepted(std::get<SessionAccepted>(message), arrival.now_us);
     case ServerConnection::Dispatch::for_session:
       break;
@@ -131,8 +131,8 @@ Result<ClientSequence> ClientSession::submit(const EditDescriptor& edit, TimeUs 
 }
 
 void ClientSession::send_waiting_edits(TimeUs now_us) {
-  // The answer to an overdue edit was lost. The server knows by the operation id whether it has resolved the edit, so
-  // sending it again is harmless.
+  // The answer to an overdue edit was lost. The server knows by the operation id whether it has
+  // resolved the edit, so sending it again is harmless.
   if (waiting_.empty()) waiting_ = replica_->local_edits().overdue(now_us - kAnswerUsMax);
   if (waiting_.empty()) return;
   // Without a clock offset the other clients could not tell how old the edit is.
@@ -233,7 +233,8 @@ std::optional<CachedWorld> ClientSession::cached_world() const {
 
 void ClientSession::send_view() {
   view_waiting_since_us_.reset();
-  for (Message& held : cached_chunks_messages(replica_->take_claims())) connection_.send(std::move(held));
+  for (Message& held : cached_chunks_messages(replica_->take_claims()))
+    connection_.send(std::move(held));
   connection_.send_view();
 }
 

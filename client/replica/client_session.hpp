@@ -1,7 +1,9 @@
-// ClientSession: a client's side of the protocol, around a Replica and on top of a ServerConnection. It handles the view,
-// edits, history, commands, other players and reconnection. It consumes messages and produces messages; a socket or a
-// simulated link carries them. When the connection ends, the replica and the local edits stay, and the next connection
-// resumes them. Pure: randomness and times are arguments, in microseconds of the client's steady clock. One thread.
+// ClientSession: a client's side of the protocol, around a Replica and on top of a
+// ServerConnection. It handles the view, edits, history, commands, other players and reconnection.
+// It consumes messages and produces messages; a socket or a simulated link carries them. When the
+// connection ends, the replica and the local edits stay, and the next connection resumes them.
+// Pure: randomness and times are arguments, in microseconds of the client's steady clock. One
+// thread.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -21,12 +23,14 @@
 
 namespace runstone {
 
-/// Pings are this frequent until kPingsFirst pongs arrived, because the clock offset is needed soon.
+/// Pings are this frequent until kPingsFirst pongs arrived, because the clock offset is needed
+/// soon.
 inline constexpr TimeUs kPingEveryFirstUs = 50'000;
 inline constexpr unsigned kPingsFirst = 4;
 /// Edits wait this long for the first pong. Then they are sent without a time.
 inline constexpr TimeUs kOffsetWaitUsMax = 1'000'000;
-/// SessionAccepted is of the class of the edits, so messages of other classes may overtake it. So many are held back.
+/// SessionAccepted is of the class of the edits, so messages of other classes may overtake it. So
+/// many are held back.
 inline constexpr std::size_t kEarlyMessagesMax = 4096;
 /// A view waits this long for the cache.
 inline constexpr TimeUs kCacheWaitUsMax = 250'000;
@@ -44,46 +48,54 @@ class ClientSession {
  public:
   explicit ClientSession(SessionConfig config);
 
-  /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be replayed.
+  /// A new byte stream is up. `nonce` must be fresh and random, so that old welcomes cannot be
+  /// replayed.
   void connected(const Nonce& nonce, TimeUs now_us);
   void disconnected();
   /// Takes one decoded message. After an error wants_close() returns true and a goodbye is queued.
   void receive(Message message, const Arrival& arrival);
   /// Sends pings, repeats requests, and ends a silent connection. Call it about every 10 ms.
   void tick(TimeUs now_us);
-  /// Returns the messages to send, in order. Edits may overtake the others, because they have a class of their own.
+  /// Returns the messages to send, in order. Edits may overtake the others, because they have a
+  /// class of their own.
   std::vector<Message> take_outgoing() { return connection_.take_outgoing(); }
   /// Returns true if the connection should be closed once what is queued has been sent.
   bool wants_close() const { return connection_.wants_close(); }
   /// Queues a goodbye. wants_close() returns true afterwards.
   void close(GoodbyeReason reason, std::string text) { connection_.close(reason, std::move(text)); }
 
-  /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured from there.
+  /// Shows and sends an edit. `submitted_us`: the click or the scheduled time; latency is measured
+  /// from there.
   Result<ClientSequence> submit(const EditDescriptor& edit, TimeUs submitted_us, TimeUs now_us);
   void set_view(const View& view);
-  /// Requests the view as it was at a moment of the past, read-only, or as it is now. `request.request` is ignored. The
-  /// live world and the views of others do not change. Fails unless open.
+  /// Requests the view as it was at a moment of the past, read-only, or as it is now.
+  /// `request.request` is ignored. The live world and the views of others do not change. Fails
+  /// unless open.
   Result<void> request_history(const HistoryRequest& request);
-  /// Returns true if the newest history request was sent, and not everything that it asked for has arrived.
+  /// Returns true if the newest history request was sent, and not everything that it asked for has
+  /// arrived.
   bool loading_history() const { return history_.is_loading(); }
   /// Returns why the newest history request was refused, or an empty string.
   const std::string& history_refusal() const { return history_.refusal(); }
 
   /// Sends a command, such as "undo". Fails with
-  ///   - bad_value unless open, while another command runs, or if the text is not 1 to kCommandBytesMax bytes of UTF-8;
+  ///   - bad_value unless open, while another command runs, or if the text is not 1 to
+  ///     kCommandBytesMax bytes of UTF-8;
   ///   - unknown_kind if the server accepts no commands.
   Result<void> command(std::string text);
   /// Returns true if a command was sent and its output is not complete.
   bool commanding() const { return is_commanding_; }
-  /// Returns the output of the newest command so far. If the connection ended before, a line says so.
+  /// Returns the output of the newest command so far. If the connection ended before, a line says
+  /// so.
   const std::vector<std::string>& command_lines() const { return command_lines_; }
   /// Returns true if the newest command has completed and succeeded.
   bool command_ok() const { return is_command_ok_; }
 
-  /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there are none. The view
-  /// waits for receive_cached(), at most kCacheWaitUsMax.
+  /// Returns the chunks to look up in the cache before the next view is sent, or nullopt if there
+  /// are none. The view waits for receive_cached(), at most kCacheWaitUsMax.
   std::optional<CacheLookup> take_cache_lookup();
-  /// Takes what the cache found for the oldest lookup that is open. It may be late, or of an earlier connection.
+  /// Takes what the cache found for the oldest lookup that is open. It may be late, or of an
+  /// earlier connection.
   void receive_cached(std::vector<KeyedChunk> found, TimeUs now_us);
   /// Returns the world as its server describes it now, or nullopt unless open.
   std::optional<CachedWorld> cached_world() const;
@@ -102,13 +114,15 @@ class ClientSession {
   View view() const { return connection_.view(); }
   /// Returns the number of chunks in view.
   std::size_t view_chunks() const;
-  /// Returns true if every chunk in view arrived on this connection or is unavailable, and none waits to be repaired.
+  /// Returns true if every chunk in view arrived on this connection or is unavailable, and none
+  /// waits to be repaired.
   bool loaded() const;
   /// Returns the number of pongs. If it has risen by two, a ping sent in between has come back.
   std::uint64_t pongs() const { return connection_.pongs(); }
   const ClockOffset& clock() const { return connection_.clock(); }
   const std::map<AuthorId, OtherPlayer>& others() const { return others_; }
-  /// Returns the server keys by world: those configured, and those of worlds seen for the first time.
+  /// Returns the server keys by world: those configured, and those of worlds seen for the first
+  /// time.
   const std::map<WorldId, PublicKey>& pinned() const { return connection_.config().pinned; }
   std::uint64_t connect_count() const { return connection_.connect_count(); }
 

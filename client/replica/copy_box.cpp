@@ -12,10 +12,10 @@
 namespace runstone {
 namespace {
 
-// Voxels go to the builder in this order, whatever the order of the chunks.
+// The builder gets the voxels in this order, whatever the order of the chunks.
 constexpr AxisOrder kOrder = AxisOrder::xyz;
 
-/// The part of a chunk that lies in the box, handed out from its first voxel to its last.
+/// Reads the part of a chunk that lies in the box, from its first voxel to its last.
 class PartReader {
  public:
   explicit PartReader(RunChunk part) : part_(std::move(part)) {}
@@ -71,13 +71,13 @@ Result<std::shared_ptr<const Clipboard>> copy_box(const Replica& replica, const 
   const std::int32_t edge = replica.chunk_edge();
   const ChunkCoord first = chunk_of(box.min, edge);
   const ChunkCoord last = chunk_of({box.max.x - 1, box.max.y - 1, box.max.z - 1}, edge);
-  std::vector<PartReader> parts;  // by z, then y, then x: a row of chunks along x after another
+  std::vector<PartReader> parts;  // by z, then y, then x
   for (std::int32_t z = first.z; z <= last.z; ++z) {
     for (std::int32_t y = first.y; y <= last.y; ++y) {
       for (std::int32_t x = first.x; x <= last.x; ++x) {
         const ChunkCoord at{x, y, z};
         const ShownPtr chunk = replica.shown({0, at});
-        if (!chunk) return fail(ErrorCode::not_found, "a chunk of the box to copy is not here");
+        if (!chunk) return fail(ErrorCode::not_found, "a chunk of the box to copy is not loaded");
         const VoxelBox part = intersect(box, box_of(at, edge));
         parts.emplace_back(reorder(cut(*chunk, local_of(part.min, edge), extent_of(part)), kOrder));
       }

@@ -1,4 +1,4 @@
-// Copy: what a replica shows inside a box, as a clipboard.
+// Copy: the voxels that a replica shows inside a box, as a clipboard.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -10,15 +10,17 @@
 
 namespace runstone {
 
-/// What becomes of empty voxels.
+/// How empty voxels are copied.
 enum class CopyEmpty : std::uint8_t {
-  as_empty,      // a paste empties there
-  as_untouched,  // a paste leaves what is there
+  as_empty,      // a paste empties these voxels
+  as_untouched,  // a paste leaves these voxels as they are
 };
 
-/// The shown voxels of a box, own edits without an answer included, run by run. bad_value if the box is empty or
-/// would touch nothing, limit_exceeded if a side is longer than 128 or the clipboard too long, not_found where a
-/// chunk of the box is not shown. O(runs of the chunks inside + lines of the box * chunks along them).
+/// Returns the shown voxels of a box, predicted edits included. Copies run by run. Fails with
+///   - bad_value if the box is empty, or if the paste would touch nothing;
+///   - limit_exceeded if a side is longer than 128 voxels, or if the clipboard is too long;
+///   - not_found if a chunk of the box is not shown.
+/// Cost: O(runs of the chunks inside + lines of the box * chunks along them).
 Result<std::shared_ptr<const Clipboard>> copy_box(const Replica& replica, const VoxelBox& box,
                                                   CopyEmpty empty);
 

@@ -1,5 +1,5 @@
-// LocalEdits: the edits of this client, from the click until they are known to be on disk (invariant 5). Every client
-// session uses this one state machine, whether it has a replica or not.
+// LocalEdits: the edits of this client, from the click until they are known to be on disk
+// (invariant 5). Every client session uses this one state machine, whether it has a replica or not.
 //
 //   submit --> pending --confirm--> confirmed --retire--> (removed, durable)
 //                 |   --reject----> (removed, rejected)
@@ -7,6 +7,7 @@
 //                 |   --resume, at most the server's mark--> asking --> as pending
 //   resume, above the server's mark: every state --> pending, and the edit is offered again
 //
+// An edit may be offered again at any time: its operation id makes sure that it is applied once.
 // Client sequences are assigned here, from 1, without gaps. One thread.
 #pragma once
 #include <cstdint>
@@ -22,14 +23,19 @@
 
 namespace runstone {
 
-/// Bound of the edits kept at a time. When it is reached, submit() fails until the server catches up.
+/// Bound of the edits kept at a time. When it is reached, submit() fails until the server catches
+/// up.
 inline constexpr std::size_t kLocalEditsMax = 16384;
 
 enum class LocalEditState : std::uint8_t {
-  pending,  // The server has not answered. A replica predicts the edit.
-  asking,  // The server has resolved it, but the answer was lost. It is sent again to get the answer.
-  confirmed,  // Its commit arrived. It is kept until it is durable, in case the server loses it.
-  unseen,     // The server has resolved it, and its commit will not arrive.
+  /// The server has not answered. A replica predicts the edit.
+  pending,
+  /// The server has resolved the edit, but the answer was lost. It is sent again to get the answer.
+  asking,
+  /// Its commit arrived. The edit is kept until it is durable, in case the server loses it.
+  confirmed,
+  /// The server has resolved the edit, and its commit will not arrive.
+  unseen,
 };
 
 struct LocalEdit {
@@ -74,14 +80,14 @@ class LocalEdits {
     LocalEdit edit;            // as it was before the answer
     bool is_resolved = false;  // the server had resolved the edit before: it is unseen now
   };
-  /// Takes a reject. "Already resolved" makes the edit unseen: it is durable once `reject.seq` is, or `newest` if the
-  /// server does not know its sequence. Any other reason removes the edit. Returns nullopt, and changes nothing, if
-  /// no edit of this sequence needs an answer.
+  /// Takes a reject. "Already resolved" makes the edit unseen: it is durable once `reject.seq` is,
+  /// or `newest` if the server does not know its sequence. Any other reason removes the edit.
+  /// Returns nullopt, and changes nothing, if no edit of this sequence needs an answer.
   std::optional<Rejection> reject(const Reject& reject, const Version& newest);
 
-  /// Starts a new connection: `resolved` is the highest client sequence that the server has resolved. The server lost
-  /// the edits above it, even if their commits were seen. They become pending and are returned, ascending. Pending
-  /// edits up to it become asking.
+  /// Starts a new connection: `resolved` is the highest client sequence that the server has
+  /// resolved. The server lost the edits above it, even if their commits were seen. They become
+  /// pending and are returned, ascending. Pending edits up to it become asking.
   std::vector<ClientSequence> resume(ClientSequence resolved);
 
   /// Edits that left because they are on disk, ascending.
@@ -97,8 +103,8 @@ class LocalEdits {
   const Map& all() const { return edits_; }
   /// Returns the edits to send after a connection opened, ascending: those that need an answer.
   std::vector<ClientSequence> unanswered() const;
-  /// Returns the edits that need an answer and were sent at `sent_us_max` or earlier, ascending. Ends at the first edit
-  /// that was never sent or was sent later.
+  /// Returns the edits that need an answer and were sent at `sent_us_max` or earlier, ascending.
+  /// Ends at the first edit that was never sent or was sent later.
   std::vector<ClientSequence> overdue(TimeUs sent_us_max) const;
   std::size_t pending_count() const;
   const LocalEditCounters& counters() const { return counters_; }

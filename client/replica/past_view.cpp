@@ -4,7 +4,7 @@
 
 namespace runstone {
 
-void PastView::show(const std::optional<PastMoment>& moment, ChunkTable& chunks) {
+void PastView::show(const std::optional<PastMoment>& moment, ReplicaChunks& chunks) {
   const bool is_from_past = std::exchange(moment_, moment).has_value();
   const bool keeps_current = is_from_past && is_past();
   for (auto& [key, chunk] : chunks) {

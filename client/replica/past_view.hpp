@@ -1,9 +1,10 @@
-// PastView: whether a replica shows the live world or a moment of the past, and what a change between them means for its
-// chunks. In the past the chunks are read-only: snapshots replace them, and nothing is predicted or applied. One thread.
+// PastView: whether a replica shows the live world or a moment of the past, and what a change
+// between them means for its chunks. In the past the chunks are read-only: snapshots replace them,
+// and nothing is predicted or applied. One thread.
 #pragma once
 #include <optional>
 
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "common/core/ids.hpp"
 
 namespace runstone {
@@ -20,12 +21,14 @@ class PastView {
   const std::optional<PastMoment>& moment() const { return moment_; }
   bool is_past() const { return moment_.has_value(); }
 
-  /// Shows a moment of the past, or the live world if `moment` is nullopt. What is shown stays until snapshots arrive.
+  /// Shows a moment of the past, or the live world if `moment` is nullopt. What is shown stays
+  /// until snapshots arrive.
   ///   - Into the past: pending edits and inboxes are cleared.
-  ///   - From moment to moment: chunks stay current, because the server sends only those that differ.
+  ///   - From moment to moment: chunks stay current, because the server sends only those that
+  ///     differ.
   ///   - Otherwise every chunk is expected again.
   /// Cost: O(chunks).
-  void show(const std::optional<PastMoment>& moment, ChunkTable& chunks);
+  void show(const std::optional<PastMoment>& moment, ReplicaChunks& chunks);
   /// A new connection shows the live world.
   void reset() { moment_.reset(); }
 

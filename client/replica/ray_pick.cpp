@@ -7,7 +7,8 @@
 namespace runstone {
 namespace {
 
-/// One axis of the walk: which voxel, which way, and the distances at which its borders are crossed.
+/// One axis of the walk: the current voxel, the direction, and the distances at which the ray
+/// crosses voxel borders.
 struct AxisWalk {
   AxisWalk(double from, double slope) {
     const double cell = std::floor(from);
@@ -32,7 +33,7 @@ struct AxisWalk {
   double width = std::numeric_limits<double>::infinity();
 };
 
-/// Reads shown voxels and keeps the chunk of the last one, since the next is mostly in it.
+/// Reads shown voxels. Keeps the chunk of the last voxel, because the next one is mostly in it.
 class ShownReader {
  public:
   explicit ShownReader(const Replica& replica) : replica_(replica), edge_(replica.chunk_edge()) {}
@@ -72,7 +73,7 @@ std::optional<RayHit> pick(const Replica& replica, const WorldPos& eye, const Lo
   ShownReader reader(replica);
   std::optional<Direction> face;
   double distance = 0;
-  // Each turn crosses one border, so the walk ends after about 3 * reach turns at most.
+  // Each iteration crosses one border, so the walk ends after about 3 * reach iterations at most.
   while (distance <= reach) {
     const VoxelPos at{walk[0].voxel, walk[1].voxel, walk[2].voxel};
     const auto material = reader.at(at);

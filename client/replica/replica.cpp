@@ -42,7 +42,8 @@ void Replica::expect_all_chunks(const SharedHistory& history) {
     chunk.latest = 0;
     chunk.behind_of = {};
     if (!chunk.confirmed() || history.trusts(chunk.confirmed()->version)) continue;
-    // The server that ordered this version may not have kept it. What is shown stays until the new snapshot.
+    // The server that ordered this version may not have kept it. What is shown stays until the new
+    // snapshot.
     chunks_.set_confirmed(chunk, nullptr);
     ++counters_.dropped_by_epoch;
   }
@@ -173,8 +174,8 @@ void Replica::receive(const Reject& reject, TimeUs now_us) {
       continue;
     }
     chunk->leave_to_snapshot(reject.client_seq);
-    // The commit never arrived, so the confirmed chunk may lack it. If the answer was asked for after a reconnection,
-    // every chunk arrives anew.
+    // The commit never arrived, so the confirmed chunk may lack it. If the answer was asked for
+    // after a reconnection, every chunk arrives anew.
     const bool may_lack = rejection->edit.state == LocalEditState::pending;
     if (chunk->confirmed() && may_lack && !past_.is_past()) updater_.request(*chunk, now_us);
   }

@@ -1,26 +1,32 @@
-// Replica: the client's copy of the chunks in view, always as the runs that arrived, never as a grid. Of each chunk it has
+// Replica: the client's copy of the chunks in view, always as the runs that arrived, never as a
+// grid. Of each chunk it has
 //   - the confirmed runs: the last snapshot, and every commit that follows it without a gap;
-//   - the shown runs: the confirmed runs with the pending local edits applied by the same apply_stack(). Where nothing
-//     is pending they are the same object as the confirmed runs.
+//   - the shown runs: the confirmed runs with the pending local edits applied by the same
+//     apply_stack(). Where nothing is pending they are the same object as the confirmed runs.
 //
-// How a local edit travels: submit() makes it pending (LocalEdits) and predicts it (ChunkUpdater::predict). Its commit
-// confirms it, and each chunk applies it from its inbox and drops the prediction. A reject drops the prediction, too.
-// The durable watermark retires it. A new connection offers it again if the server lost it.
+// How a local edit travels: submit() makes it pending (LocalEdits) and predicts it
+// (ChunkUpdater::predict). Its commit confirms it, and each chunk applies it from its inbox and
+// drops the prediction. A reject drops the prediction, too. The durable watermark retires it. A new
+// connection offers it again if the server lost it.
 //
-// How a snapshot travels: ChunkUpdater compares its version with the confirmed chunk. It replaces the chunk or ignores
-// the snapshot, applies the edits in the inbox that follow, and shows the result (ShownRuns), which queues the changed
-// layers (ChangeQueue) for the mesher.
+// How a snapshot travels: ChunkUpdater compares its version with the confirmed chunk. It replaces
+// the chunk or ignores the snapshot, applies the edits in the inbox that follow, and shows the
+// result (ShownRuns), which queues the changed layers (ChangeQueue) for the mesher.
 //
 // Only versions give the order, so messages of different classes may overtake each other:
-//   - An edit of a commit names the sequence that its chunk had before (`previous`). It is applied if the chunk stands
-//     there, dropped if the chunk stands at the edit or later, and held back otherwise.
-//   - A chunk with a gap, or with a wrong digest, accepts nothing but a snapshot, which it requests.
+//   - An edit of a commit names the sequence that its chunk had before (`previous`). It is applied
+//     if the chunk stands there, dropped if the chunk stands at the edit or later, and held back
+//     otherwise.
+//   - A chunk with a gap, or with a wrong digest, accepts nothing but a snapshot, which it
+//     requests.
 //   - A snapshot older than the confirmed chunk is ignored.
-// After a restart of the server (new epoch) only versions that it kept for sure are trusted (SharedHistory).
+// After a restart of the server (new epoch) only versions that it kept for sure are trusted
+// (SharedHistory).
 //
-// Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock. One thread; the chunks
-// that are returned are immutable and may be read from any thread. Bounds: chunks by the view; local edits by
-// kLocalEditsMax; commits held back by kInboxEditsMax per chunk; claims by kClaimsMax; the cache by kCacheOutboxMax.
+// Pure: no clock and no socket. Times are arguments, in microseconds of the client's steady clock.
+// One thread; the chunks that are returned are immutable and may be read from any thread. Bounds:
+// chunks by the view; local edits by kLocalEditsMax; commits held back by kInboxEditsMax per chunk;
+// claims by kClaimsMax; the cache by kCacheOutboxMax.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -30,12 +36,12 @@
 
 #include "client/replica/cache_outbox.hpp"
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
 #include "client/replica/chunk_updater.hpp"
 #include "client/replica/claims.hpp"
 #include "client/replica/local_edits.hpp"
 #include "client/replica/past_view.hpp"
 #include "client/replica/replica_changes.hpp"
+#include "client/replica/replica_chunks.hpp"
 #include "common/core/result.hpp"
 #include "common/edits/descriptor/height_limits.hpp"
 #include "common/runs/chunk.hpp"
@@ -61,8 +67,8 @@ class Replica {
   Replica(const Replica&) = delete;
   Replica& operator=(const Replica&) = delete;
 
-  /// Opens a connection: the first one, or another one to the same world. Returns the local edits to send, in client
-  /// order. They are found in local_edits().
+  /// Opens a connection: the first one, or another one to the same world. Returns the local edits
+  /// to send, in client order. They are found in local_edits().
   std::vector<ClientSequence> open(const SessionParameters& parameters);
   /// Forgets chunks and local edits, because the next connection is to another world.
   void reset();
@@ -74,7 +80,8 @@ class Replica {
   void set_view(const View& view);
   const std::optional<View>& view() const { return view_; }
 
-  /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the scheduled time. Fails
+  /// Shows a local edit at once and keeps it until it is durable. `submitted_us`: the click, or the
+  /// scheduled time. Fails
   ///   - before open(), and while the past is shown;
   ///   - if the descriptor is invalid, or exceeds the heights or the edit volume of the world;
   ///   - if it touches an unavailable chunk or more than kTouchedChunksMax chunks;
@@ -91,24 +98,33 @@ class Replica {
   void receive(const UniformChunks& uniform, const Arrival& arrival);
   /// The server cannot send these chunks: nothing is shown there, and edits there are refused.
   void receive(const ChunkUnavailable& unavailable);
-  /// Fails if the commit is of another epoch, or if a list of previous sequences does not fit its edit.
+  /// Fails if the commit is of another epoch, or if a list of previous sequences does not fit its
+  /// edit.
   Result<void> receive(const Commit& commit, const Arrival& arrival);
   void receive(const Reject& reject, TimeUs now_us);
   void receive(const Durable& durable);
   void receive(const DigestCheck& check, TimeUs now_us);
-  /// The chunks that follow are of another moment; nullopt: of the live world. What is shown stays until they arrive.
-  /// In the past nothing is predicted, and commits only resolve local edits. Back in the live world every chunk is
-  /// expected again, and pending edits are shown again.
+  /// The chunks that follow are of another moment; nullopt: of the live world. What is shown stays
+  /// until they arrive. In the past nothing is predicted, and commits only resolve local edits.
+  /// Back in the live world every chunk is expected again, and pending edits are shown again.
   void show_moment(const std::optional<PastMoment>& past);
   /// Repeats the requests for chunks that did not arrive within kRequestAgainUs.
   void tick(TimeUs now_us) { updater_.tick(now_us); }
 
-  /// Takes a chunk from a cache: it is shown at once, and claimed. Ignored if a chunk is held, in the past, and outside
-  /// of the view. Requires a version that SharedHistory trusts.
+  /// Takes a chunk from a cache: it is shown at once, and claimed. Ignored if a chunk is held, in
+  /// the past, and outside of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
+<<<<<<< HEAD
   /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the past.
   std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may have them.
+=======
+  /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the
+  /// past.
+  std::vector<HeldChunk> take_claims();
+  /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
+  /// have them.
+>>>>>>> h-replica
   std::vector<ChunkKey> missing() const;
   /// From now on chunks that leave the view are collected for the cache.
   void collect_for_cache() { outbox_.enable(); }
@@ -126,15 +142,16 @@ class Replica {
   /// Return null if nothing is held or shown.
   ChunkPtr confirmed(const ChunkKey& key) const;
   ShownPtr shown(const ChunkKey& key) const;
-  /// Returns a number that rises whenever the mesh of the chunk is out of date: when its shown voxels change, or those of
-  /// a neighbour at the common border. Returns 0 if nothing is shown.
+  /// Returns a number that rises whenever the mesh of the chunk is out of date: when its shown
+  /// voxels change, or those of a neighbour at the common border. Returns 0 if nothing is shown.
   std::uint64_t shown_serial(const ChunkKey& key) const;
   /// Returns nullopt if the chunk is not shown.
   std::optional<Material> shown_at(VoxelPos at) const;
   /// Returns the keys of all confirmed chunks, ascending.
   std::vector<ChunkKey> confirmed_keys() const;
   std::size_t confirmed_count() const { return chunks_.confirmed_count(); }
-  /// Chunks that the server has vouched for on this connection. After a reconnection the others may lack edits.
+  /// Chunks that the server has vouched for on this connection. After a reconnection the others may
+  /// lack edits.
   std::size_t current_count() const { return chunks_.vouched_count(); }
   /// Chunks for which a snapshot was requested.
   std::size_t awaiting_count() const { return chunks_.awaiting().size(); }
@@ -158,7 +175,7 @@ class Replica {
 
   std::optional<SessionParameters> parameters_;
   std::optional<View> view_;
-  ChunkTable chunks_;
+  ReplicaChunks chunks_;
   PastView past_;
   Claims claims_;
   CacheOutbox outbox_;

@@ -1,5 +1,5 @@
-// ReplicaChanges: what changed in a replica since its changes were last drained. The mesher, the latency recorder and the
-// user interface read them.
+// ReplicaChanges: what changed in a replica since its changes were last drained. The mesher, the
+// latency recorder and the user interface read them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -22,12 +22,12 @@ struct Arrival {
   TimeUs now_us = 0;       // the replica applies it
 };
 
-inline constexpr TimeUs kTimeUnknown = -1;
-
-/// The changed layers that the mesh of a chunk depends on, in the form of the arguments of mesh_rdm_layers().
+/// The changed layers that the mesh of a chunk depends on, in the form of the arguments of
+/// mesh_rdm_layers().
 struct VisibleLayers {
   DirtyLayers dirty;  // layers in which a shown voxel changed
-  /// By Direction: all changed layers of the neighbour, if the layer that touches this chunk changed; else empty.
+  /// By Direction: all changed layers of the neighbour, if the layer that touches this chunk
+  /// changed; else empty.
   std::array<DirtyLayers, kDirectionCount> beyond;
   VisibleLayers& operator|=(const VisibleLayers& other) {
     dirty |= other.dirty;
@@ -47,7 +47,8 @@ struct ChunkChange {
   std::vector<OperationId> edits;  // edits that this change contains, in the order applied
 };
 
-/// One edit that was applied in the replica: as a prediction, or at its place in the confirmed order.
+/// One edit that was applied in the replica: as a prediction, or at its place in the confirmed
+/// order.
 struct EditChange {
   OperationId op;
   Sequence seq = 0;          // 0 for a prediction
@@ -59,7 +60,8 @@ struct EditChange {
   TimeUs submitted_us = 0, ordered_us = 0;
   // This client's steady clock.
   TimeUs received_us = 0, unpacked_us = 0, applied_us = 0;
-  /// Chunks to mesh again because of this edit, neighbours at a border included. Empty if nothing visible changed.
+  /// Chunks to mesh again because of this edit, neighbours at a border included. Empty if nothing
+  /// visible changed.
   std::vector<ChunkKey> chunks;
 };
 
@@ -81,14 +83,14 @@ struct ReplicaChanges {
   std::vector<EditChange> edits;    // in the order applied
   std::vector<RejectedEdit> rejects;
   std::vector<ClientSequence> durable;  // local edits that are known to be on disk now
-  /// Local edits that the server resolved while this client was not connected, and whose commits will not arrive. They
-  /// were applied and are durable, or were rejected: the chunks show which.
+  /// Local edits that the server resolved while this client was not connected, and whose commits
+  /// will not arrive. They were applied and are durable, or were rejected: the chunks show which.
   std::vector<ClientSequence> unseen;
   std::vector<UnavailableChunk> unavailable;
 };
 
-/// Counts since the replica was made. A `chunk edit` is an edit in one chunk: an edit counts once per chunk. The counts of
-/// local edits are LocalEditCounters.
+/// Counts since the replica was made. A `chunk edit` is an edit in one chunk: an edit counts once
+/// per chunk. The counts of local edits are LocalEditCounters.
 struct ReplicaCounters {
   std::uint64_t snapshots_taken = 0;    // became the confirmed chunk
   std::uint64_t snapshots_stale = 0;    // older than the confirmed chunk: ignored
@@ -111,8 +113,8 @@ struct ReplicaCounters {
   std::uint64_t claimed = 0;         // chunks that this client claimed to hold
   std::uint64_t same_taken = 0;      // claimed chunks that the server has not modified
   std::uint64_t updates_taken = 0;   // claimed chunks that were completed by the edits they lacked
-  std::uint64_t dropped_by_epoch =
-      0;  // chunks newer than what a restarted server is known to have kept
+  /// Chunks newer than what a restarted server is known to have kept.
+  std::uint64_t dropped_by_epoch = 0;
 };
 
 }  // namespace runstone

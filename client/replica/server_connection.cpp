@@ -15,7 +15,7 @@ bool is_final(GoodbyeReason reason) {
 
 }  // namespace
 
-// ---- from offline to open, and back
+// Connection.
 
 void ServerConnection::connected(const Nonce& nonce, TimeUs now_us) {
   disconnected();
@@ -23,7 +23,7 @@ void ServerConnection::connected(const Nonce& nonce, TimeUs now_us) {
   hello_ = make_hello(config_, nonce);
   outgoing_.push_back(hello_);
   state_ = SessionState::hello_sent;
-  heard_us_ = now_us;
+  last_message_us_ = now_us;
 }
 
 void ServerConnection::disconnected() {
@@ -36,7 +36,7 @@ void ServerConnection::disconnected() {
 
 ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arrival& arrival) {
   if (!accepts_input()) return Dispatch::handled;
-  heard_us_ = arrival.now_us;
+  last_message_us_ = arrival.now_us;
   if (const auto* goodbye = std::get_if<Goodbye>(&message)) {
     end_ = SessionEnd{goodbye->reason, goodbye->text, true, is_final(goodbye->reason)};
     wants_close_ = true;
@@ -47,10 +47,20 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     fail_with(refusal->reason, refusal->text);
     return Dispatch::handled;
   }
+<<<<<<< HEAD
   if (auto* welcome = std::get_if<Welcome>(&message)) return on_welcome(std::move(*welcome));
   if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
     on_session_accepted(*ready, arrival.now_us);
     return Dispatch::ready;
+=======
+  if (const auto* accepted = std::get_if<SessionAccepted>(&message)) {
+    if (state_ != SessionState::authenticating) {
+      fail_with(GoodbyeReason::unexpected_message, "session accepted in the wrong state");
+      return Dispatch::handled;
+    }
+    on_session_accepted(*accepted, arrival.now_us);
+    return Dispatch::session_accepted;
+>>>>>>> h-replica
   }
   if (const auto* pong = std::get_if<Pong>(&message); pong != nullptr && is_open()) {
     clock_.add(pong->sent_us, pong->server_us, arrival.received_us);
@@ -80,8 +90,8 @@ ServerConnection::Dispatch ServerConnection::on_welcome(Welcome welcome) {
   return is_another_world ? Dispatch::another_world : Dispatch::handled;
 }
 
-void ServerConnection::on_session_accepted(const SessionAccepted& ready, TimeUs now_us) {
-  author_ = ready.author;
+void ServerConnection::on_session_accepted(const SessionAccepted& accepted, TimeUs now_us) {
+  author_ = accepted.author;
   ++connect_count_;
   state_ = SessionState::open;
   ping_us_ = now_us - kPingEveryUs;
@@ -98,11 +108,11 @@ void ServerConnection::fail_with(GoodbyeReason reason, std::string text) {
   close(reason, std::move(text));
 }
 
-// ---- what is sent
+// Sending.
 
 bool ServerConnection::tick(TimeUs now_us, TimeUs ping_every_us) {
   if (!accepts_input()) return false;
-  if (now_us - heard_us_ > kServerSilenceUsMax) {
+  if (now_us - last_message_us_ > kServerSilenceUsMax) {
     fail_with(GoodbyeReason::timed_out, "server is silent");
     return false;
   }
@@ -121,15 +131,16 @@ bool ServerConnection::tick(TimeUs now_us, TimeUs ping_every_us) {
 
 TimeUs ServerConnection::tick_due_us(TimeUs ping_every_us) const {
   if (state_ == SessionState::offline) return std::numeric_limits<TimeUs>::max();
-  TimeUs due_us = heard_us_ + kServerSilenceUsMax + 1;
+  TimeUs due_us = last_message_us_ + kServerSilenceUsMax + 1;
   if (!is_open()) return due_us;
   due_us = std::min(due_us, ping_us_ + ping_every_us);
   if (pose_sent_ != pose_) due_us = std::min(due_us, move_us_ + kMoveEveryUs);
   return due_us;
 }
 
-void ServerConnection::send_edit(ClientSequence seq, const LocalEdit& own) {
-  outgoing_.push_back(EditRequest{seq, clock_.to_server(own.submitted_us).value_or(0), own.edit});
+void ServerConnection::send_edit(ClientSequence seq, const LocalEdit& local) {
+  outgoing_.push_back(
+      EditRequest{seq, clock_.to_server(local.submitted_us).value_or(0), local.edit});
 }
 
 void ServerConnection::request_chunks(const std::vector<ChunkKey>& keys) {

@@ -1,6 +1,6 @@
-// SharedHistory: which versions that a client holds from an earlier connection are still history that the server shares.
-// After a crash a server comes back without the edits that were not durable, and gives their sequences to other edits.
-// Pure.
+// SharedHistory: which versions that a client holds from an earlier connection are still history
+// that the server shares. After a crash a server comes back without the edits that were not
+// durable, and gives their sequences to other edits. Pure.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -19,14 +19,15 @@ struct ServerMark {
 
 class SharedHistory {
  public:
-  /// `before`: the mark of the connection on which the chunks were received; nullopt if there was none. `now`: the mark
-  /// in the new welcome.
+  /// `before`: the mark of the connection on which the chunks were received; nullopt if there was
+  /// none. `now`: the mark in the new welcome.
   SharedHistory(const std::optional<ServerMark>& before, const ServerMark& now)
       : epoch_(now.epoch) {
-    // Of the edits of an earlier epoch, only those known to be durable survived for sure. The log may have grown past
-    // its old end since, with other edits.
+    // Of the edits of an earlier epoch, only those known to be durable survived for sure. The log
+    // may have grown past its old end since, with other edits.
     common_ = before ? std::min(before->durable, now.durable) : 0;
-    // Epochs and durable sequences decrease only where a backup was restored. Then no sequence is common for sure.
+    // Epochs and durable sequences decrease only where a backup was restored. Then no sequence is
+    // common for sure.
     went_back_ = before && (now.epoch < before->epoch || now.durable < before->durable ||
                             (now.epoch == before->epoch && now.head < before->head));
   }

@@ -43,7 +43,8 @@ void ShownRuns::hide(TrackedChunk& chunk) {
   }
 }
 
-/// Queues for the chunk `key`, if it is shown, that these layers of its neighbour on `side` changed.
+/// Queues for the chunk `key`, if it is shown, that these layers of its neighbour on `side`
+/// changed.
 void ShownRuns::change_border(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
                               std::span<EditChange* const> cause) {
   TrackedChunk* chunk = chunks_.find(key);

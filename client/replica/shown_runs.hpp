@@ -1,32 +1,34 @@
-// ShownRuns: replaces the runs that a replica shows, and queues the change for the mesher: for the chunk itself, and for
-// the neighbours at whose border a voxel changed. Every change of shown runs goes through here. One thread.
+// ShownRuns: replaces the runs that a replica shows, and queues the change for the mesher: for the
+// chunk itself, and for the neighbours at whose border a voxel changed. Every change of shown runs
+// goes through here. One thread.
 #pragma once
 #include <cstdint>
 #include <span>
 
 #include "client/replica/change_queue.hpp"
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 namespace runstone {
 
 class ShownRuns {
  public:
   /// Both must outlive this object.
-  ShownRuns(ChunkTable& chunks, ChangeQueue& changes) : chunks_(chunks), changes_(changes) {}
+  ShownRuns(ReplicaChunks& chunks, ChangeQueue& changes) : chunks_(chunks), changes_(changes) {}
   ShownRuns(const ShownRuns&) = delete;
   ShownRuns& operator=(const ShownRuns&) = delete;
 
-  /// Shows `next`, which contains the edits `cause` that were not shown before. Queues nothing if no voxel differs.
-  /// Cost: O(runs of both).
+  /// Shows `next`, which contains the edits `cause` that were not shown before. Queues nothing if
+  /// no voxel differs. Cost: O(runs of both).
   void show(TrackedChunk& chunk, ShownPtr next, std::span<EditChange* const> cause);
-  /// Shows nothing any more. Queues the removal even if nothing was shown, because neighbours wait for the chunk.
+  /// Shows nothing any more. Queues the removal even if nothing was shown, because neighbours wait
+  /// for the chunk.
   void hide(TrackedChunk& chunk);
 
  private:
   void change_border(const ChunkKey& key, Direction side, const DirtyLayers& dirty,
                      std::span<EditChange* const> cause);
 
-  ChunkTable& chunks_;
+  ReplicaChunks& chunks_;
   ChangeQueue& changes_;
   std::uint64_t last_serial_ = 0;
 };

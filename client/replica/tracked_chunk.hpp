@@ -2,7 +2,8 @@
 //   - the confirmed runs and the shown runs;
 //   - the pending edits: local edits that the confirmed runs do not contain yet;
 //   - the inbox: ordered edits that arrived before the edits or the snapshot that they follow.
-// The state and the confirmed chunk are changed by ChunkTable only, which counts them. One thread.
+// The state and the confirmed chunk are changed by ReplicaChunks only, which counts them. One
+// thread.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -45,8 +46,8 @@ class TrackedChunk {
     ClientSequence seq = 0;
     EditDescriptor edit;
     Sequence confirmed_at = 0;  // sequence of its commit; 0: none has arrived
-    bool until_snapshot =
-        false;  // its answer was missed, so the next snapshot contains or excludes it
+    /// Its answer was missed. The next snapshot contains or excludes the edit.
+    bool until_snapshot = false;
   };
 
   const ChunkKey key;
@@ -55,16 +56,20 @@ class TrackedChunk {
   std::vector<PendingEdit> pending;  // ascending by seq
   std::vector<InboxEdit> inbox;      // ascending by sequence
   Sequence latest = 0;               // newest edit of this chunk seen on this connection
-  Version behind_of;  // newest version above ours that a digest check named on this connection
+  /// Newest version above the confirmed one that a digest check named on this connection.
+  Version behind_of;
   std::optional<TimeUs> requested_us;  // last request for a snapshot
-  std::optional<Version> cached;  // version that was last handed to the cache, or that came from it
+  /// Version that was last handed to the cache, or that came from it.
+  std::optional<Version> cached;
 
   ChunkState state() const { return state_; }
   bool is_current() const { return state_ == ChunkState::current; }
   bool is_unavailable() const { return state_ == ChunkState::unavailable; }
-  /// Returns null until the first snapshot, and after a restart of the server that may have lost this version.
+  /// Returns null until the first snapshot, and after a restart of the server that may have lost
+  /// this version.
   const ChunkPtr& confirmed() const { return confirmed_; }
-  /// Returns true if the server vouches for the confirmed chunk and the cache does not have this version.
+  /// Returns true if the server vouches for the confirmed chunk and the cache does not have this
+  /// version.
   bool is_for_cache() const { return is_current() && confirmed_ && cached != confirmed_->version; }
 
   /// Adds a local edit to the pending edits, in client order, unless it is there.
@@ -75,7 +80,8 @@ class TrackedChunk {
   void confirm_pending(ClientSequence seq, Sequence at);
   /// Leaves a pending edit to the next snapshot. Does nothing if the edit is not pending here.
   void leave_to_snapshot(ClientSequence seq);
-  /// Drops the pending edits that a snapshot at `seq` contains or excludes for sure. Returns how many.
+  /// Drops the pending edits that a snapshot at `seq` contains or excludes for sure. Returns how
+  /// many.
   std::size_t drop_answered(Sequence seq);
 
   /// What advance() took from the inbox.
@@ -85,19 +91,19 @@ class TrackedChunk {
     std::vector<OrderedPtr> contained;  // the confirmed runs contain them already
     Version version;                    // after the stack
   };
-  /// Takes edits from the front of the inbox until one does not follow the version reached. Local edits among them are
-  /// no longer pending. Requires confirmed().
+  /// Takes edits from the front of the inbox until one does not follow the version reached. Local
+  /// edits among them are no longer pending. Requires confirmed().
   Advance advance();
 
-  /// Returns the runs to show: those of the confirmed chunk itself if nothing is pending, otherwise a copy with the
-  /// pending edits applied. Requires confirmed().
+  /// Returns the runs to show: those of the confirmed chunk itself if nothing is pending, otherwise
+  /// a copy with the pending edits applied. Requires confirmed().
   ShownPtr predicted(ApplyScratch& scratch) const;
 
   /// Returns the world position of the first voxel of `voxels`, which are runs of this chunk.
   VoxelPos origin(const RunChunk& voxels) const;
 
  private:
-  friend class ChunkTable;
+  friend class ReplicaChunks;
   ChunkState state_ = ChunkState::expected;
   ChunkPtr confirmed_;
 };

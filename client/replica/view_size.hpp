@@ -1,4 +1,4 @@
-// View size: how many chunks a view holds.
+// View size: the number of chunks in a view.
 #pragma once
 #include <cstddef>
 
@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-/// O(radius_h^2).
+/// Cost: O(radius_h^2).
 inline std::size_t chunks_in(const View& view) {
   const int radius = view.radius_h;
   std::size_t columns = 0;

@@ -16,7 +16,7 @@ std::size_t bucket_of(std::uint64_t value) {
   return kSub + (shift - 1) * (kSub / 2) + ((value >> shift) - kSub / 2);
 }
 
-/// Middle of a bucket's values.
+/// Returns the middle of a bucket's values.
 std::int64_t value_of(std::size_t bucket) {
   if (bucket < kSub) return static_cast<std::int64_t>(bucket);
   const std::uint64_t shift = (bucket - kSub) / (kSub / 2) + 1;

@@ -102,7 +102,8 @@ void LatencyRecorder::take_edit(const EditChange& change,
   }
   for (const ChunkKey& chunk : change.chunks) {
     const auto serial = serials.find(chunk);
-    if (serial == serials.end()) continue;  // It left the view before the changes were drained.
+    // The chunk left the view before the changes were drained.
+    if (serial == serials.end()) continue;
     waiters_[chunk].push_back({key, serial->second, false, false});
     ++edit.chunks_left;
   }
@@ -204,7 +205,8 @@ LatencyReport LatencyRecorder::report() const {
   for (const auto& [key, edit] : open_) {
     PathReport& path = report.paths[static_cast<std::size_t>(edit.path)];
     ++path.edits;
-    // Stages that all chunks reached count as they are. The chunks that are missing make the other stages infinite.
+    // Stages that all chunks reached count as they are. The chunks that are missing make the other
+    // stages infinite.
     const bool all_meshed = !unmeshed.contains(key);
     for (std::size_t s = 0; s <= index(last_); ++s) {
       const auto stage = static_cast<LatencyStage>(s);

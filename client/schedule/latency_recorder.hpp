@@ -1,14 +1,17 @@
-// LatencyRecorder: times every edit on its path to this client's screen, stage by stage (design: latency-plus-mesh).
+// LatencyRecorder: times every edit on its path to this client's screen, stage by stage (design:
+// latency-plus-mesh).
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
 // Three paths are recorded separately:
-//   - own_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed -> uploaded -> presented;
-//   - own_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked -> applied. The time until it is
-//     durable is recorded apart;
-//   - remote: all stages. Times of the server's clock are converted with the offset known when the edit arrived.
-// An edit is in the first mesh made from runs that contain it. An edit of several chunks passes a stage when its last chunk
-// does. Open loop: submit is the time for which an edit was scheduled, not the time at which the program submitted it. An
-// edit that is never seen counts as infinite. All times are arguments, in microseconds of this client's steady clock. One
-// thread.
+//   - own_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed ->
+//     uploaded -> presented;
+//   - own_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked ->
+//     applied. The time until it is durable is recorded apart;
+//   - remote: all stages. Times of the server's clock are converted with the offset known when the
+//     edit arrived.
+// An edit is in the first mesh made from runs that contain it. An edit of several chunks passes a
+// stage when its last chunk does. Open loop: submit is the time for which an edit was scheduled,
+// not the time at which the program submitted it. An edit that is never seen counts as infinite.
+// All times are arguments, in microseconds of this client's steady clock. One thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -43,15 +46,16 @@ inline constexpr std::size_t kEditPathCount = 3;
 const char* to_string(EditPath path);
 
 struct PathReport {
-  /// From submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is "to pixels".
+  /// From submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is "to
+  /// pixels".
   std::array<Histogram, kLatencyStageCount> since_submit;
   /// From the end of the previous recorded stage, or from submit for the first one.
   std::array<Histogram, kLatencyStageCount> step;
   std::uint64_t edits = 0;           // seen on this path, or due and never seen
   std::uint64_t without_effect = 0;  // no visible voxel changed: no later stage is recorded
   std::uint64_t left_view = 0;       // its chunks left the view before they were drawn
-  std::uint64_t unknown_submit =
-      0;  // its sender or this client had no clock offset: in `step` only
+  /// Its sender or this client had no clock offset: recorded in `step` only.
+  std::uint64_t unknown_submit = 0;
 };
 
 struct LatencyReport {
@@ -76,7 +80,8 @@ class LatencyRecorder {
   void not_submitted();
   void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
 
-  /// A mesh made from the chunk's shown runs is ready, or on the GPU. `serial`: the Replica::shown_serial() of the runs.
+  /// A mesh made from the chunk's shown runs is ready, or on the GPU. `serial`: the
+  /// Replica::shown_serial() of these runs.
   void meshed(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   void uploaded(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   /// The frame with everything uploaded so far is on the screen.
@@ -116,8 +121,8 @@ class LatencyRecorder {
   std::set<ClientSequence> unconfirmed_;    // local edits that are predicted and not confirmed
   std::map<EditKey, OpenEdit> open_;
   std::map<ChunkKey, std::vector<Waiter>> waiters_;
-  std::set<EditKey>
-      finished_;  // the last kFinishedMax, so that an edit whose chunks arrive late counts once
+  /// The last kFinishedMax edits, so that an edit whose chunks arrive late counts once.
+  std::set<EditKey> finished_;
   std::deque<EditKey> finished_order_;
 };
 

@@ -44,7 +44,7 @@ void MeshPlanner::take(std::span<const ChunkChange> changes) {
       continue;
     }
     mark_whole(chunk.key, state);
-    // Neighbours that had a job had it without this chunk, or with what it was when it was last in view.
+    // The jobs of neighbours were made without this chunk, or with an older version of it.
     for_each_beside(chunk.key, [this](const ChunkKey& key, State& other) {
       if (other.counted) {
         mark_whole(key, other);
@@ -83,22 +83,22 @@ void MeshPlanner::mark(const ChunkKey& key, State& state) {
   place(key, state);
 }
 
-/// What was meshed of the chunk does not help to mesh what is there now.
+/// Marks the chunk to be meshed as a whole. Makes its open job void.
 void MeshPlanner::mark_whole(const ChunkKey& key, State& state) {
   state.mesh.reset();
   if (std::exchange(state.job, 0) != 0) state.edited = state.edited || state.edited_in_job;
   mark(key, state);
 }
 
-/// Puts the chunk where it belongs in the order of jobs, or out of it.
+/// Inserts the chunk at its place in the order of jobs, or removes it.
 void MeshPlanner::place(const ChunkKey& key, State& state) {
   if (state.rank) {
     ready_.erase(*state.rank);
     state.rank.reset();
   }
   if (!state.dirty || state.job != 0 || !ready(key, state)) return;
-  const int turn = state.mesh ? 0 : state.edited ? 1 : 2;
-  state.rank = Rank{turn, distance_squared(key.at, eye_), key};
+  const int priority = state.mesh ? 0 : state.edited ? 1 : 2;
+  state.rank = Rank{priority, distance_squared(key.at, eye_), key};
   ready_.insert(*state.rank);
 }
 
@@ -109,7 +109,8 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
     if (size == JobSize::layers && !state.mesh) return std::nullopt;
     ready_.erase(ready_.begin());
     state.rank.reset();
-    if (!ready(key, state)) continue;  // a neighbour left since; its return places the chunk again
+    // A neighbour has left since. When it returns, the chunk is placed again.
+    if (!ready(key, state)) continue;
     MeshJob job;
     job.key = key;
     job.serial = replica_.shown_serial(key);
@@ -119,16 +120,16 @@ std::optional<MeshJob> MeshPlanner::next(JobSize size) {
       job.neighbours[i] = replica_.shown(beside(key, static_cast<Direction>(i)));
       if (!job.neighbours[i]) open_sides = static_cast<std::uint8_t>(open_sides | 1U << i);
     }
-    // The kept mesh and what changed lead to this picture, if all of its changes were told.
-    const bool leads = state.mesh && state.serial == job.serial &&
-                       state.order == job.chunk->order && state.open_sides == open_sides;
-    if (leads) {
+    // The kept mesh and the changed layers give the present mesh if take() has got all changes.
+    const bool is_incremental = state.mesh && state.serial == job.serial &&
+                                state.order == job.chunk->order && state.open_sides == open_sides;
+    if (is_incremental) {
       job.before = std::move(state.mesh);
       job.changed = state.changed;
     }
     state.mesh.reset();
-    if (size == JobSize::layers && !leads) {
-      place(key, state);  // among the whole ones
+    if (size == JobSize::layers && !is_incremental) {
+      place(key, state);  // among the chunks to be meshed as a whole
       continue;
     }
     job.number = ++jobs_;

@@ -1,20 +1,26 @@
-// MeshPlanner: which chunk to mesh next, and from what. Pure; the threads are MeshPool's.
-//   - changes of one chunk are joined until it is meshed; it has one job at a time, and what changes meanwhile
-//     is for the next;
-//   - a chunk waits for neighbours that are in view and not here yet; beyond the view, or where the server
-//     has none to send, a missing neighbour means that the faces at the edge are drawn, and the chunk is
-//     meshed again should the neighbour come; an edited chunk does not wait at all, so that no edit is seen
-//     late because terrain is;
-//   - a change at the border meshes the neighbour again too;
-//   - first chunks of which layers changed, then other edited ones, then the nearest to the eye.
-// The newest mesh of each chunk is kept, and with it the layers that changed since its job was made; the next
-// job takes both along, so that only those layers are meshed again. The news of the replica are the one
-// source of these layers: whatever replaces shown runs (a prediction, one taken back, a commit, a snapshot)
-// passes there, with all layers between the old runs and the new. A chunk is meshed as a whole where that
-// does not describe the way from the kept mesh to the picture of now: there is no mesh yet, the chunk or a
-// neighbour came, went or came back since, the axis order is another, or there are news not yet taken.
-// One thread. Cost: O(log chunks) a change or job, O(chunks to mesh) when the eye crosses into another chunk.
-// Memory: kept_bytes(), and some 500 bytes a chunk in view.
+// MeshPlanner: decides which chunk is meshed next, and from what. Pure; MeshPool has the threads.
+//   - Changes of one chunk are merged until it is meshed. A chunk has one job at a time; later
+//     changes are for the next job.
+//   - A chunk waits for neighbours that are in view and have not arrived. Beyond the view, or where
+//     the server has no chunk, a missing neighbour means that the faces at that border are drawn.
+//     If the neighbour arrives later, the chunk is meshed again.
+//   - An edited chunk does not wait, so that late terrain does not delay an edit.
+//   - A change at a border also meshes the neighbour again.
+//   - The order is: chunks of which layers changed, other edited chunks, then the nearest to the
+//     eye.
+//
+// The planner keeps the newest mesh of each chunk, and the layers that changed since its job was
+// made. The next job takes both, so that only those layers are meshed again. The changes of the
+// replica are the only source of these layers: whatever replaces shown runs (a prediction, its
+// removal, a commit, a snapshot) queues all layers that differ. A chunk is meshed as a whole if the
+// kept mesh and these layers do not give its present mesh:
+//   - it has no mesh yet;
+//   - the chunk or a neighbour arrived, left, or came back since;
+//   - the axis order changed;
+//   - there are changes that take() has not got yet.
+//
+// One thread. Cost: O(log chunks) per change or job; O(chunks to mesh) when the eye enters another
+// chunk. Memory: kept_bytes(), and about 500 bytes per chunk in view.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -34,24 +40,24 @@
 
 namespace runstone {
 
-/// Null: none.
+/// Null if there is no mesh.
 using MeshPtr = std::shared_ptr<const ChunkMesh>;
 
 struct MeshJob {
   ChunkKey key;
   std::uint64_t number = 0;  // rises with every job
-  std::uint64_t serial = 0;  // Replica::shown_serial() of what is meshed
+  std::uint64_t serial = 0;  // Replica::shown_serial() of the meshed runs
   ShownPtr chunk;
-  std::array<ShownPtr, kDirectionCount> neighbours;  // null: beyond the view
-  /// The mesh to start from, and the layers that changed since, as mesh_rdm_layers() wants them. Null: mesh
-  /// the whole chunk.
+  std::array<ShownPtr, kDirectionCount> neighbours;  // null: beyond the view, or unavailable
+  /// The mesh to start from, and the layers that changed since, as arguments of mesh_rdm_layers().
+  /// Null if the whole chunk is to be meshed.
   MeshPtr before;
   VisibleLayers changed;
 };
 
 enum class JobSize : std::uint8_t {
   any,
-  layers,  // a mesh is kept, of which layers are to be made anew: some 10 us
+  layers,  // only jobs that start from a kept mesh: about 10 us each
 };
 
 class MeshPlanner {
@@ -59,26 +65,28 @@ class MeshPlanner {
   explicit MeshPlanner(const Replica& replica) : replica_(replica) {}
 
   void take(std::span<const ChunkChange> changes);
-  /// The view of the replica moved: chunks at its edge may not wait any longer.
+  /// The view of the replica moved. Chunks at its edge may not have to wait any longer.
   void view_changed();
   void set_eye(ChunkCoord eye);
 
-  /// The next job of this size; none while everything left waits for a neighbour or for a result. Every job must be
-  /// finished, or made void.
+  /// Returns the next job of this size, or nullopt while every chunk left waits for a neighbour or
+  /// a result. Pass its mesh to finish(), unless forget_meshes() made the job void.
   std::optional<MeshJob> next(JobSize size = JobSize::any);
-  /// Takes the mesh of a job that is done, and keeps it. Returns whether it should be drawn: not if its chunk
-  /// left the view since, even if it came back, or if the job was made void.
+  /// Takes and keeps the mesh of a finished job. Returns true if it should be drawn. Returns false
+  /// if the chunk has left the view since, even if it came back, or if the job was made void.
   bool finish(const ChunkKey& key, std::uint64_t number, MeshPtr mesh);
-  /// No mesh holds any more, nor will that of any job out: materials look different now. Meshes all again.
+  /// Drops all meshes and makes all open jobs void, because materials look different now. Every
+  /// chunk is meshed again.
   void forget_meshes();
 
-  /// Chunks to mesh, and those of them that need not wait.
+  /// The number of chunks to mesh, and of those among them that do not have to wait.
   std::size_t dirty_count() const { return dirty_; }
   std::size_t ready_count() const { return ready_.size(); }
   std::uint64_t jobs() const { return jobs_; }
-  /// Chunks that got at least one job. jobs() / this is the number of meshes per chunk.
+  /// Returns the number of chunks that got at least one job. jobs() divided by it is the number of
+  /// meshes per chunk.
   std::uint64_t chunks_meshed() const { return chunks_; }
-  /// Bytes of the meshes kept at the moment. O(chunks).
+  /// Returns the size of the kept meshes, in bytes. Cost: O(chunks).
   std::size_t kept_bytes() const;
 
  private:
@@ -86,12 +94,12 @@ class MeshPlanner {
   struct State {
     bool dirty = false;
     bool edited = false;
-    bool edited_in_job = false;  // and not meshed yet if that job is made void
-    bool counted = false;        // in chunks_
-    std::uint64_t job = 0;       // under way; 0: none
-    std::uint64_t serial = 0;    // of the newest news
+    bool edited_in_job = false;  // `edited` returns to true if that job is made void
+    bool counted = false;        // counted in chunks_
+    std::uint64_t job = 0;       // number of the open job; 0: none
+    std::uint64_t serial = 0;    // of the newest change
     VisibleLayers changed;       // since the newest job was made
-    // What that job was made from, and its mesh: null while it is under way, and where nothing is known of it.
+    // The sources of the newest job, and its mesh. The mesh is null while the job is open or void.
     AxisOrder order{};
     std::uint8_t open_sides = 0;  // bit per Direction: there was no neighbour
     MeshPtr mesh;

@@ -1,6 +1,7 @@
-// MeshPool: threads that mesh. Jobs go in from and results come out to one thread (the client's main thread).
-// Bounded: at most `capacity` jobs wait or run; push() answers false then, and the planner keeps the work,
-// joined. With no workers a job is meshed inside push(): for tests and machines with one core.
+// MeshPool: threads that mesh chunks. One thread, the client's main thread, pushes jobs and takes
+// results. At most `capacity` jobs wait or run. When it is reached, push() returns false and the
+// planner keeps the work, merged. Without workers push() meshes the job itself: for tests and
+// machines with one core.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -23,10 +24,10 @@ struct MeshResult {
   ChunkKey key;
   std::uint64_t number = 0, serial = 0;  // of the job
   std::int32_t edge = 0;                 // voxels
-  MeshPtr mesh;              // of its own, or the one that all chunks without quads share
-  bool layers_only = false;  // the mesh before served for the rest
-  std::int64_t mesh_ns = 0;  // from the job to the mesh
-  TimeUs meshed_us = 0;      // when it was done
+  MeshPtr mesh;                          // chunks without quads share one mesh
+  bool layers_only = false;              // the other layers are those of the previous mesh
+  std::int64_t mesh_ns = 0;              // duration
+  TimeUs meshed_us = 0;                  // when meshing ended
 };
 
 class MeshPool {
@@ -35,24 +36,24 @@ class MeshPool {
   using Wake = std::function<void()>;             // called from a worker after each result
 
   MeshPool(VisibilityTable visibility, unsigned workers, ClockNs clock, Wake wake);
-  /// Drops jobs that wait, lets running ones end.
+  /// Drops the jobs that wait, and waits for the running ones.
   ~MeshPool();
   MeshPool(const MeshPool&) = delete;
   MeshPool& operator=(const MeshPool&) = delete;
 
   bool push(MeshJob job);
-  /// Meshes on the calling thread, the one that pushes.
-  MeshResult mesh_here(const MeshJob& job) { return mesh(job, own_scratch_); }
-  /// Results so far, in the order they were done.
+  /// Meshes on the calling thread. Thread: the one that pushes.
+  MeshResult mesh_here(const MeshJob& job) { return mesh(job, push_scratch_); }
+  /// Returns the results so far, in the order in which they were finished.
   std::vector<MeshResult> take_results();
-  /// Jobs that wait or run, and results not taken.
+  /// Returns the number of jobs that wait or run, plus the results that were not taken.
   std::size_t in_flight() const;
   std::size_t capacity() const { return capacity_; }
 
  private:
   struct Scratch {
     RdmScratch rdm;
-    ChunkMesh mesh;  // grows; what is kept of it is a copy of the right size
+    ChunkMesh mesh;  // its capacity grows; the result is a copy of the right size
   };
   void work(const std::stop_token& stop);
   MeshResult mesh(const MeshJob& job, Scratch& scratch) const;
@@ -67,7 +68,7 @@ class MeshPool {
   std::deque<MeshJob> jobs_;  // guarded by mutex_, as are the next two
   std::vector<MeshResult> results_;
   std::size_t in_flight_ = 0;
-  Scratch own_scratch_;  // of the thread that pushes
+  Scratch push_scratch_;  // used by the thread that pushes
   std::vector<std::jthread> threads_;
 };
 

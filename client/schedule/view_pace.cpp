@@ -9,7 +9,7 @@ bool has_turned(const View& from, const View& to) {
   if (from.cone != to.cone) return true;
   if (to.cone == 0) return false;
   const auto yaw = static_cast<std::int16_t>(
-      static_cast<std::uint16_t>(to.yaw - from.yaw));  // the short way round
+      static_cast<std::uint16_t>(to.yaw - from.yaw));  // the smaller of the two angles
   return std::abs(std::int32_t{yaw}) > kViewTurn ||
          std::abs(std::int32_t{to.pitch} - std::int32_t{from.pitch}) > kViewTurn;
 }

@@ -1,7 +1,7 @@
-// ViewPace: when the view of a player who moves or turns follows. Every new view costs the server a walk over what is
-// not sent yet, so a player who crosses chunks or turns round faster than kViewEveryUs takes the view along in steps,
-// and looking about a little is no step. The first step comes at once and the last one always comes: it is due until
-// it is taken. Pure. One thread.
+// ViewPace: decides when the view follows a player who moves or turns. For every new view the
+// server walks over all chunks that it has not sent. So the view moves at most once per
+// kViewEveryUs, and a small turn of the head does not move it. The first step is due at once. The
+// last step stays due until it is taken. Pure. One thread.
 #pragma once
 #include <optional>
 
@@ -11,14 +11,16 @@
 
 namespace runstone {
 
-inline constexpr TimeUs kViewEveryUs = 100'000;         // from step to step, at least
-inline constexpr std::int32_t kViewTurn = 65'536 / 24;  // 15 degrees, in units of yaw
-inline constexpr std::uint16_t kSightCone =
-    65'536 / 8;  // half of what a player sees and will soon: 45 degrees
+/// Least time between two steps.
+inline constexpr TimeUs kViewEveryUs = 100'000;
+/// 15 degrees, in units of yaw. A smaller turn is no step.
+inline constexpr std::int32_t kViewTurn = 65'536 / 24;
+/// Half the angle of what a player sees or will see soon: 45 degrees.
+inline constexpr std::uint16_t kSightCone = 65'536 / 8;
 
 class ViewPace {
  public:
-  /// Whether the view `from` should become `to` now; then the caller does so. Ask each turn.
+  /// Returns true if the caller must replace the view `from` by `to` now. Call it every iteration.
   bool step(const View& from, const View& to, TimeUs now_us);
 
  private:

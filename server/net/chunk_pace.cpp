@@ -47,8 +47,9 @@ std::size_t ChunkPace::fragment_bytes() const {
 
 // Returns the bytes that the client may have read but not acknowledged yet.
 std::uint64_t ChunkPace::unreported_bytes() const {
-  return std::min(bytes_in(rate(), kReceiveAckEveryUs),
-                  std::max<std::uint64_t>(kReceiveAckEveryBytes, bytes_in(rate(), kReceiveAckUsMin)));
+  return std::min(
+      bytes_in(rate(), kReceiveAckEveryUs),
+      std::max<std::uint64_t>(kReceiveAckEveryBytes, bytes_in(rate(), kReceiveAckUsMin)));
 }
 
 std::uint64_t ChunkPace::window() const {

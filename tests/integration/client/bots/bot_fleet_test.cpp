@@ -14,7 +14,7 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
-/// A flat world, open to crowds, as long as it is in scope.
+/// A server of a flat world that accepts many sessions. It runs while this object exists.
 struct FlatServer {
   TempFolder folder;
   std::unique_ptr<Server> server = [&] {
@@ -38,7 +38,7 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("builders hand in all their edits, see all of them confirmed, and find them standing",
+TEST_CASE("builders submit all their edits, get all of them confirmed, and find them intact",
           "[bots]") {
   const FlatServer flat;
   const FleetReport report = BotFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
@@ -55,8 +55,8 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
                                    std::pair(report.traffic.sent, report.bytes_sent)}) {
     std::uint64_t sum = 0;
     for (const KindTraffic& kind : way) sum += kind.bytes + kind.frames * kFrameHeaderBytes;
-    CHECK(sum <= bytes + 64 * 1024);  // read or written, but not counted yet
-    CHECK(bytes <= sum + 64 * 1024);  // a message under way
+    CHECK(sum <= bytes + 64 * 1024);  // transferred, but not counted yet
+    CHECK(bytes <= sum + 64 * 1024);  // a message in flight
   }
   CHECK(report.standing.held > 400);
   CHECK(report.standing.intact == report.standing.held);
@@ -64,16 +64,15 @@ TEST_CASE("builders hand in all their edits, see all of them confirmed, and find
   CHECK(flat.server->stop().digests.seq == 500);
 }
 
-TEST_CASE(
-    "edits that are due soon after the start are made when they are due, not with the next ping",
-    "[bots]") {
+TEST_CASE("edits that are due soon after the start are submitted when due, not with the next ping",
+          "[bots]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
   BotOptions options = options_for(*server, BotRole::build, 4);
-  options.replicas = 0;   // those with one are stepped more often
-  options.join_rate = 8;  // so that the first ones have nothing to do any more but to ping
+  options.replicas = 0;   // bots with a replica are stepped more often
+  options.join_rate = 8;  // then the first bots only ping
   options.rate = 4;
-  options.seconds = 0.4;  // the first ones are due within the first quarter of a second
+  options.seconds = 0.4;  // the first edits are due within a quarter of a second
   const FleetReport report = BotFleet(options).run(never);
   CHECK(report.failure.empty());
   CHECK(report.counts.due >= 4);
@@ -95,7 +94,7 @@ TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
   CHECK(report.counts.not_ready > 0);
 }
 
-TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
+TEST_CASE("a fleet that finds no server reports it and ends", "[bots]") {
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 1);
   flat.server->stop();
@@ -105,7 +104,7 @@ TEST_CASE("a fleet that finds no server says so, and ends", "[bots]") {
   CHECK(report.counts.due == 0);
 }
 
-TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
+TEST_CASE("a stop ends a fleet early, after all submitted edits were answered", "[bots]") {
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
@@ -123,7 +122,7 @@ TEST_CASE("a stop ends a fleet early; what it handed in is settled", "[bots]") {
   CHECK(report.counts.rejected == 0);
 }
 
-TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]") {
+TEST_CASE("bots in one place: every edit is verified by every bot", "[bots]") {
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 50);
   options.sites = 1;
@@ -139,7 +138,7 @@ TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]")
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
   CHECK(report.counts.confirm_us.count() == 500);
-  // 45 without a replica get each edit once, its author included.
+  // The 45 bots without a replica get each edit once, including its author.
   CHECK(report.commit_edits == 45 * 500);
   CHECK(report.seen_us.count() >= 45 * 500);
   CHECK(report.seen_us.infinite() == 0);
@@ -150,7 +149,7 @@ TEST_CASE("a crowd in one place: every edit is verified by every bot", "[bots]")
   CHECK(report.counts.joins == 50);
 }
 
-TEST_CASE("a join storm comes and goes, and runners see the world go by", "[bots]") {
+TEST_CASE("a join storm connects again and again, and runners load new chunks", "[bots]") {
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::join_storm, 8);
   options.roles = {BotRole::join_storm, BotRole::run_away};
@@ -163,6 +162,6 @@ TEST_CASE("a join storm comes and goes, and runners see the world go by", "[bots
   CHECK(report.failure.empty());
   CHECK(report.is_sound());
   CHECK(report.losses.empty());
-  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last return may be under way
+  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last join may be unfinished
   CHECK(report.counts.submitted == 0);
 }

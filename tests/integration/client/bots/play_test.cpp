@@ -16,7 +16,7 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
-/// A world that three builders have worked on, each on a site of its own. Its digest.
+/// Makes a world in which three builders have built, each on its own site. Returns its digest.
 Digest build_world(const std::string& folder) {
   auto server = start_server(quiet_config(folder), flat_creation());
   BotOptions options;
@@ -73,7 +73,8 @@ TEST_CASE("a log played on a fresh server of the same generator gives the same w
   }
 }
 
-TEST_CASE("what a rate limit pushes back is offered again until all of it stands", "[bots][play]") {
+TEST_CASE("edits rejected by a rate limit are retried until all of them are applied",
+          "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
@@ -85,18 +86,19 @@ TEST_CASE("what a rate limit pushes back is offered again until all of it stands
   const PlayReport report = play(server->port(), *log, 0);
   INFO(to_table(report) << report.failure);
   CHECK(report.is_complete());
-  CHECK(report.counts.again > 0);
-  CHECK(report.counts.submitted == 450 + report.counts.again);
+  CHECK(report.counts.retried > 0);
+  CHECK(report.counts.submitted == 450 + report.counts.retried);
   CHECK(server->stop().digests.seq == 450);
 }
 
-TEST_CASE("a play that the world refuses in part is not complete, and says why", "[bots][play]") {
+TEST_CASE("a play that is refused in part is not complete and reports the reasons",
+          "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
   REQUIRE(log.has_value());
   ServerConfig config = quiet_config(live.path());
-  config.reach_max = 30;  // the sites lie around the spawn; most of them farther away
+  config.reach_max = 30;  // most of the sites around the spawn are farther away
   auto server = start_server(config, flat_creation());
   const PlayReport report = play(server->port(), *log, 0);
   CHECK(report.failure.empty());
@@ -123,7 +125,7 @@ TEST_CASE("a world with other materials gets no edit", "[bots][play]") {
   CHECK(server->stop().digests.seq == 0);
 }
 
-TEST_CASE("a play that finds no server, or loses it, says so and ends", "[bots][play]") {
+TEST_CASE("a play that finds no server, or loses it, reports it and ends", "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));

@@ -1,7 +1,7 @@
-// Random interleavings of everything a server may say to a replica: three classes that overtake each other,
-// snapshots that come late, commits dropped for a chunk that is then sent again, cut connections, crashes
-// that lose the tail of the log, rejects, moving views. At the end every replica holds the authority's
-// voxels.
+// Random interleavings of all messages to a replica: three classes that overtake each other, late
+// snapshots, dropped commits of a chunk that is then sent again, cut connections, crashes that lose
+// the tail of the log, rejects, and moving views. At the end every replica has the voxels of the
+// authority.
 #include <catch2/catch.hpp>
 #include <deque>
 #include <functional>
@@ -66,7 +66,7 @@ EditDescriptor random_edit(SplitMix64& rng) {
 
 class World;
 
-/// One client, its connection, and what the server keeps for it.
+/// One client, its connection, and the server's state for it.
 struct Peer {
   Replica replica;
   AuthorId author = 0;
@@ -77,7 +77,7 @@ struct Peer {
   // Server side.
   View view;
   std::set<ChunkCoord> subscribed;
-  std::set<ChunkCoord> stale;        // commits were dropped for it: a snapshot is owed
+  std::set<ChunkCoord> stale;        // commits were dropped: a snapshot must follow
   ClientSequence resolved = 0;       // high-water mark
   std::set<ClientSequence> refused;  // until a crash
 };
@@ -98,7 +98,7 @@ class Simulation {
     settle();
   }
 
-  /// Empty if every replica agrees with the authority.
+  /// Returns an empty string if every replica agrees with the authority.
   std::string mismatch() {
     for (Peer& peer : peers_) {
       const Replica& replica = peer.replica;
@@ -121,7 +121,7 @@ class Simulation {
         }
       }
       if (!replica.local_edits().all().empty()) return "local edits are left";
-      if (replica.awaiting_count() != 0) return "a chunk still waits";
+      if (replica.awaiting_count() != 0) return "a chunk waits for a snapshot";
     }
     std::set<OperationId> seen;
     for (const auto& [op, edit] : log_) {
@@ -231,7 +231,8 @@ class Simulation {
       for (const ChunkCoord at : touched_chunks(edit, kEdge)) {
         if (!p.subscribed.contains(at)) continue;
         wanted = true;
-        // The session is full now and then: the whole commit is dropped for it, its chunks are stale.
+        // Sometimes the session's queue is full. Then the whole commit is dropped for it, and its
+        // chunks are stale.
         dropped.push_back(at);
       }
       if (!wanted) continue;
@@ -336,7 +337,7 @@ class Simulation {
     for (Peer& peer : peers_) connect(peer);
   }
 
-  /// Everything in flight arrives, everything owed is sent, everything is durable.
+  /// Delivers all messages, sends all snapshots that must follow, and makes all edits durable.
   void settle() {
     for (int round = 0; round < 12; ++round) {
       now_ += kRequestAgainUs;
@@ -388,7 +389,7 @@ TEST_CASE("replicas agree with the authority after any interleaving, cut and cra
     local_sum.offered_again += simulation.local_counters().offered_again;
     sum.dropped_by_epoch += c.dropped_by_epoch;
   }
-  // The interleavings reach what they are meant to reach.
+  // The interleavings cover these cases.
   CHECK(sum.gaps > 0);
   CHECK(sum.snapshots_stale > 0);
   CHECK(sum.chunk_edits_buffered > 0);

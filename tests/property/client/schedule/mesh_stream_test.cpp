@@ -1,7 +1,7 @@
-// Random edits, predictions and their ends, snapshots late and in any axis order, chunks that come, go and
-// come back, cut connections and crashes, driven through replica, planner and pool, with news taken and
-// results delivered at random. Every mesh is compared quad for quad with a whole mesh of what its job
-// held, and at the end with what the replica shows.
+// Random edits, predictions and their removal, late snapshots in any axis order, chunks that leave
+// the view and return, cut connections and crashes pass through replica, planner and pool. Changes
+// are drained and results delivered at random times. Every mesh is compared quad for quad with a
+// whole mesh of the runs of its job, and at the end with the shown runs.
 #include <catch2/catch.hpp>
 #include <deque>
 #include <functional>
@@ -61,8 +61,8 @@ bool same(const ChunkMesh& a, const ChunkMesh& b) {
 }
 
 struct Sabotage {
-  bool own_layers = false;     // the planner is told of no layer of the chunk itself
-  bool beyond_layers = false;  // of no layer of a neighbour
+  bool own_layers = false;     // sabotage: the planner gets no layer of the chunk itself
+  bool beyond_layers = false;  // sabotage: it gets no layer of a neighbour
 };
 
 struct Counts {
@@ -83,7 +83,7 @@ class MeshStream {
     settle();
   }
 
-  /// Empty if all that is shown is meshed as it is.
+  /// Returns an empty string if the mesh of every shown chunk is right.
   std::string mismatch() {
     if (planner_.dirty_count() != 0) return "not everything is meshed";
     for (const ChunkKey& key : replica_.confirmed_keys()) {
@@ -92,8 +92,8 @@ class MeshStream {
       const auto it = drawn_.find(key);
       if (it == drawn_.end()) return "nothing drawn" + where;
       const auto& [job, mesh] = it->second;
-      // A chunk turned into another order with the same voxels is not meshed again, nor is one whose neighbour
-      // went out of view.
+      // A chunk with the same voxels in another axis order is not meshed again. Nor is a chunk
+      // whose neighbour left the view.
       const RunChunk chunk = reorder(*replica_.shown(key), job.chunk->order);
       MeshNeighbours neighbours{};
       std::array<ShownPtr, kDirectionCount> held;
@@ -160,7 +160,7 @@ class MeshStream {
     return front;
   }
 
-  // ---- the server
+  // The server.
 
   void submit() {
     if (const auto seq = replica_.submit(random_edit(rng_), now_, now_)) offered_.push_back(*seq);
@@ -183,7 +183,7 @@ class MeshStream {
     log_.emplace_back(op, edit);
     Commit commit = world_.commit(op, edit, now_);
     if (op.author != kMe && rng_.below(8) == 0) {
-      // Dropped for a full session: snapshots are owed.
+      // Dropped because the queue is full: snapshots must follow.
       for (const ChunkCoord at : touched_chunks(edit, kEdge)) send_snapshot(at);
       return;
     }
@@ -238,7 +238,7 @@ class MeshStream {
     for (const ChunkKey& key : replica_.take_requests()) send_snapshot(key.at);
   }
 
-  // ---- the client
+  // The client.
 
   View random_view() {
     return {{rng_.between(-1, 0), rng_.between(-1, 0), rng_.between(-1, 0)}, 1, 1};
@@ -263,7 +263,7 @@ class MeshStream {
     send_view(before);
   }
 
-  /// Away and back again, while others build.
+  /// Disconnects and connects again, while others edit.
   void glance() {
     const View here = *replica_.view();
     replica_.set_view(random_view());
@@ -308,7 +308,7 @@ class MeshStream {
     REQUIRE(pool_->push(std::move(*job)));
   }
 
-  /// One of those that are done, in no particular order.
+  /// Delivers one finished result, in random order.
   void take_result() {
     for (MeshResult& result : pool_->take_results()) held_.push_back(std::move(result));
     if (held_.empty()) return;
@@ -341,7 +341,7 @@ class MeshStream {
     return mesh;
   }
 
-  /// Everything in flight arrives, and all of it is meshed.
+  /// Delivers all messages and meshes everything.
   void settle() {
     for (int round = 0; round < 8; ++round) {
       while (!offered_.empty()) order(pop(offered_));
@@ -367,7 +367,7 @@ class MeshStream {
   ClientSequence others_ = 0, resolved_ = 0;
   Sequence durable_ = 0;
   TimeUs now_ = 0;
-  // On their way, each in order but for the snapshots.
+  // Messages in flight. Each queue is in order, except for the snapshots.
   std::deque<ClientSequence> offered_;
   std::deque<std::function<void()>> commits_, control_;
   std::deque<ChunkSnapshot> snapshots_;
@@ -382,8 +382,7 @@ class MeshStream {
   Counts counts_;
 };
 
-TEST_CASE("every mesh on its way through replica, planner and pool is a whole mesh, quad for quad",
-          "[schedule][property]") {
+TEST_CASE("every mesh equals a whole mesh, quad for quad", "[schedule][property]") {
   Counts sum;
   for (std::uint64_t round = 0; round < 60; ++round) {
     const std::uint64_t seed = mix64(Catch::rngSeed() + round);
@@ -400,20 +399,20 @@ TEST_CASE("every mesh on its way through replica, planner and pool is a whole me
     sum.refused += c.refused;
     sum.turned += c.turned;
   }
-  // The interleavings reach what they are meant to reach.
+  // The interleavings cover these cases.
   CAPTURE(sum.whole, sum.layers, sum.beyond, sum.refused, sum.turned);
-  CHECK(sum.layers > sum.whole / 5);  // large edits mesh the whole chunk, too
+  CHECK(sum.layers > sum.whole / 5);  // large edits mesh the whole chunk as well
   CHECK(sum.whole > sum.layers / 10);
   CHECK(sum.beyond > 100);
   CHECK(sum.refused > 10);
   CHECK(sum.turned > 10);
 }
 
-TEST_CASE("a planner that is not told of a layer is caught by the comparison",
+TEST_CASE("a planner that misses a changed layer is caught by the comparison",
           "[schedule][property]") {
   const Sabotage sabotage = GENERATE(Sabotage{.own_layers = true}, Sabotage{.beyond_layers = true});
   std::uint64_t wrong = 0, pictures = 0;
-  // Few pictures are still wrong at the end: a later edit meshes the chunk as a whole.
+  // Few meshes are still wrong at the end, because a later edit meshes the chunk as a whole.
   for (std::uint64_t round = 0; round < 200 && (wrong == 0 || pictures == 0); ++round) {
     MeshStream stream(mix64(Catch::rngSeed() + round), 0, sabotage);
     stream.run(3000);

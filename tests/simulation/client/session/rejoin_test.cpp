@@ -1,5 +1,6 @@
-// A client session and a world strand, joined without a network: what a rejoin costs, and how a copy that went wrong is
-// found and replaced. All messages go through their bytes, which are counted as frames carry them.
+// A client session and a world strand, connected without a network: the cost of a reconnection, and
+// how a wrong copy is found and replaced. All messages are encoded, and their bytes are counted as
+// frames carry them.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace runstone::test {
 namespace {
 
-/// Bytes on the wire: the message and the headers of its frames.
+/// Returns the bytes on the wire: the message and the headers of its frames.
 std::size_t framed(const EncodedMessage& message) {
   const std::size_t size = message.bytes->size();
   return size + (size + kFragmentBytesMax - 1) / kFragmentBytesMax * kFrameHeaderBytes;
@@ -50,7 +51,7 @@ class Joined {
     session_.disconnected();
     bench.server.disconnected(id_);
   }
-  /// Everything that either side has to say, and what follows from it.
+  /// Delivers all messages of both sides, and all messages that follow from them.
   void exchange() {
     for (bool goes_on = true; goes_on;) {
       goes_on = false;
@@ -77,7 +78,7 @@ class Joined {
       }
     }
   }
-  /// A second of ticks.
+  /// Runs the ticks of one second.
   void second() {
     for (int i = 0; i < 20; ++i) {
       bench.tick();
@@ -92,14 +93,14 @@ class Joined {
 
   WorldBench bench{wide_config()};
   std::size_t to_server = 0;  // claims
-  std::size_t to_client = 0;  // what is said of chunks
+  std::size_t to_client = 0;  // messages about chunks
 
  private:
   static bool is_of_chunks(const Message& message) {
     return std::holds_alternative<CachedChunks>(message);
   }
 
-  /// Ground with a chunk's own pattern, so that no two chunks weigh the same.
+  /// Makes ground with a pattern of its own per chunk, so that the sizes of chunks differ.
   static Chunk hills(ChunkCoord at) {
     RunBuilder builder(Extent::cube(kEdge), AxisOrder::yxz);
     for (unsigned column = 0; column < kEdge * kEdge; ++column) {
@@ -128,7 +129,7 @@ class Joined {
   SessionId id_ = 0;
 };
 
-/// All chunks of the replica are those of the server.
+/// Requires that all chunks of the replica equal those of the server.
 void require_equal(Joined& joined) {
   REQUIRE(joined.session().loaded());
   for (const ChunkKey& key : joined.replica().confirmed_keys()) {
@@ -142,13 +143,15 @@ void require_equal(Joined& joined) {
 
 }  // namespace
 
-TEST_CASE("a rejoin of an unchanged view costs at most 32 bytes a chunk, both ways together",
-          "[simulation]") {
+TEST_CASE(
+    "a reconnection with an unchanged view costs at most 32 bytes a chunk in both directions "
+    "together",
+    "[simulation]") {
   Joined joined({{0, 0, 0}, 9, 2});
   joined.connect();
   REQUIRE(joined.session().view_chunks() == 1265);
   require_equal(joined);
-  // Half of the chunks have been edited, far along the log.
+  // Half of the chunks have been edited, at high sequences.
   joined.bench.server.connected(900, joined.bench.now());
   ClientSequence seq = 0;
   for (const ChunkKey& key : joined.replica().confirmed_keys()) {
@@ -177,12 +180,13 @@ TEST_CASE("a rejoin of an unchanged view costs at most 32 bytes a chunk, both wa
                    << static_cast<double>(first_time) / 1265);
 }
 
-TEST_CASE("a run that went wrong in a replica is found by the audit and repaired", "[simulation]") {
+TEST_CASE("a wrong run in a replica is found by the digest check and repaired", "[simulation]") {
   Joined joined({{0, 0, 0}, 1, 1});
   joined.connect();
   require_equal(joined);
   const ChunkKey key{0, {0, 0, 1}};
-  // One run of the confirmed chunk takes another material; its digest does not follow, as in broken memory.
+  // One run of the confirmed chunk gets another material. Its digest does not follow, as with
+  // faulty memory.
   Chunk bad = *joined.replica().confirmed(key);
   fill(bad.voxels, 0, 1, Material{3});
   REQUIRE(digest_of(bad.voxels) != bad.digest);
@@ -198,7 +202,7 @@ TEST_CASE("a run that went wrong in a replica is found by the audit and repaired
   require_equal(joined);
 }
 
-TEST_CASE("a copy that went wrong while away is refuted by its claim", "[simulation]") {
+TEST_CASE("a copy that went wrong while disconnected is refuted by its claim", "[simulation]") {
   Joined joined({{0, 0, 0}, 1, 1});
   joined.connect();
   const ChunkKey key{0, {0, 0, 1}};
@@ -214,7 +218,7 @@ TEST_CASE("a copy that went wrong while away is refuted by its claim", "[simulat
   require_equal(joined);
 }
 
-TEST_CASE("more claims than a session may have end it, and it alone", "[simulation]") {
+TEST_CASE("more claims than a session may have end only that session", "[simulation]") {
   WorldBench bench(wide_config());
   bench.join(1, 1);
   bench.join(2, 2);
@@ -232,7 +236,7 @@ TEST_CASE("more claims than a session may have end it, and it alone", "[simulati
   bench.edit(2, 1, kAtOrigin);
   bench.server.commit(bench.now());
   CHECK(bench.commits(2).size() == 1);
-  // Claims of what no view holds are forgotten with the next view: they do not add up.
+  // Claims of chunks out of view are forgotten with the next view, so they do not accumulate.
   bench.join(3, 3);
   for (int round = 0; round < 20; ++round) {
     for (int message = 0; message < 100; ++message) {

@@ -1,7 +1,7 @@
-// One server and some replicas in virtual time: overlapping edits, links that delay, split, stall and cut, a
-// server that loses power with edits not yet on disk. Afterwards everybody must hold the same voxels, and the
-// log must hold each durable edit exactly once. The final reckoning shares no code with what it checks:
-// voxels are replayed from the log by the dense per-voxel oracle.
+// One server and several replicas in virtual time: overlapping edits; links that delay, split,
+// stall and cut the stream; a server that loses power with edits that are not on disk. Afterwards
+// all must have the same voxels, and the log must have each durable edit exactly once. The final
+// check shares no code with the code under test: the dense per-voxel oracle replays the log.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -21,13 +21,12 @@
 namespace runstone::test {
 namespace {
 
-/// What a finished history must satisfy; each failure is one line.
-struct Reckoning {
+/// The result of the final check. Each fault is one line.
+struct FinalCheck {
   std::vector<std::string> faults;
   std::uint64_t edits = 0, chunks = 0, rejected = 0;
-  std::uint64_t beyond = 0;  // refused by the clients themselves: not a place to edit
-  std::uint64_t unknown =
-      0;  // refused by a server that died before it could say so: told as "decided unseen"
+  std::uint64_t beyond = 0;   // refused by the clients: outside of the world's heights
+  std::uint64_t unknown = 0;  // rejected by a server that died before it could answer: unseen
   void expect(bool ok, const std::string& fault) {
     if (!ok) faults.push_back(fault);
   }
@@ -35,7 +34,7 @@ struct Reckoning {
 
 class Simulation {
  public:
-  /// `readers` more look, keep chunks on disk, and are killed and come back.
+  /// `readers` further clients only view, cache chunks on disk, and are killed and restarted.
   explicit Simulation(std::uint64_t seed, unsigned replicas = 3, bool synchronous = true,
                       unsigned readers = 0)
       : rng_(seed),
@@ -55,7 +54,7 @@ class Simulation {
     }
   }
 
-  /// `steps` random actions, then rest until nothing is under way.
+  /// Performs `steps` random actions, and then waits until nothing is in flight.
   void run(int steps, std::uint32_t crashes_per_1000) {
     for (int step = 0; step < steps; ++step) {
       time_.run_until(time_.now() + rng_.between(200, 12'000));
@@ -66,13 +65,13 @@ class Simulation {
     server_.drop_commits = 0;
     come_to_rest();
     if (server_.dropped == 0) return;
-    // Nobody knows of a lost commit that no other edit follows, until an audit comes round to its chunk.
+    // A lost commit that no other edit follows is found by the next digest check of its chunk.
     time_.run_until(time_.now() + kAuditRoundUs);
     come_to_rest();
   }
 
-  Reckoning reckon() {
-    Reckoning r;
+  FinalCheck check() {
+    FinalCheck r;
     std::vector<EditRecord> log;
     const Sequence last = server_.world().head();
     if (last > 0) {
@@ -97,7 +96,7 @@ class Simulation {
   int cuts() const { return cuts_; }
   VirtualTime& time() { return time_; }
 
-  std::string told(const Reckoning& r) const {
+  std::string summary(const FinalCheck& r) const {
     std::ostringstream out;
     out << r.edits << " edits, " << r.chunks << " chunks, " << crashes_ << " crashes, " << cuts_
         << " cuts, " << r.rejected << " rejected, " << r.unknown
@@ -106,8 +105,8 @@ class Simulation {
   }
 
  private:
-  static constexpr TimeUs kAuditRoundUs =
-      30'000'000;  // of all 145 chunks of the largest view, 8 a second
+  /// Time in which all 145 chunks of the largest view are checked, at 8 a second.
+  static constexpr TimeUs kAuditRoundUs = 30'000'000;
 
   void come_to_rest() {
     const TimeUs give_up = time_.now() + 300'000'000;
@@ -124,11 +123,11 @@ class Simulation {
     config.materials = default_material_table();
     config.server_keys = key_pair_of(KeySeed{7});
     config.edits_per_second = 0;
-    config.snapshots.edits_max =
-        300;  // many rounds, so that crashes fall between snapshots and checkpoints
+    // Many rounds, so that crashes fall between snapshots and checkpoints.
+    config.snapshots.edits_max = 300;
     config.snapshots.interval_us = 3'000'000;
     config.snapshots.slice_chunks = 5;
-    config.resident_bytes_max = 20'000;  // and chunks leave memory
+    config.resident_bytes_max = 20'000;  // so that chunks leave memory
     return config;
   }
 
@@ -158,7 +157,8 @@ class Simulation {
         ++cuts_;
         break;
       case 1:
-        // Now and then so often that the server passes over some views, and once to more than it remembers.
+        // Sometimes views change so often that the server skips some, and sometimes more often than
+        // it remembers.
         for (std::uint64_t looks = rng_.below(3) == 0 ? 2 + rng_.below(14) : 1; looks > 0;
              --looks) {
           client.look({{rng_.between(-1, 1), rng_.between(-1, 1), rng_.between(-1, 1)},
@@ -167,8 +167,8 @@ class Simulation {
         }
         break;
       case 2: {
-        EditDescriptor bad{
-            SetVoxel{{0, 0, 0}}, {}, 60'000};  // no such material: must be taken back
+        // An unknown material: the edit must be rejected.
+        EditDescriptor bad{SetVoxel{{0, 0, 0}}, {}, 60'000};
         client.edit(bad);
         break;
       }
@@ -192,7 +192,7 @@ class Simulation {
       });
       if (!read) throw SimFault(read.error().message());
     }
-    vfs_.power_loss(rng_);  // before the store is closed: closing would write
+    vfs_.power_loss(rng_);  // before the store is closed, because closing writes
     server_.crash();
     server_.log_full = false;
     ++crashes_;
@@ -206,16 +206,16 @@ class Simulation {
                        [](const auto& c) { return c->settled(); });
   }
 
-  /// What was durable before a crash is in the log, at the same place.
-  void check_durable_kept(const std::vector<EditRecord>& log, Reckoning& r) const {
+  /// Checks that edits durable before a crash are in the log, at the same sequence.
+  void check_durable_kept(const std::vector<EditRecord>& log, FinalCheck& r) const {
     r.expect(log.size() >= remembered_.size(), "durable edits are missing");
     for (std::size_t i = 0; i < std::min(log.size(), remembered_.size()); ++i) {
       r.expect(log[i].op == remembered_[i], "a durable edit changed, seq " + std::to_string(i + 1));
     }
   }
 
-  /// Each submitted edit is in the log once, or its client was told why not.
-  void check_exactly_once(const std::vector<EditRecord>& log, Reckoning& r) const {
+  /// Checks that each submitted edit is in the log once, or that its client knows why not.
+  void check_exactly_once(const std::vector<EditRecord>& log, FinalCheck& r) const {
     std::map<OperationId, int> times;
     for (const EditRecord& record : log) ++times[record.op];
     for (const auto& [op, count] : times) r.expect(count == 1, "an edit was applied twice");
@@ -236,8 +236,9 @@ class Simulation {
     }
   }
 
-  /// Nothing beyond the world's heights was ordered, and no client had to be told: each knew by itself.
-  void check_heights(const std::vector<EditRecord>& log, Reckoning& r) const {
+  /// Checks that no edit beyond the world's heights was ordered, and that the clients refused all
+  /// of them.
+  void check_heights(const std::vector<EditRecord>& log, FinalCheck& r) const {
     const HeightLimits heights = world_config().heights;
     for (const EditRecord& record : log) {
       const VoxelBox box = bounding_box(record.edit);
@@ -253,8 +254,8 @@ class Simulation {
     }
   }
 
-  /// Server, replicas and the dense replay of the log agree, chunk by chunk.
-  void check_voxels(const std::vector<EditRecord>& log, Reckoning& r) {
+  /// Checks that server, replicas and the dense replay of the log agree, chunk by chunk.
+  void check_voxels(const std::vector<EditRecord>& log, FinalCheck& r) {
     std::map<ChunkKey, std::vector<EditDescriptor>> edits;
     std::map<ChunkKey, Sequence> versions;
     for (const EditRecord& record : log) {
@@ -317,7 +318,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   CAPTURE(seed);
   Simulation simulation(seed);
   simulation.run(2500, 4);
-  const Reckoning r = simulation.reckon();
+  const FinalCheck r = simulation.check();
   INFO(joined(r.faults));
   CHECK(r.faults.empty());
   CHECK(simulation.crashes() > 2);
@@ -332,7 +333,7 @@ TEST_CASE("three replicas and a server that loses power agree after thousands of
   }
   CHECK(same > 20);
   CHECK(updates > 0);
-  WARN("seed " << seed << ": 2500 steps, " << simulation.told(r) << ", " << same
+  WARN("seed " << seed << ": 2500 steps, " << simulation.summary(r) << ", " << same
                << " chunks held as they were, " << updates << " brought up to date by edits");
 }
 
@@ -341,13 +342,13 @@ void ten_replicas(std::uint64_t seed, int steps) {
   Simulation simulation(seed, 10);
   simulation.server().drop_commits = 2;
   simulation.run(steps, 2);
-  const Reckoning r = simulation.reckon();
+  const FinalCheck r = simulation.check();
   INFO(joined(r.faults));
   CHECK(r.faults.empty());
   CHECK(simulation.crashes() > steps / 1000);
   CHECK(simulation.cuts() > steps / 200);
   CHECK(simulation.server().dropped > 5);
-  WARN("seed " << seed << ": ten replicas, " << steps << " steps, " << simulation.told(r) << ", "
+  WARN("seed " << seed << ": ten replicas, " << steps << " steps, " << simulation.summary(r) << ", "
                << simulation.server().dropped << " commits lost on the way");
 }
 
@@ -360,13 +361,13 @@ TEST_CASE("ten replicas agree after tens of thousands of steps", "[.long]") {
   ten_replicas(static_cast<std::uint64_t>(GENERATE(2026, 2027)), 20'000);
 }
 
-TEST_CASE("clients that are killed come back with what their caches have, and nobody drifts",
+TEST_CASE("clients that are killed restart with their caches, and no replica drifts",
           "[simulation]") {
   const auto seed = static_cast<std::uint64_t>(GENERATE(21, 22));
   CAPTURE(seed);
   Simulation simulation(seed, 3, true, 3);
   simulation.run(2500, 4);
-  const Reckoning r = simulation.reckon();
+  const FinalCheck r = simulation.check();
   INFO(joined(r.faults));
   CHECK(r.faults.empty());
   CHECK(simulation.crashes() > 2);
@@ -390,23 +391,24 @@ TEST_CASE("commits that vanish between server and replica are noticed and repair
   Simulation simulation(11);
   simulation.server().drop_commits = 40;
   simulation.run(1500, 0);
-  const Reckoning r = simulation.reckon();
+  const FinalCheck r = simulation.check();
   INFO(joined(r.faults));
   CHECK(simulation.server().dropped > 5);
   CHECK(r.faults.empty());
 }
 
 TEST_CASE(
-    "without synchronous writes the same simulation loses durable edits, and the reckoning says so",
+    "without synchronous writes the same simulation loses durable edits, and the final check finds "
+    "it",
     "[simulation]") {
   bool caught = false;
   for (std::uint64_t seed = 1; seed <= 5 && !caught; ++seed) {
     try {
       Simulation simulation(seed, 3, false);
       simulation.run(1500, 8);
-      caught = !simulation.reckon().faults.empty();
+      caught = !simulation.check().faults.empty();
     } catch (const SimFault&) {
-      caught = true;  // the torn database does not even open
+      caught = true;  // the torn database does not open
     }
   }
   CHECK(caught);

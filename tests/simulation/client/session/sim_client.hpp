@@ -1,4 +1,5 @@
-// SimClient: a ClientSession that connects, edits, looks around and loses its connection, in virtual time.
+// SimClient: a ClientSession that connects, edits, moves its view and loses its connection, in
+// virtual time.
 #pragma once
 #include <map>
 #include <memory>
@@ -24,7 +25,8 @@ class SimClient {
         session_(config(number)) {
     pump();
   }
-  /// One that keeps chunks in this folder, and only looks: what it edits would be forgotten with restart().
+  /// Makes a client that caches chunks in this folder. It must not edit: restart() forgets local
+  /// edits.
   SimClient(VirtualTime& time, SplitMix64& rng, SimServer& server, const LinkFaults& faults,
             unsigned number, const std::string& cache_folder)
       : SimClient(time, rng, server, faults, number) {
@@ -34,7 +36,7 @@ class SimClient {
     session_ = ClientSession(config(number));
   }
 
-  /// The process is killed, and comes back with what its cache has.
+  /// Kills the process and starts another one with the same cache.
   void restart() {
     const View view = session_.view();
     if (connection_) connection_->cut();
@@ -50,7 +52,7 @@ class SimClient {
   ClientSession& session() { return session_; }
   Replica& replica() { return session_.replica(); }
 
-  /// Submits one random edit; keeps it for the final reckoning.
+  /// Submits an edit and keeps it for the final check.
   void edit(const EditDescriptor& edit) {
     const auto seq = session_.submit(edit, time_.now(), time_.now());
     if (seq) submitted_[*seq] = edit;
@@ -86,7 +88,8 @@ class SimClient {
     return c;
   }
 
-  /// Every few milliseconds: connect if needed, tick, send what waits, take the news.
+  /// Runs every few milliseconds: connects if needed, ticks, sends messages, and drains the
+  /// changes.
   void pump() {
     time_.after(rng_.between(1000, 8000), [this] {
       if (!connection_ && server_.running() && time_.now() >= retry_at_) connect();
@@ -101,7 +104,7 @@ class SimClient {
       pump();
     });
   }
-  /// Answers come after a while, some of them later than a view waits.
+  /// Answers cache lookups after a while, sometimes later than a view waits.
   void step_cache() {
     while (auto question = session_.take_cache_lookup()) {
       time_.after(rng_.between(100, 300'000), [this, life = life_, q = *std::move(question)] {
@@ -159,7 +162,7 @@ class SimClient {
   TimeUs retry_at_ = 0;
   std::map<ClientSequence, EditDescriptor> submitted_;
   std::map<ClientSequence, RejectReason> rejected_;
-  std::uint64_t refused_ = 0;  // by the client itself
+  std::uint64_t refused_ = 0;  // by the client
   std::set<ClientSequence> durable_, unseen_;
 };
 

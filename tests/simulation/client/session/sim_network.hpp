@@ -11,7 +11,7 @@
 
 namespace runstone::test {
 
-/// What one end does with what reaches it.
+/// How one end handles what it receives.
 struct SimEnd {
   std::function<Result<void>(FrameClass, ByteView)> on_message;
   std::function<void(const Error&)> on_bad_stream;
@@ -19,8 +19,8 @@ struct SimEnd {
   std::function<void()> on_drained;
 };
 
-/// A connection: two pipes, a sender and a reader at each end. Closing it from one end reaches the other a
-/// moment later.
+/// A connection: two pipes, a sender and a reader at each end. Closing it from one end reaches the
+/// other a moment later.
 class SimConnection {
  public:
   SimConnection(VirtualTime& time, SplitMix64& rng, const LinkFaults& faults,
@@ -46,7 +46,7 @@ class SimConnection {
   bool open() const { return open_; }
   bool server_idle() const { return server_sender_.idle(); }
 
-  /// Nothing more arrives anywhere; both ends hear of it.
+  /// Cuts the connection: nothing more arrives, and both ends are notified.
   void cut() {
     if (!open_) return;
     open_ = false;
@@ -55,7 +55,7 @@ class SimConnection {
     time_.after(1000, [end = client_.on_closed] { end(); });
     time_.after(1500, [end = server_.on_closed] { end(); });
   }
-  /// The server is gone: only the client hears of it.
+  /// The server is gone: only the client is notified.
   void server_died() {
     if (!open_) return;
     open_ = false;

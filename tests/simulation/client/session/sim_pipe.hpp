@@ -1,5 +1,6 @@
-// SimPipe: one direction of a byte stream, as TCP would show it at its worst: bytes arrive late, in pieces of
-// any size, sometimes after a long stall, always in order, until the connection is cut and the rest is lost.
+// SimPipe: one direction of a byte stream, as the worst case of TCP. Bytes arrive late, in pieces
+// of any size, sometimes after a long stall, always in order. When the connection is cut, the rest
+// is lost.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -34,7 +35,7 @@ class SimPipe {
       TimeUs due = time_.now() + rng_.between(faults_.delay_us_min, faults_.delay_us_max);
       if (rng_.below(1000) < faults_.stalls_per_1000) due += rng_.between(0, 2'000'000);
       last_due_ = std::max(last_due_, due);
-      // The event holds the callback weakly: a cut pipe delivers nothing, whatever is still under way.
+      // The event has a weak pointer to the callback, so that a cut pipe delivers nothing more.
       time_.after(
           last_due_ - time_.now(),
           [weak = std::weak_ptr(deliver_),

@@ -1,5 +1,5 @@
-// SimSender: the sending end of a connection: bounded queues per class, fragments of the classes interleaved
-// in the order of the real sender's priorities, or, now and then, in any other order.
+// SimSender: the sending end of a connection. It has a bounded queue per class, and interleaves
+// fragments of the classes by the priorities of the real sender, or sometimes in another order.
 #pragma once
 #include <array>
 #include <deque>

@@ -1,5 +1,5 @@
-// SimServer: a WorldServer with virtual threads: a log writer and workers that answer after a while, sessions
-// over simulated connections, and crashes that lose everything but the disk.
+// SimServer: a WorldServer with virtual threads: a log writer and workers that answer after a
+// while, sessions on simulated connections, and crashes that lose everything except the disk.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -21,12 +21,13 @@ namespace runstone::test {
 
 inline constexpr std::uint16_t kSimEdge = 16;
 
-/// Something happened that must not: ends the simulation, and the test unless it expects a fault.
+/// A fault that ends the simulation, and the test unless it expects the fault.
 struct SimFault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The base of the simulated world: stone below y = 0, sand in a checkered crust at y = 0, air above.
+/// Returns the base of the simulated world: stone below y = 0, sand in a checkered crust at y = 0,
+/// air above.
 inline Material sim_base_material(VoxelPos at) {
   if (at.y < 0) return 4;
   return at.y == 0 && ((at.x >> 2) + (at.z >> 2)) % 2 == 0 ? Material{2} : kEmpty;
@@ -45,7 +46,7 @@ inline RunChunk sim_base_chunk(ChunkCoord at) {
 
 class SimServer final : public WorldEnvironment {
  public:
-  /// `open` opens the world's store; called at each start.
+  /// `open` opens the store of the world. It is called at each start.
   SimServer(VirtualTime& time, SplitMix64& rng, WorldConfig config,
             std::function<std::unique_ptr<Store>()> open)
       : time_(time), rng_(rng), config_(std::move(config)), open_(std::move(open)) {}
@@ -81,7 +82,7 @@ class SimServer final : public WorldEnvironment {
     tick_later();
   }
 
-  /// Power is gone: memory, queues and connections vanish; the disk keeps what it keeps.
+  /// Loses power: memory, queues and connections are lost. The disk keeps what was synchronised.
   void crash() {
     ++life_;
     world_.reset();
@@ -91,7 +92,7 @@ class SimServer final : public WorldEnvironment {
     sessions_.clear();
   }
 
-  /// A new session; the returned connection carries it.
+  /// Opens a new session. Returns its connection.
   std::shared_ptr<SimConnection> accept(const LinkFaults& faults, SimEnd client) {
     const SessionId id = next_session_++;
     SimEnd end;
@@ -123,8 +124,7 @@ class SimServer final : public WorldEnvironment {
   Clocks now() const { return {time_.now(), 1'700'000'000'000'000 + time_.now()}; }
 
   // Faults, in occurrences per 1000.
-  std::uint32_t drop_commits =
-      0;  // a send that says "queued" and loses a commit: a bug no queue would have
+  std::uint32_t drop_commits = 0;  // send() returns true and loses the commit
   std::size_t server_queue_bytes = 200'000;
   bool log_full = false;
   std::uint64_t dropped = 0;
@@ -154,7 +154,7 @@ class SimServer final : public WorldEnvironment {
     if (!result) throw SimFault(result.error().message());
   }
 
-  /// Runs `event` after a while, unless the server has died by then.
+  /// Runs `event` after a while, unless the server has crashed by then.
   void later(std::int32_t min_us, std::int32_t max_us, std::function<void()> event) {
     time_.after(rng_.between(min_us, max_us), [this, life = life_, run = std::move(event)] {
       if (life == life_) run();
@@ -174,8 +174,7 @@ class SimServer final : public WorldEnvironment {
     });
   }
 
-  // ---- WorldEnvironment
-  // ------------------------------------------------------------------------------------------
+  // WorldEnvironment.
   bool send(SessionId id, const EncodedMessage& message) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end()) return false;
@@ -222,7 +221,7 @@ class SimServer final : public WorldEnvironment {
     if (session == sessions_.end() || !session->second.connection->open()) return;
     if (session->second.connection->send_from_server(message)) {
       world_->drained(id, now());
-    } else {  // the port promised to queue it: try again when there is room
+    } else {  // send() must queue it: try again when there is room
       later(1000, 5000, [this, id, message] { send_encoded(id, message); });
     }
   }
@@ -276,7 +275,7 @@ class SimServer final : public WorldEnvironment {
   std::function<std::unique_ptr<Store>()> open_;
   std::unique_ptr<Store> store_;
   std::unique_ptr<WorldServer> world_;
-  std::uint64_t life_ = 0;  // events of an earlier life do nothing
+  std::uint64_t life_ = 0;  // number of this start; events of earlier ones do nothing
   SessionId next_session_ = 1;
   std::map<SessionId, Session> sessions_;
   std::vector<std::pair<std::vector<PlayerRow>, std::vector<EditRecord>>> batches_;

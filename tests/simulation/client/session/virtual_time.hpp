@@ -1,5 +1,5 @@
-// VirtualTime: the only clock of the simulation. Events run in order of time, then of scheduling, so that one
-// seed gives one history.
+// VirtualTime: the only clock of the simulation. Events run in order of time, then of scheduling,
+// so that one seed gives one history.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -17,7 +17,7 @@ class VirtualTime {
   void after(TimeUs delay, std::function<void()> event) {
     events_.push({now_ + delay, next_++, std::move(event)});
   }
-  /// Runs the next event; false if there is none.
+  /// Runs the next event. Returns false if there is none.
   bool step() {
     if (events_.empty()) return false;
     Event event = events_.top();
@@ -36,7 +36,7 @@ class VirtualTime {
     TimeUs at;
     std::uint64_t order;
     std::function<void()> run;
-    bool operator<(const Event& other) const {  // the queue's top is the greatest
+    bool operator<(const Event& other) const {  // the greatest element is at the top
       return at != other.at ? at > other.at : order > other.order;
     }
   };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int32_t kEdge = 32;
 
-// A replica that sees flat ground, y < 0 solid, for `radius` chunks around a site.
+/// Loads flat ground, solid for y < 0, for `radius` chunks around a site.
 void load_flat_world(Replica& replica, ChunkCoord centre, std::uint8_t radius) {
   const View view{centre, radius, radius};
   replica.set_view(view);
@@ -58,7 +58,7 @@ TEST_CASE("sites of a fleet do not touch", "[bots]") {
   }
 }
 
-TEST_CASE("the same seed gives the same edits, another one others", "[bots]") {
+TEST_CASE("the same seed gives the same edits, and another seed other edits", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
   for (const BotRole role : {BotRole::build, BotRole::brush, BotRole::grief}) {
     const auto first = edits_of(role, place, 5, 300);
@@ -103,7 +103,7 @@ TEST_CASE("a walker goes round its site at a steady speed", "[bots]") {
   }
 }
 
-TEST_CASE("who runs away never comes back, and sees new chunks all the time", "[bots]") {
+TEST_CASE("a bot that runs away never returns, and always sees new chunks", "[bots]") {
   const BotPlace place{{0, 8, 0}, 0, 1};
   const auto behaviour = make_behaviour(BotRole::run_away, place, default_material_table(), 3);
   const WorldPos from = behaviour->position(0);

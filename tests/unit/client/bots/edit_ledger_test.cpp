@@ -6,7 +6,7 @@ using namespace runstone;
 
 namespace {
 
-// One chunk of edge 32, empty, at the origin.
+/// Loads an empty chunk of edge 32 at the origin.
 void load_empty_chunk(Replica& replica) {
   replica.set_view({{0, 0, 0}, 0, 0});
   replica.open({.chunk_edge = 32, .author = 1, .instance = 1, .epoch = 1});
@@ -22,7 +22,7 @@ EditDescriptor voxel(std::int32_t x, Material material) {
 
 }  // namespace
 
-TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
+TEST_CASE("a ledger counts which of its voxels are intact", "[bots]") {
   Replica replica;
   load_empty_chunk(replica);
   EditLedger ledger;
@@ -32,9 +32,9 @@ TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
   };
   set(voxel(1, 5));
   set(voxel(2, 5));
-  set(voxel(2, 6));                                        // again: the last one counts
-  set(voxel(40, 7));                                       // in a chunk that is not here
-  REQUIRE(replica.submit(voxel(1, 9), 0, 0).has_value());  // somebody else
+  set(voxel(2, 6));                                        // the last edit of a voxel counts
+  set(voxel(40, 7));                                       // in a chunk that is not loaded
+  REQUIRE(replica.submit(voxel(1, 9), 0, 0).has_value());  // an edit of another author
   const auto standing = ledger.compare(replica);
   CHECK(standing.held == 3);
   CHECK(standing.intact == 1);
@@ -42,7 +42,7 @@ TEST_CASE("a ledger tells what of its voxels stands", "[bots]") {
   CHECK(standing.unseen == 1);
 }
 
-TEST_CASE("a ledger forgets what a larger or a masked edit may have covered, and what was refused",
+TEST_CASE("a ledger forgets voxels that other edits may have changed, and rejected ones",
           "[bots]") {
   Replica replica;
   load_empty_chunk(replica);

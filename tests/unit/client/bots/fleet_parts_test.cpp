@@ -1,4 +1,4 @@
-// What a crowd shares, and when its bots act.
+// What the bots of a fleet share, and when they act.
 #include <catch2/catch.hpp>
 
 #include "client/bots/due_times.hpp"
@@ -8,8 +8,8 @@
 
 using namespace runstone;
 
-TEST_CASE("due times are found by instance and sequence, the newest ones of each",
-          "[bots][light]") {
+TEST_CASE("due times are found by instance and sequence, for the newest edits of each",
+          "[bots][headless]") {
   DueTimes due;
   for (ClientSequence seq = 1; seq <= 3; ++seq) due.add(7, seq, static_cast<TimeUs>(seq * 100));
   due.add(8, 1, 5);
@@ -39,7 +39,7 @@ TEST_CASE("edits are due at fixed times from a phase on", "[bots]") {
   CHECK(endless.is_over());
 }
 
-TEST_CASE("the shared ground is that of the first who saw it", "[bots][light]") {
+TEST_CASE("the shared ground is that of the first bot that saw it", "[bots][headless]") {
   SharedGround ground;
   CHECK_FALSE(ground.surface(0, 0));
   ground.add({0, -1, 0}, uniform_chunk(Extent::cube(16), 4));
@@ -56,16 +56,16 @@ TEST_CASE("the shared ground is that of the first who saw it", "[bots][light]") 
   CHECK(ground.chunks() == 3);
 }
 
-TEST_CASE("a crowd book keeps every sight, and the slowest of each second", "[bots][light]") {
-  FleetStatistics book;
-  book.begin(1'000'000);
-  book.see(1'000'000, 1'000'300);
-  book.see(1'999'999, 2'500'000);
-  book.see(3'000'000, 3'000'100);
-  book.see(500'000, 900'000);  // due before
-  book.see_unknown();
-  CHECK(book.seen_us().count() == 4);
-  CHECK(book.seen_us().max() == 500'001);
-  CHECK(book.worst_us() == std::vector<TimeUs>{500'001, 0, 100});
-  CHECK(book.unattributed() == 1);
+TEST_CASE("fleet statistics keep every time, and the slowest of each second", "[bots][headless]") {
+  FleetStatistics statistics;
+  statistics.begin(1'000'000);
+  statistics.see(1'000'000, 1'000'300);
+  statistics.see(1'999'999, 2'500'000);
+  statistics.see(3'000'000, 3'000'100);
+  statistics.see(500'000, 900'000);  // due before the start
+  statistics.see_unknown();
+  CHECK(statistics.seen_us().count() == 4);
+  CHECK(statistics.seen_us().max() == 500'001);
+  CHECK(statistics.worst_us() == std::vector<TimeUs>{500'001, 0, 100});
+  CHECK(statistics.unattributed() == 1);
 }

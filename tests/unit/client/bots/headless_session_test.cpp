@@ -15,12 +15,12 @@ constexpr ChunkCoord kHere{0, 0, 0};
 constexpr std::uint16_t kEdge = 16;
 constexpr AuthorId kAuthor = 7;
 
-/// A server that says what a test wants, to one light session.
+/// A server played by the test, with one headless session.
 struct Bench {
   Bench() {
     config.keys = test::keys(1);
     config.instance = 11;
-    session.emplace(config, crowd, read_clock);
+    session.emplace(config, fleet, read_clock);
     greet(1, 0);
     session->set_view({kHere, 0, 0});
     ChunkSnapshot snapshot;
@@ -31,7 +31,7 @@ struct Bench {
     CHECK(session->loaded());
     session->take_outgoing();
   }
-  /// A new connection up to ready. Returns what the session has to say then.
+  /// Opens a new connection. Returns the messages that the session sends then.
   std::vector<Message> greet(Epoch epoch, ClientSequence resolved) {
     session->connected({5}, clock_us);
     const auto hello = std::get<Hello>(session->take_outgoing().at(0));
@@ -52,18 +52,18 @@ struct Bench {
   void give(Message message) {
     session->receive(std::move(message), {clock_us, clock_us, clock_us});
   }
-  /// As a link does it.
+  /// Passes the message as bytes, like a link.
   Result<bool> give_bytes(const Message& message) {
     const EncodedMessage encoded = encode_message(message);
     return session->receive_bytes(encoded.frame_class, *encoded.bytes, kEdge, clock_us);
   }
-  /// Whether the session took the bytes of a sound message.
+  /// Returns true if the session took the bytes. Fails if they are malformed.
   bool takes(const Message& message) {
     const auto taken = give_bytes(message);
     REQUIRE(taken.has_value());
     return *taken;
   }
-  /// One edit in the chunk that is seen.
+  /// Returns an edit of the chunk in view.
   static OrderedEdit edit(Sequence previous, OperationId op = {1, 1, 1}) {
     OrderedEdit out;
     out.op = op;
@@ -81,16 +81,16 @@ struct Bench {
 
   SessionConfig config;
   KeyPair keys = test::keys(9);
-  FleetStatistics crowd;
+  FleetStatistics fleet;
   std::optional<HeadlessSession> session;
 };
 
 }  // namespace
 
-TEST_CASE("a light session verifies commits and measures each edit at each bot", "[bots][light]") {
+TEST_CASE("a headless session verifies commits and times each edit", "[bots][headless]") {
   clock_us = 1'000;
   Bench bench;
-  bench.crowd.due.add(99, 5, 400);
+  bench.fleet.due.add(99, 5, 400);
   clock_us = 2'000;
   const ClientSequence mine = bench.submit(1'900);
   clock_us = 2'500;
@@ -105,24 +105,24 @@ TEST_CASE("a light session verifies commits and measures each edit at each bot",
   CHECK(bench.session->counts().edits == 3);
   CHECK(bench.session->local_edits().counters().confirmed == 1);
   CHECK(bench.session->counts().confirm_us.max() == 600);
-  CHECK(bench.crowd.seen_us().count() == 2);
-  CHECK(bench.crowd.seen_us().max() == 2'100);
-  CHECK(bench.crowd.unattributed() == 1);
+  CHECK(bench.fleet.seen_us().count() == 2);
+  CHECK(bench.fleet.seen_us().max() == 2'100);
+  CHECK(bench.fleet.unattributed() == 1);
   CHECK(bench.session->local_edits().all().size() == 1);
   bench.give(Durable{1, 5});
   CHECK(bench.session->local_edits().all().empty());
   CHECK(bench.session->local_edits().counters().durable == 1);
 }
 
-TEST_CASE("bytes of another class, and messages that are no commits, are left to be decoded",
-          "[bots][light]") {
+TEST_CASE("bytes of another class, and messages that are not commits, are not taken",
+          "[bots][headless]") {
   Bench bench;
   CHECK_FALSE(bench.takes(Pong{1, 2}));
   CHECK_FALSE(bench.takes(Durable{1, 2}));
   CHECK(bench.violations().total() == 0);
 }
 
-TEST_CASE("hostile commits end the connection", "[bots][light]") {
+TEST_CASE("hostile commits end the connection", "[bots][headless]") {
   Bench bench;
   SECTION("of another epoch") {
     CHECK_FALSE(bench.give_bytes(Commit{2, 1, {Bench::edit(0)}}).has_value());
@@ -140,11 +140,11 @@ TEST_CASE("hostile commits end the connection", "[bots][light]") {
   }
 }
 
-TEST_CASE("sequences ascend: what comes again is a violation", "[bots][light]") {
+TEST_CASE("a sequence that comes again is a violation", "[bots][headless]") {
   Bench bench;
   REQUIRE(bench.give_bytes(Commit{1, 3, {Bench::edit(0), Bench::edit(3)}}));
   REQUIRE(bench.takes(Commit{1, 9, {Bench::edit(4)}}) ==
-          true);  // numbers between are of chunks elsewhere
+          true);  // sequences in between are of other chunks
   CHECK(bench.violations().total() == 0);
   REQUIRE(bench.give_bytes(Commit{1, 9, {Bench::edit(4)}}));
   CHECK(bench.violations().all().at("repeated sequence").count == 1);
@@ -152,8 +152,8 @@ TEST_CASE("sequences ascend: what comes again is a violation", "[bots][light]") 
   CHECK(bench.violations().all().at("repeated sequence").count == 3);
 }
 
-TEST_CASE("a gap in a chunk's versions is found through the session, and asked for",
-          "[bots][light]") {
+TEST_CASE("a gap in the versions of a chunk is found, and the chunk is requested",
+          "[bots][headless]") {
   clock_us = 1'000;
   Bench bench;
   REQUIRE(bench.takes(Commit{1, 5, {Bench::edit(4)}}));
@@ -167,7 +167,7 @@ TEST_CASE("a gap in a chunk's versions is found through the session, and asked f
   CHECK(asks);
 }
 
-TEST_CASE("an own edit is answered once, and only if it was made", "[bots][light]") {
+TEST_CASE("a second answer to a local edit, or to none, is a violation", "[bots][headless]") {
   Bench bench;
   const ClientSequence mine = bench.submit(0);
   REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(mine))}}));
@@ -182,7 +182,7 @@ TEST_CASE("an own edit is answered once, and only if it was made", "[bots][light
   CHECK(bench.violations().all().at("answer twice").count == 1);
 }
 
-TEST_CASE("a rejected edit is counted and may not be applied later", "[bots][light]") {
+TEST_CASE("a rejected edit is counted, and a commit of it is a violation", "[bots][headless]") {
   Bench bench;
   const ClientSequence mine = bench.submit(0);
   bench.give(Reject{mine, RejectReason::busy, "", 0});
@@ -193,7 +193,8 @@ TEST_CASE("a rejected edit is counted and may not be applied later", "[bots][lig
   CHECK(bench.violations().all().contains("answer twice"));
 }
 
-TEST_CASE("the durable watermark is of the epoch and never goes back", "[bots][light]") {
+TEST_CASE("a durable watermark of another epoch, or a lower one, is a violation",
+          "[bots][headless]") {
   Bench bench;
   bench.give(Durable{1, 5});
   bench.give(Durable{1, 5});
@@ -203,7 +204,7 @@ TEST_CASE("the durable watermark is of the epoch and never goes back", "[bots][l
   CHECK(bench.violations().all().at("durable").count == 1);
 }
 
-TEST_CASE("a light session offers edits that the server does not know again", "[bots][light]") {
+TEST_CASE("a headless session offers edits again that the server has lost", "[bots][headless]") {
   Bench bench;
   const ClientSequence first = bench.submit(0), second = bench.submit(0), third = bench.submit(0);
   REQUIRE(bench.takes(Commit{1, 1, {Bench::edit(0, bench.own(first))}}));
@@ -221,18 +222,17 @@ TEST_CASE("a light session offers edits that the server does not know again", "[
   CHECK(bench.session->connect_count() == 2);
 }
 
-TEST_CASE("chunks of one material are seen, and built upon", "[bots][light]") {
+TEST_CASE("chunks of one material become ground", "[bots][headless]") {
   Bench bench;
   bench.session->set_view({kHere, 0, 1});
   CHECK_FALSE(bench.session->loaded());
   bench.give(UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, {0, 1, 0}}, kEmpty, {}}}});
   CHECK(bench.session->loaded());
-  CHECK(bench.crowd.ground.chunks() == 3);
-  CHECK(bench.crowd.ground.surface(1, 1) == kEdge - 1);
+  CHECK(bench.fleet.ground.chunks() == 3);
+  CHECK(bench.fleet.ground.surface(1, 1) == kEdge - 1);
 }
 
-TEST_CASE("a message that no server sends unasked ends the session with its reason",
-          "[bots][light]") {
+TEST_CASE("a message that was not requested ends the session with its reason", "[bots][headless]") {
   Bench bench;
   bench.give(CommandOutput{1, {}, true, true});
   CHECK(bench.session->wants_close());

@@ -24,7 +24,7 @@ TEST_CASE("a house sets no voxel twice and stays on its plot", "[bots]") {
   }
 }
 
-TEST_CASE("a house stands from the ground up, with windows", "[bots]") {
+TEST_CASE("a house is built from the ground up, with windows", "[bots]") {
   SplitMix64 random(3);
   const HouseMaterials materials = draw_house_materials(default_material_table(), random);
   const auto plan = plan_house({0, 0, 0}, materials, random);

@@ -1,4 +1,4 @@
-// Recorded edits in virtual time: when they are due, and how the schedule gives way.
+// Recorded edits in virtual time: when they are due, and when the schedule delays them.
 #include "client/bots/play_schedule.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ std::vector<std::size_t> take_all(PlaySchedule& schedule, TimeUs now_us) {
   return indexes;
 }
 
-/// A server's rate limit: tokens come back, at most `burst` are kept.
+/// The rate limit of a server: tokens are refilled, up to `burst`.
 struct Limit {
   double per_second, burst, tokens = burst;
   TimeUs last_us = kBegin;
@@ -34,7 +34,7 @@ struct Limit {
 
 TEST_CASE("edits are due at their recorded times, divided by the speed", "[bots][play]") {
   PlaySchedule schedule({0, 0, kSecond, 5 * kSecond}, 2);
-  CHECK(take_all(schedule, kBegin).empty());  // not begun
+  CHECK(take_all(schedule, kBegin).empty());  // before begin()
   schedule.begin(kBegin);
   CHECK(take_all(schedule, kBegin) == std::vector<std::size_t>{0, 1});
   CHECK(take_all(schedule, kBegin + kSecond / 2 - 1).empty());
@@ -61,14 +61,13 @@ TEST_CASE("at speed 0 an edit is due when there is room for it", "[bots][play]")
   CHECK(second->due_us == kBegin + 9);
 }
 
-TEST_CASE("a tiny speed and a far time stay numbers", "[bots][play]") {
+TEST_CASE("a tiny speed and a far time give valid due times", "[bots][play]") {
   PlaySchedule schedule({0, std::numeric_limits<TimeUs>::max()}, 1e-9);
   schedule.begin(kBegin);
   CHECK(take_all(schedule, kBegin + kSecond) == std::vector<std::size_t>{0});
 }
 
-TEST_CASE("only so many edits wait for an answer, and only so many go in a second",
-          "[bots][play]") {
+TEST_CASE("open edits are bounded, and so is the rate", "[bots][play]") {
   PlaySchedule schedule(std::vector<TimeUs>(100'000, 0), 0);
   schedule.begin(kBegin);
   std::size_t handed = 0;
@@ -85,26 +84,26 @@ TEST_CASE("only so many edits wait for an answer, and only so many go in a secon
 }
 
 TEST_CASE(
-    "after a push back all that is on its way is answered first, and what came back goes first "
-    "again",
+    "after a retry the open edits are answered first, and then the retries are "
+    "submitted first",
     "[bots][play]") {
   PlaySchedule schedule({0, 1, 2, 3, 4, 5}, 1);
   schedule.begin(kBegin);
-  std::deque<PlaySchedule::Turn> sent;
+  std::deque<PlaySchedule::DueEdit> sent;
   while (const auto turn = schedule.next(kBegin + 3)) sent.push_back(*turn);
   REQUIRE(sent.size() == 4);
   schedule.accepted();  // 0
-  schedule.pushed_back(sent[2], kBegin + 10);
-  schedule.pushed_back(sent[1], kBegin + 10);
+  schedule.retry(sent[2], kBegin + 10);
+  schedule.retry(sent[1], kBegin + 10);
   CHECK(schedule.waiting() == 2);
-  CHECK(take_all(schedule, kBegin + 2 * kPlayPauseUs).empty());  // 3 is still on its way
+  CHECK(take_all(schedule, kBegin + 2 * kPlayPauseUs).empty());  // 3 is not answered
   schedule.accepted();
   CHECK(take_all(schedule, kBegin + 10 + kPlayPauseUs - 1).empty());
   const auto first = schedule.next(kBegin + 10 + kPlayPauseUs);
   REQUIRE(first.has_value());
   CHECK(first->index == 1);
   CHECK(first->due_us == sent[1].due_us);
-  CHECK(take_all(schedule, kBegin + 10 + kPlayPauseUs).empty());  // nothing to catch up
+  CHECK(take_all(schedule, kBegin + 10 + kPlayPauseUs).empty());  // no catching up
   std::vector<std::size_t> rest;
   for (TimeUs us = 0; us < 5'000; us += 100) {
     for (const std::size_t index : take_all(schedule, kBegin + 10 + kPlayPauseUs + us))
@@ -113,7 +112,7 @@ TEST_CASE(
   CHECK(rest == std::vector<std::size_t>{2, 4, 5});
 }
 
-TEST_CASE("the rate settles below a server's limit, and every edit is taken in the end",
+TEST_CASE("the rate converges below the limit of a server, and every edit is accepted in the end",
           "[bots][play]") {
   constexpr std::size_t kEdits = 30'000;
   PlaySchedule schedule(std::vector<TimeUs>(kEdits, 0), 0);
@@ -122,16 +121,16 @@ TEST_CASE("the rate settles below a server's limit, and every edit is taken in t
   std::vector<int> taken(kEdits, 0);
   std::uint64_t pushed = 0;
   TimeUs now_us = kBegin;
-  // Answers come with the next step, 5 ms later.
-  std::vector<PlaySchedule::Turn> sent;
+  // Answers arrive with the next step, 5 ms later.
+  std::vector<PlaySchedule::DueEdit> sent;
   for (; !schedule.done() && now_us < kBegin + 120 * kSecond; now_us += 5'000) {
-    for (const PlaySchedule::Turn& turn : std::exchange(sent, {})) {
+    for (const PlaySchedule::DueEdit& turn : std::exchange(sent, {})) {
       if (limit.take(now_us)) {
         ++taken[turn.index];
         schedule.accepted();
       } else {
         ++pushed;
-        schedule.pushed_back(turn, now_us);
+        schedule.retry(turn, now_us);
       }
     }
     while (const auto turn = schedule.next(now_us)) sent.push_back(*turn);
@@ -139,6 +138,6 @@ TEST_CASE("the rate settles below a server's limit, and every edit is taken in t
   CHECK(schedule.done());
   CHECK(taken == std::vector<int>(kEdits, 1));
   CHECK(pushed > 0);
-  CHECK(pushed < 200);                    // it learns
+  CHECK(pushed < 200);                    // the rate adapts
   CHECK(now_us - kBegin < 75 * kSecond);  // 58 s is what the limit allows
 }

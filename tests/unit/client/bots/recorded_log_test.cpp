@@ -1,4 +1,4 @@
-// Recorded logs, sorted by author, and what they ask of the world that they are played in.
+// Recorded logs by author, and the materials that they need in the world that they are played in.
 #include "client/bots/recorded_log.hpp"
 
 #include <catch2/catch.hpp>
@@ -43,7 +43,7 @@ TEST_CASE("edits are sorted by author, each at its time since the first of all",
   const auto log = read_recorded_log(source_of(file));
   REQUIRE(log.has_value());
   CHECK(log->edits == 4);
-  REQUIRE(log->authors.size() == 3);  // who made none is not there
+  REQUIRE(log->authors.size() == 3);  // authors without edits are left out
   CHECK(log->authors[0].name == "server");
   CHECK(log->authors[1].name == "ada");
   CHECK(log->authors[2].name == std::string(kPlayerNameBytesMax, 'b'));
@@ -55,7 +55,7 @@ TEST_CASE("edits are sorted by author, each at its time since the first of all",
   CHECK(log->used == std::vector<Material>{0, 1, 2, 4});
 }
 
-TEST_CASE("nothing is had of a file that is damaged or cut anywhere", "[bots][play]") {
+TEST_CASE("a file that is damaged or cut anywhere is rejected", "[bots][play]") {
   const Bytes file = three_authors();
   for (std::size_t bytes = 0; bytes < file.size(); ++bytes) {
     const Bytes cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes));
@@ -76,7 +76,7 @@ TEST_CASE("names of recorded players become names of sessions", "[bots][play]") 
   CHECK(session_name(std::string(31, 'x') + "\xc3\xa9", 7) == std::string(31, 'x'));
 }
 
-TEST_CASE("the world must know by id and name what the edits use, and only that", "[bots][play]") {
+TEST_CASE("the world must have the materials that the edits use, by id and name", "[bots][play]") {
   const Bytes file = three_authors();
   const auto log = read_recorded_log(source_of(file));
   REQUIRE(log.has_value());

@@ -17,170 +17,171 @@ ChunkSnapshot snapshot_at(ChunkCoord at, Sequence seq, Epoch epoch = 1) {
   return snapshot;
 }
 
-/// Sees one chunk, at this sequence.
+/// Makes a tracker of one chunk, at this sequence.
 VersionTracker book_at(Sequence seq) {
-  VersionTracker book;
-  book.open(1);
-  book.set_view({kHere, 0, 0});
-  book.receive(snapshot_at(kHere, seq), 0);
-  return book;
+  VersionTracker tracker;
+  tracker.open(1);
+  tracker.set_view({kHere, 0, 0});
+  tracker.receive(snapshot_at(kHere, seq), 0);
+  return tracker;
 }
 
 }  // namespace
 
-TEST_CASE("versions follow edits that continue them", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  CHECK(book.known() == 1);
-  book.follow(kHere, 4, 7, 10);
-  book.follow(kHere, 7, 8, 20);
-  CHECK(book.version(kHere) == 8);
-  CHECK(book.counts().followed == 2);
-  CHECK(book.behind() == 0);
-  book.tick(kResendUsMax * 10);
-  CHECK(book.violations().total() == 0);
+TEST_CASE("versions follow edits that continue them", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  CHECK(tracker.known() == 1);
+  tracker.follow(kHere, 4, 7, 10);
+  tracker.follow(kHere, 7, 8, 20);
+  CHECK(tracker.version(kHere) == 8);
+  CHECK(tracker.counts().followed == 2);
+  CHECK(tracker.behind() == 0);
+  tracker.tick(kResendUsMax * 10);
+  CHECK(tracker.violations().total() == 0);
 }
 
-TEST_CASE("an edit that overtakes its snapshot is held back, one that the snapshot has is dropped",
-          "[bots][light]") {
-  VersionTracker book;
-  book.open(1);
-  book.set_view({kHere, 0, 0});
-  book.follow(kHere, 2, 3, 10);
-  book.follow(kHere, 3, 5, 10);
-  book.follow(kHere, 5, 6, 10);
-  CHECK(book.known() == 0);
-  book.receive(snapshot_at(kHere, 3), 20);
-  CHECK(book.version(kHere) == 6);
-  CHECK(book.counts().contained == 1);
-  CHECK(book.counts().followed == 2);
-  book.follow(kHere, 3, 5, 30);
-  CHECK(book.counts().contained == 2);
-  CHECK(book.behind() == 0);
+TEST_CASE("an edit that overtakes its snapshot is held back, and one in the snapshot is dropped",
+          "[bots][headless]") {
+  VersionTracker tracker;
+  tracker.open(1);
+  tracker.set_view({kHere, 0, 0});
+  tracker.follow(kHere, 2, 3, 10);
+  tracker.follow(kHere, 3, 5, 10);
+  tracker.follow(kHere, 5, 6, 10);
+  CHECK(tracker.known() == 0);
+  tracker.receive(snapshot_at(kHere, 3), 20);
+  CHECK(tracker.version(kHere) == 6);
+  CHECK(tracker.counts().contained == 1);
+  CHECK(tracker.counts().followed == 2);
+  tracker.follow(kHere, 3, 5, 30);
+  CHECK(tracker.counts().contained == 2);
+  CHECK(tracker.behind() == 0);
 }
 
-TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots][light]") {
+TEST_CASE("a gap is a violation unless the chunk is sent again in time", "[bots][headless]") {
   for (const bool resends : {true, false}) {
     CAPTURE(resends);
-    VersionTracker book = book_at(4);
-    book.follow(kHere, 5, 6, 100);
-    CHECK(book.version(kHere) == 4);
-    CHECK(book.behind() == 1);
+    VersionTracker tracker = book_at(4);
+    tracker.follow(kHere, 5, 6, 100);
+    CHECK(tracker.version(kHere) == 4);
+    CHECK(tracker.behind() == 1);
     if (resends) {
-      book.receive(snapshot_at(kHere, 6), 1'100);
-      CHECK(book.version(kHere) == 6);
-      CHECK(book.counts().resent == 1);
-      CHECK(book.counts().behind_us.max() == 1'000);
+      tracker.receive(snapshot_at(kHere, 6), 1'100);
+      CHECK(tracker.version(kHere) == 6);
+      CHECK(tracker.counts().resent == 1);
+      CHECK(tracker.counts().behind_us.max() == 1'000);
     }
-    book.tick(100 + kResendUsMax);
-    CHECK(book.violations().total() == (resends ? 0 : 1));
-    CHECK(book.violations().all().contains("gap") == !resends);
-    CHECK(book.take_requests().size() == (resends ? 0 : 1));
-    book.tick(100 + 2 * kResendUsMax);
-    CHECK(book.violations().total() == (resends ? 0 : 1));  // told once
+    tracker.tick(100 + kResendUsMax);
+    CHECK(tracker.violations().total() == (resends ? 0 : 1));
+    CHECK(tracker.violations().all().contains("gap") == !resends);
+    CHECK(tracker.take_requests().size() == (resends ? 0 : 1));
+    tracker.tick(100 + 2 * kResendUsMax);
+    CHECK(tracker.violations().total() == (resends ? 0 : 1));  // reported once
   }
 }
 
-TEST_CASE("a snapshot that does not close the gap leaves the chunk behind", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  book.follow(kHere, 6, 7, 100);
-  book.receive(snapshot_at(kHere, 5), 200);
-  CHECK(book.behind() == 1);
-  book.follow(kHere, 7, 9, 250);
-  book.receive(snapshot_at(kHere, 6), 300);
-  CHECK(book.behind() == 0);
-  CHECK(book.version(kHere) == 9);
+TEST_CASE("a snapshot that does not close the gap leaves the chunk behind", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.follow(kHere, 6, 7, 100);
+  tracker.receive(snapshot_at(kHere, 5), 200);
+  CHECK(tracker.behind() == 1);
+  tracker.follow(kHere, 7, 9, 250);
+  tracker.receive(snapshot_at(kHere, 6), 300);
+  CHECK(tracker.behind() == 0);
+  CHECK(tracker.version(kHere) == 9);
 }
 
-TEST_CASE("an audit tells of edits that never came", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  book.receive(DigestCheck{{{{0, kHere}, {1, 4}, {}}}}, 10);
-  CHECK(book.behind() == 0);
-  book.receive(DigestCheck{{{{0, kHere}, {1, 6}, {}}}}, 20);
-  CHECK(book.behind() == 1);
+TEST_CASE("a digest check reveals edits that never arrived", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.receive(DigestCheck{{{{0, kHere}, {1, 4}, {}}}}, 10);
+  CHECK(tracker.behind() == 0);
+  tracker.receive(DigestCheck{{{{0, kHere}, {1, 6}, {}}}}, 20);
+  CHECK(tracker.behind() == 1);
   SECTION("the commits were gathered and come") {
-    book.follow(kHere, 4, 6, 30);
-    CHECK(book.behind() == 0);
+    tracker.follow(kHere, 4, 6, 30);
+    CHECK(tracker.behind() == 0);
   }
   SECTION("they do not") {
-    book.tick(20 + kResendUsMax);
-    CHECK(book.violations().all().contains("gap"));
+    tracker.tick(20 + kResendUsMax);
+    CHECK(tracker.violations().all().contains("gap"));
   }
 }
 
-TEST_CASE("snapshots answer for their digest and epoch", "[bots][light]") {
-  VersionTracker book = book_at(4);
+TEST_CASE("a snapshot of a wrong digest or epoch is a violation", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
   ChunkSnapshot wrong = snapshot_at(kHere, 5);
   wrong.chunk.digest.lane[0] ^= 1;
-  book.receive(wrong, 0);
-  CHECK(book.violations().all().contains("snapshot digest"));
-  CHECK_FALSE(book.violations().all().contains("epoch"));
-  book.receive(snapshot_at(kHere, 6, 2), 0);
-  CHECK(book.violations().all().contains("epoch"));
-  CHECK(book.violations().total() == 2);
+  tracker.receive(wrong, 0);
+  CHECK(tracker.violations().all().contains("snapshot digest"));
+  CHECK_FALSE(tracker.violations().all().contains("epoch"));
+  tracker.receive(snapshot_at(kHere, 6, 2), 0);
+  CHECK(tracker.violations().all().contains("epoch"));
+  CHECK(tracker.violations().total() == 2);
 }
 
-TEST_CASE("an older snapshot is ignored, and so is what is out of view", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  book.receive(snapshot_at(kHere, 3), 0);
-  CHECK(book.version(kHere) == 4);
-  CHECK(book.counts().stale == 1);
-  book.receive(snapshot_at({5, 0, 0}, 3), 0);
-  book.follow({5, 0, 0}, 8, 9, 0);
-  CHECK(book.counts().outside == 1);
-  CHECK(book.known() == 1);
-  book.follow(kHere, 5, 6, 0);
-  book.set_view({{5, 0, 0}, 0, 0});
-  CHECK(book.known() == 0);
-  CHECK(book.behind() == 0);
+TEST_CASE("an older snapshot is ignored, and so is one out of view", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.receive(snapshot_at(kHere, 3), 0);
+  CHECK(tracker.version(kHere) == 4);
+  CHECK(tracker.counts().stale == 1);
+  tracker.receive(snapshot_at({5, 0, 0}, 3), 0);
+  tracker.follow({5, 0, 0}, 8, 9, 0);
+  CHECK(tracker.counts().outside == 1);
+  CHECK(tracker.known() == 1);
+  tracker.follow(kHere, 5, 6, 0);
+  tracker.set_view({{5, 0, 0}, 0, 0});
+  CHECK(tracker.known() == 0);
+  CHECK(tracker.behind() == 0);
 }
 
-TEST_CASE("chunks of one material stand for snapshots", "[bots][light]") {
-  VersionTracker book;
-  book.open(1);
-  book.set_view({kHere, 0, 1});
-  book.follow(kHere, 4, 6, 0);
-  book.receive(
+TEST_CASE("chunks of one material count as snapshots", "[bots][headless]") {
+  VersionTracker tracker;
+  tracker.open(1);
+  tracker.set_view({kHere, 0, 1});
+  tracker.follow(kHere, 4, 6, 0);
+  tracker.receive(
       UniformChunks{{{{0, {0, -1, 0}}, 3, {}}, {{0, kHere}, 0, {1, 4}}, {{0, {0, 1, 0}}, 0, {}}}},
       0);
-  CHECK(book.known() == 3);
-  CHECK(book.version(kHere) == 6);
-  CHECK(book.counts().snapshots == 3);
-  CHECK(book.violations().total() == 0);
-  book.receive(UniformChunks{{{{0, kHere}, 0, {2, 9}}}}, 0);
-  CHECK(book.violations().all().contains("epoch"));
+  CHECK(tracker.known() == 3);
+  CHECK(tracker.version(kHere) == 6);
+  CHECK(tracker.counts().snapshots == 3);
+  CHECK(tracker.violations().total() == 0);
+  tracker.receive(UniformChunks{{{{0, kHere}, 0, {2, 9}}}}, 0);
+  CHECK(tracker.violations().all().contains("epoch"));
 }
 
-TEST_CASE("a chunk that cannot be had counts as known and is not followed", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  book.follow(kHere, 5, 6, 0);
-  book.receive(ChunkUnavailable{{{0, kHere}}, UnavailableReason::damaged});
-  CHECK(book.known() == 1);
-  CHECK(book.behind() == 0);
-  book.follow(kHere, 8, 9, 0);
-  CHECK(book.behind() == 0);
-  book.receive(snapshot_at(kHere, 9), 0);
-  CHECK(book.version(kHere) == 9);
-  CHECK(book.known() == 1);
+TEST_CASE("an unavailable chunk counts as known and is not followed", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.follow(kHere, 5, 6, 0);
+  tracker.receive(ChunkUnavailable{{{0, kHere}}, UnavailableReason::damaged});
+  CHECK(tracker.known() == 1);
+  CHECK(tracker.behind() == 0);
+  tracker.follow(kHere, 8, 9, 0);
+  CHECK(tracker.behind() == 0);
+  tracker.receive(snapshot_at(kHere, 9), 0);
+  CHECK(tracker.version(kHere) == 9);
+  CHECK(tracker.known() == 1);
 }
 
-TEST_CASE("what is held back is bounded; the newest edit is remembered", "[bots][light]") {
-  VersionTracker book;
-  book.open(1);
-  book.set_view({kHere, 0, 0});
-  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) book.follow(kHere, seq - 1, seq, 0);
-  book.receive(snapshot_at(kHere, 1), 0);
-  CHECK(book.behind() == 1);
-  book.receive(snapshot_at(kHere, 2 * kWaitingLinksMax), 0);
-  CHECK(book.behind() == 0);
+TEST_CASE("held back edits are bounded, and the newest sequence is remembered",
+          "[bots][headless]") {
+  VersionTracker tracker;
+  tracker.open(1);
+  tracker.set_view({kHere, 0, 0});
+  for (Sequence seq = 2; seq < 2 * kWaitingLinksMax; ++seq) tracker.follow(kHere, seq - 1, seq, 0);
+  tracker.receive(snapshot_at(kHere, 1), 0);
+  CHECK(tracker.behind() == 1);
+  tracker.receive(snapshot_at(kHere, 2 * kWaitingLinksMax), 0);
+  CHECK(tracker.behind() == 0);
 }
 
-TEST_CASE("a new connection expects every chunk anew", "[bots][light]") {
-  VersionTracker book = book_at(4);
-  book.follow(kHere, 5, 6, 0);
-  book.open(2);
-  CHECK(book.known() == 0);
-  CHECK(book.behind() == 0);
-  book.receive(snapshot_at(kHere, 2, 2), 0);
-  CHECK(book.version(kHere) == 2);
-  CHECK(book.violations().total() == 0);
+TEST_CASE("a new connection expects every chunk anew", "[bots][headless]") {
+  VersionTracker tracker = book_at(4);
+  tracker.follow(kHere, 5, 6, 0);
+  tracker.open(2);
+  CHECK(tracker.known() == 0);
+  CHECK(tracker.behind() == 0);
+  tracker.receive(snapshot_at(kHere, 2, 2), 0);
+  CHECK(tracker.version(kHere) == 2);
+  CHECK(tracker.violations().total() == 0);
 }

@@ -19,7 +19,7 @@ struct Fixture {
     table.take_snapshot(chunk, chunk_at(seq));
     return chunk;
   }
-  ChunkTable table;
+  ReplicaChunks table;
   CacheOutbox outbox;
 };
 

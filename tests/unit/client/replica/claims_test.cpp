@@ -19,7 +19,7 @@ ChunkPtr chunk_of_material(Material material) {
 }  // namespace
 
 TEST_CASE("only chunks that are held and expected are claimed", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   for (std::int32_t x = 0; x < 5; ++x) {
     table.set_confirmed(*table.track(key_at(x)).first, chunk_of_material(3));
   }
@@ -37,7 +37,7 @@ TEST_CASE("only chunks that are held and expected are claimed", "[replica]") {
 }
 
 TEST_CASE("the digest of a claim is that of the runs, so that drift is found", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   Chunk drifted = *chunk_of_material(3);
   drifted.voxels = uniform_chunk(Extent::cube(16), 4);  // drifted.digest is that of material 3
   table.set_confirmed(*table.track(key_at(0)).first,
@@ -48,7 +48,7 @@ TEST_CASE("the digest of a claim is that of the runs, so that drift is found", "
 }
 
 TEST_CASE("a chunk is claimed once on a connection, unless it left the view", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   table.set_confirmed(*table.track(key_at(0)).first, chunk_of_material(3));
   Claims claims;
   CHECK(claims.take(table).size() == 1);
@@ -64,7 +64,7 @@ TEST_CASE("a chunk is claimed once on a connection, unless it left the view", "[
 }
 
 TEST_CASE("claims without an answer are bounded", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   const ChunkPtr shared = chunk_of_material(3);
   for (std::size_t i = 0; i < kClaimsMax + 3; ++i) {
     table.set_confirmed(*table.track(key_at(static_cast<std::int32_t>(i))).first, shared);

@@ -1,99 +1,13 @@
 #include "client/replica/client_session.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/edits/clipboard/clipboard_builder.hpp"
-#include "tests/support/authority_model.hpp"
-#include "tests/support/test_keys.hpp"
+#include "tests/unit/client/replica/session_bench.hpp"
 
 using namespace runstone;
-using runstone::test::AuthorityModel;
+using namespace runstone::test::session_bench;
 using runstone::test::keys;
 
-namespace {
-
-constexpr std::int32_t kEdge = 16;
-constexpr TimeUs kClockLead = 5'000'000;  // server clock minus client clock
-
-SessionConfig config() {
-  SessionConfig out;
-  out.keys = keys(1);
-  out.name = "ada";
-  out.instance = 42;
-  out.view = {{0, 0, 0}, 1, 1};
-  return out;
-}
-
-/// The server's side, answered by hand.
-struct Server {
-  KeyPair own = keys(9);
-  WorldId world_id{1, 2, 3};
-  Hello hello;
-  Welcome welcome;
-  ClientSequence resolved = 0;
-  AuthorityModel world{kEdge, 3};
-
-  Welcome make_welcome() {
-    welcome = {};
-    welcome.world_id = world_id;
-    welcome.epoch = world.epoch();
-    welcome.durable = welcome.head = world.head();
-    welcome.chunk_edge = kEdge;
-    welcome.materials = default_material_table();
-    welcome.server_key = own.public_key;
-    welcome.challenge = {7};
-    welcome.view_radius_max = 8;
-    welcome.edit_volume_max = 1000;
-    welcome.signature = sign(own, server_transcript(hello, welcome));
-    return welcome;
-  }
-};
-
-template <class T>
-std::vector<T> take(std::vector<Message>& messages) {
-  std::vector<T> out;
-  for (const Message& message : messages) {
-    if (const auto* wanted = std::get_if<T>(&message)) out.push_back(*wanted);
-  }
-  return out;
-}
-
-struct Fixture {
-  void receive(Message message) { session.receive(std::move(message), {now, now, now}); }
-  std::vector<Message> sent() { return session.take_outgoing(); }
-
-  void greet() {
-    session.connected({5}, now);
-    auto out = sent();
-    const auto hellos = take<Hello>(out);
-    REQUIRE(hellos.size() == 1);
-    server.hello = hellos[0];
-  }
-  std::vector<Message> open() {
-    greet();
-    receive(server.make_welcome());
-    auto out = sent();
-    const auto proofs = take<ClientAuth>(out);
-    REQUIRE(proofs.size() == 1);
-    CHECK(verify(server.hello.key, client_transcript(server.hello, server.welcome),
-                 proofs[0].signature));
-    receive(SessionAccepted{6, server.resolved});
-    REQUIRE(session.is_open());
-    return sent();
-  }
-  void pong() { receive(Pong{now - 200, now - 100 + kClockLead}); }
-
-  Server server;
-  ClientSession session{config()};
-  TimeUs now = 1'000'000;
-};
-
-EditDescriptor set(VoxelPos at, Material material) { return {SetVoxel{at}, {}, material}; }
-
-}  // namespace
-
-TEST_CASE_METHOD(Fixture,
-                 "a session opens by hello, welcome, proof and ready, then asks for its view",
+TEST_CASE_METHOD(SessionBench, "a session opens with the handshake and then sends its view",
                  "[replica]") {
   auto out = open();
   CHECK(server.hello.name == "ada");
@@ -104,7 +18,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(views[0] == View{{0, 0, 0}, 1, 1});
   CHECK(take<Ping>(out).size() == 1);
   CHECK(session.author() == 6);
-  CHECK(session.pinned().at(server.world_id) == server.own.public_key);
+  CHECK(session.pinned().at(server.world_id) == server.keys_of_server.public_key);
   CHECK_FALSE(session.loaded());
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
@@ -117,7 +31,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to be unavailable",
+TEST_CASE_METHOD(SessionBench, "a view is loaded when each chunk arrived or is unavailable",
                  "[replica]") {
   static_cast<void>(open());
   const ChunkKey damaged{0, {0, -1, 1}};
@@ -138,13 +52,14 @@ TEST_CASE_METHOD(Fixture, "a view is loaded when each chunk came or is known to 
   CHECK_FALSE(session.loaded());
 }
 
-TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that welcome announces",
+TEST_CASE_METHOD(SessionBench,
+                 "a session refuses edits beyond the heights and the volume in the welcome",
                  "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
   welcome.heights = {-4, 4};
   welcome.edit_volume_max = 27;
-  welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+  welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
   receive(welcome);
   receive(SessionAccepted{6, 0});
   REQUIRE(session.is_open());
@@ -154,7 +69,8 @@ TEST_CASE_METHOD(Fixture, "a session keeps to the heights and the volume that we
   CHECK_FALSE(session.submit({FillBox{{{0, 0, 0}, {4, 3, 3}}}, {}, 1}, now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add any", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a welcome with a feature that hello did not offer is rejected",
+                 "[replica]") {
   SessionConfig offering = config();
   offering.features = 0b110;
   session = ClientSession(offering);
@@ -163,7 +79,7 @@ TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add an
     CHECK(server.hello.features == 0b110);
     Welcome welcome = server.make_welcome();
     welcome.features = features;
-    welcome.signature = sign(server.own, server_transcript(server.hello, welcome));
+    welcome.signature = sign(server.keys_of_server, server_transcript(server.hello, welcome));
     receive(welcome);
     return !session.wants_close();
   };
@@ -173,10 +89,10 @@ TEST_CASE_METHOD(Fixture, "features come from hello, and a server may not add an
   CHECK(session.end()->reason == GoodbyeReason::malformed_message);
 }
 
-TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server that cannot prove its key is refused", "[replica]") {
   greet();
   Welcome welcome = server.make_welcome();
-  welcome.epoch += 1;  // signed something else
+  welcome.epoch += 1;  // not what was signed
   receive(welcome);
   CHECK(session.wants_close());
   REQUIRE(session.end());
@@ -188,7 +104,7 @@ TEST_CASE_METHOD(Fixture, "a server that cannot prove its key is refused", "[rep
   CHECK(take<Goodbye>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a server key other than the pinned one is refused", "[replica]") {
   SessionConfig pinned = config();
   pinned.pinned[server.world_id] = keys(8).public_key;
   session = ClientSession(pinned);
@@ -199,7 +115,7 @@ TEST_CASE_METHOD(Fixture, "a server key other than the pinned one is refused", "
   CHECK(session.end()->final);
 }
 
-TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "messages in the wrong state end the session", "[replica]") {
   const auto refused = [&](Message message) {
     session = ClientSession(config());
     greet();
@@ -215,7 +131,7 @@ TEST_CASE_METHOD(Fixture, "messages out of turn end the session", "[replica]") {
   CHECK(session.wants_close());
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(SessionBench,
                  "edits wait for the clock offset and carry the server's time of the click",
                  "[replica]") {
   static_cast<void>(open());
@@ -231,13 +147,14 @@ TEST_CASE_METHOD(Fixture,
   CHECK(edits[0].client_seq == 1);
   CHECK(edits[0].submitted_us == now - 300 + kClockLead);
   CHECK(edits[0].edit == set({1, 2, 3}, 4));
-  // From now on they go at once.
+  // From now on edits are sent at once.
   REQUIRE(session.submit(set({1, 2, 3}, 5), now, now).has_value());
   out = sent();
   CHECK(take<EditRequest>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unknown time",
+TEST_CASE_METHOD(SessionBench,
+                 "without a pong edits are sent after kOffsetWaitUsMax, with an unknown time",
                  "[replica]") {
   static_cast<void>(open());
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -249,11 +166,11 @@ TEST_CASE_METHOD(Fixture, "without any pong edits go after a while with an unkno
   CHECK(edits[0].submitted_us == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "an unknown material is refused before it is shown", "[replica]") {
   static_cast<void>(open());
   const auto last = static_cast<Material>(default_material_table().size());
   CHECK_FALSE(session.submit(set({1, 2, 3}, last), now, now).has_value());
-  // In the mask and in a clipboard, too.
+  // The same in the mask and in a clipboard.
   const auto masked = [](Material material) {
     return EditDescriptor{SetVoxel{{1, 2, 3}}, {MaskKind::only_material, material}, 1};
   };
@@ -265,35 +182,35 @@ TEST_CASE_METHOD(Fixture, "an unknown material is refused before it is shown", "
     return EditDescriptor{Paste{{1, 2, 3}, *cells.finish(), {}}, {}, kEmpty};
   };
   CHECK_FALSE(session.submit(paste(last), now, now).has_value());
-  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // no clipboard at all
+  CHECK_FALSE(session.submit({Paste{}, {}, kEmpty}, now, now).has_value());  // without a clipboard
   CHECK(session.replica().local_edits().all().empty());
   const auto known = static_cast<Material>(last - 1);
   CHECK(session.submit(masked(known), now, now).has_value());
   CHECK(session.submit(paste(known), now, now).has_value());
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "after a cut the undecided edits are offered again in order, before newer ones",
+TEST_CASE_METHOD(SessionBench,
+                 "after a reconnection pending edits are sent again in order, before newer ones",
                  "[replica]") {
   static_cast<void>(open());
   pong();
   for (int i = 0; i < 3; ++i) REQUIRE(session.submit(set({i, 2, 3}, 4), now, now).has_value());
   static_cast<void>(sent());
   session.disconnected();
-  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while away
+  REQUIRE(session.submit(set({9, 2, 3}, 4), now, now).has_value());  // while disconnected
   CHECK(sent().empty());
   server.resolved = 1;
   auto out = open();
   const auto edits = take<EditRequest>(out);
   REQUIRE(edits.size() == 4);
-  CHECK(edits[0].client_seq == 1);  // decided, but how? The server answers or ignores it
+  CHECK(edits[0].client_seq == 1);  // resolved: sent again to get the answer
   CHECK(edits[1].client_seq == 2);
   CHECK(edits[2].client_seq == 3);
   CHECK(edits[3].client_seq == 4);
   CHECK(session.connect_count() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a restarted server has another clock", "[replica]") {
   static_cast<void>(open());
   pong();
   CHECK(session.clock().known());
@@ -306,7 +223,8 @@ TEST_CASE_METHOD(Fixture, "a restarted server has another clock", "[replica]") {
   CHECK_FALSE(session.clock().known());
 }
 
-TEST_CASE_METHOD(Fixture, "another world under the same address starts from nothing", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "another world at the same address starts with an empty replica",
+                 "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
   REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
@@ -318,7 +236,7 @@ TEST_CASE_METHOD(Fixture, "another world under the same address starts from noth
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next tick", "[replica]") {
   static_cast<void>(open());
   receive(server.world.snapshot({0, 0, 0}));
   static_cast<void>(server.world.commit({9, 1, 1}, set({1, 1, 1}, 2)));
@@ -330,8 +248,7 @@ TEST_CASE_METHOD(Fixture, "a gap is asked for with the next tick", "[replica]") 
   CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "an edit without an answer is offered again after a while, once per while",
+TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per kAnswerUsMax",
                  "[replica]") {
   static_cast<void>(open());
   pong();
@@ -351,7 +268,8 @@ TEST_CASE_METHOD(Fixture,
   CHECK(take<EditRequest>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "the wished view is cut to the server's limit and sent when it changes",
+TEST_CASE_METHOD(SessionBench,
+                 "the requested view is limited by the server and sent when it changes",
                  "[replica]") {
   static_cast<void>(open());
   session.set_view({{1, 0, 0}, 60, 60});
@@ -364,7 +282,8 @@ TEST_CASE_METHOD(Fixture, "the wished view is cut to the server's limit and sent
   CHECK(take<View>(out).empty());
 }
 
-TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a second", "[replica]") {
+TEST_CASE_METHOD(SessionBench, "poses are sent when they change, at most twenty a second",
+                 "[replica]") {
   static_cast<void>(open());
   Pose pose;
   pose.at = {1, 2, 3};
@@ -387,7 +306,7 @@ TEST_CASE_METHOD(Fixture, "poses go out when they change, at most twenty a secon
   CHECK(take<Move>(out).size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their poses",
+TEST_CASE_METHOD(SessionBench, "other players come from the player list and their poses",
                  "[replica]") {
   static_cast<void>(open());
   receive(PlayerList{{{6, "ada"}, {7, "bob"}}, false, {}});
@@ -412,8 +331,8 @@ TEST_CASE_METHOD(Fixture, "the others come with the roster and move with their p
   CHECK(session.others().empty());
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "a silent server and a goodbye both end the connection, the former not for good",
+TEST_CASE_METHOD(SessionBench,
+                 "a silent server and a goodbye end the connection; silence is not final",
                  "[replica]") {
   static_cast<void>(open());
   session.tick(now + kServerSilenceUsMax + 1);
@@ -428,6 +347,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(session.end()->text == "restarting");
   CHECK_FALSE(session.end()->final);
 }
+<<<<<<< HEAD
 
 namespace {
 
@@ -607,3 +527,5 @@ TEST_CASE_METHOD(Fixture, "missing edits bring a copy up to date, from wherever 
     CHECK(take<ChunkRequest>(out).size() == 1);
   }
 }
+=======
+>>>>>>> h-replica

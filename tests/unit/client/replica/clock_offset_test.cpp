@@ -4,7 +4,7 @@
 
 using namespace runstone;
 
-TEST_CASE("the shortest round trip decides the offset and its error", "[replica]") {
+TEST_CASE("the shortest round trip gives the offset and its error", "[replica]") {
   ClockOffset clock;
   CHECK_FALSE(clock.known());
   CHECK_FALSE(clock.to_local(5).has_value());
@@ -12,7 +12,7 @@ TEST_CASE("the shortest round trip decides the offset and its error", "[replica]
   CHECK(clock.offset_us() == 500'000);
   CHECK(clock.error_us() == 500);
   clock.add(3000, 503'020, 3100);  // trip 100, offset 499970
-  clock.add(4000, 509'000, 9000);  // a slow one says less
+  clock.add(4000, 509'000, 9000);  // a slow sample is worse
   CHECK(clock.offset_us() == 499'970);
   CHECK(clock.error_us() == 50);
   CHECK(clock.round_trip_us() == 100);
@@ -24,7 +24,7 @@ TEST_CASE("the shortest round trip decides the offset and its error", "[replica]
   CHECK_FALSE(clock.known());
 }
 
-TEST_CASE("an old sample gives way, so that drift is followed", "[replica]") {
+TEST_CASE("old samples are dropped, so that drift is followed", "[replica]") {
   ClockOffset clock;
   clock.add(0, 1000, 10);
   for (TimeUs i = 1; i <= static_cast<TimeUs>(ClockOffset::kSamples); ++i)
@@ -37,7 +37,7 @@ TEST_CASE("the true offset lies within the error however the trip is split", "[r
   for (TimeUs there = 0; there <= 100; there += 10) {
     ClockOffset clock;
     const TimeUs truth = 7777;
-    clock.add(50, 50 + there + truth, 150);  // 100 in all, `there` on the way out
+    clock.add(50, 50 + there + truth, 150);  // 100 in total, `there` on the way to the server
     CHECK(std::abs(clock.offset_us() - truth) <= clock.error_us());
   }
 }

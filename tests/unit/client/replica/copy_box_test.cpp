@@ -20,7 +20,7 @@ struct Fixture {
     replica.set_view({{0, 0, 0}, 3, 3});
     static_cast<void>(replica.open({kEdge, 5, 77, 3, 0, 0, 0}));
   }
-  /// Shows the chunks -2 .. 1 around the origin, random and in random axis orders.
+  /// Shows the chunks -2 to 1 around the origin, with random voxels and axis orders.
   void load() {
     for (std::int32_t x = -2; x < 2; ++x) {
       for (std::int32_t y = -2; y < 2; ++y) {
@@ -45,7 +45,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, empty ones as asked",
+TEST_CASE_METHOD(Fixture, "a copy has the shown voxels of its box, and empty ones as chosen",
                  "[replica]") {
   load();
   for (int round = 0; round < 60; ++round) {
@@ -92,7 +92,7 @@ TEST_CASE_METHOD(Fixture, "a copy pasted where it was changes nothing", "[replic
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a copy says why it cannot be made", "[replica]") {
+TEST_CASE_METHOD(Fixture, "a copy that cannot be made returns the reason", "[replica]") {
   CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}, CopyEmpty::as_empty).error().what ==
         std::string("no world is open"));
   load();

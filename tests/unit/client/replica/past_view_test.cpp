@@ -21,7 +21,7 @@ struct Fixture {
       chunk->behind_of = Version{1, 3};
     }
   }
-  ChunkTable table;
+  ReplicaChunks table;
   TrackedChunk *current, *expected, *unavailable;
   PastView view;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int32_t kEdge = 16;
 
-/// 3 x 3 x 3 chunks around the origin with single voxels strewn in.
+/// 3 x 3 x 3 chunks around the origin with random single voxels.
 void fill_world(Replica& replica, SplitMix64& rng) {
   runstone::test::AuthorityModel world(kEdge);
   for (ClientSequence i = 1; i <= 5000; ++i) {
@@ -28,7 +28,7 @@ void fill_world(Replica& replica, SplitMix64& rng) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         ChunkSnapshot snapshot = world.snapshot({x, y, z});
-        // The base of the model is solid below 0: make it air, so that rays get somewhere.
+        // The base of the model is solid below 0. It is replaced by air, so that rays pass.
         if (y < 0) runstone::test::AuthorityModel::hollow(snapshot.chunk, 1);
         replica.receive(std::move(snapshot), {});
       }
@@ -36,7 +36,7 @@ void fill_world(Replica& replica, SplitMix64& rng) {
   }
 }
 
-/// The nearest solid voxel by testing every voxel's box against the ray (slabs).
+/// Returns the nearest solid voxel by testing the box of every voxel against the ray (slabs).
 struct Brute {
   VoxelPos voxel;
   double distance;
@@ -88,13 +88,13 @@ TEST_CASE("a picked voxel is the nearest one that the ray meets", "[replica]") {
     CHECK(hit->distance == Approx(expected->distance).margin(1e-9));
     CHECK(hit->material == *replica.shown_at(hit->voxel));
     if (!hit->face) continue;
-    // Against the face lies the empty voxel that the ray came through.
+    // The voxel at the face is the empty one through which the ray came.
     CHECK(replica.shown_at(*place_against(*hit)) == kEmpty);
   }
   CHECK(hits > 10);
 }
 
-TEST_CASE("a ray names the face it came in by", "[replica]") {
+TEST_CASE("a hit names the face through which the ray entered", "[replica]") {
   Replica replica;
   runstone::test::AuthorityModel world(kEdge);
   static_cast<void>(world.commit({9, 1, 1}, {SetVoxel{{5, 5, 5}}, {}, 3}));
@@ -125,7 +125,7 @@ TEST_CASE("a ray names the face it came in by", "[replica]") {
 
   CHECK_FALSE(pick(replica, {5.5, 5.5, 1}, look_direction(0, 0), 3.9));  // out of reach
   CHECK_FALSE(
-      pick(replica, {5.5, 5.5, 1}, look_direction(turn / 2, 0), 100));  // leaves what is shown
+      pick(replica, {5.5, 5.5, 1}, look_direction(turn / 2, 0), 100));  // leaves the shown chunks
   CHECK_FALSE(pick(replica, {NAN, 5.5, 1}, look_direction(0, 0), 10));
   CHECK_FALSE(pick(Replica{}, {5.5, 5.5, 1}, look_direction(0, 0), 10));
 }

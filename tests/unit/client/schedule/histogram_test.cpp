@@ -11,7 +11,7 @@ using namespace runstone;
 
 namespace {
 
-/// Nearest rank on the sorted values.
+/// Returns the percentile by nearest rank of the sorted values.
 std::int64_t exact(std::vector<std::int64_t> values, double share) {
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
@@ -27,7 +27,7 @@ TEST_CASE("percentiles are within one per cent of the exact ones", "[schedule]")
     std::vector<std::int64_t> values;
     const std::uint32_t count = 1 + rng.below(3000);
     for (std::uint32_t i = 0; i < count; ++i) {
-      // Every magnitude, so that every bucket width is met.
+      // All magnitudes, so that every bucket width occurs.
       const auto value = static_cast<std::int64_t>(rng.next() >> (24 + rng.below(40)));
       values.push_back(value);
       histogram.add(value);
@@ -52,7 +52,7 @@ TEST_CASE("values below 256 are exact", "[schedule]") {
   }
 }
 
-TEST_CASE("what never happened is infinite and moves the percentiles", "[schedule]") {
+TEST_CASE("infinite values count in the percentiles", "[schedule]") {
   Histogram histogram;
   CHECK_FALSE(histogram.percentile(0.5).has_value());
   CHECK_FALSE(histogram.max().has_value());
@@ -65,7 +65,7 @@ TEST_CASE("what never happened is infinite and moves the percentiles", "[schedul
   CHECK(histogram.mean() == 100.0);
 }
 
-TEST_CASE("negative and huge values are kept at the ends, not dropped", "[schedule]") {
+TEST_CASE("negative and huge values are clamped, not dropped", "[schedule]") {
   Histogram histogram;
   histogram.add(-5);
   histogram.add(Histogram::kValueMax + 12345);
@@ -90,7 +90,7 @@ TEST_CASE("merging is adding all values", "[schedule]") {
   CHECK(a.mean() == both.mean());
 }
 
-TEST_CASE("rows count every finite value once, two rows a power of two", "[schedule]") {
+TEST_CASE("rows count every finite value once, with two rows per power of two", "[schedule]") {
   Histogram histogram;
   CHECK(histogram.rows().empty());
   for (const std::int64_t value : {0, 1, 2, 3, 4, 5, 6, 100, 70'000}) histogram.add(value);

@@ -23,10 +23,10 @@ std::vector<ChunkKey> keys_of(const View& view) {
 
 }  // namespace
 
-TEST_CASE("a join is through when four fifths and all of the first view are meshed", "[join]") {
+TEST_CASE("a join reports when four fifths and all of the first view are meshed", "[join]") {
   JoinRecorder join;
   CHECK_FALSE(join.is_open());
-  join.done({0, kView.centre}, 5);  // of an earlier world: nothing is known yet
+  join.done({0, kView.centre}, 5);  // before begin(): ignored
   join.begin(kView, 1000);
   REQUIRE(join.is_open());
   const std::vector<ChunkKey> keys = keys_of(kView);
@@ -51,8 +51,7 @@ TEST_CASE("a join is through when four fifths and all of the first view are mesh
   CHECK(report.near.all_us < 1470);
 }
 
-TEST_CASE("a join that is not through says how far it came; a later view changes nothing",
-          "[join]") {
+TEST_CASE("an unfinished join reports how far it came; a later view changes nothing", "[join]") {
   JoinRecorder join;
   join.begin(kView, 0);
   join.begin({{0, 0, 0}, 1, 0}, 50);

@@ -74,7 +74,7 @@ const Histogram& step(const LatencyReport& report, EditPath path, LatencyStage s
 TEST_CASE("a remote edit is timed through every stage, in this client's clock", "[schedule]") {
   LatencyRecorder recorder;
   recorder.take(changes({chunk(kA, 7)}, {remote({kA})}), clock_ahead(), 350);
-  recorder.meshed(kA, 6, 380);  // of older runs: does not contain it
+  recorder.meshed(kA, 6, 380);  // of older runs, without the edit
   recorder.meshed(kA, 7, 400);
   recorder.uploaded(kA, 7, 420);
   CHECK(recorder.open_edits() == 1);
@@ -93,7 +93,7 @@ TEST_CASE("a remote edit is timed through every stage, in this client's clock", 
   CHECK(report[path].edits == 1);
 }
 
-TEST_CASE("an edit is through a stage when the last of its chunks is", "[schedule]") {
+TEST_CASE("an edit passes a stage when the last of its chunks does", "[schedule]") {
   LatencyRecorder recorder;
   recorder.take(changes({chunk(kA, 1), chunk(kB, 2)}, {remote({kA, kB})}), clock_ahead(), 350);
   recorder.meshed(kA, 1, 400);
@@ -118,10 +118,10 @@ TEST_CASE("the first mesh that contains a coalesced edit counts, not a later one
   CHECK(only(since(recorder.report(), EditPath::remote, LatencyStage::meshed)) == 300);
 }
 
-TEST_CASE("a local edit counts from the time it was scheduled for, shown and confirmed apart",
+TEST_CASE("a local edit counts from its scheduled time, as predicted and as confirmed",
           "[schedule]") {
   LatencyRecorder recorder;
-  recorder.submitted(1, 1000);  // handed in at 1500: the program was late
+  recorder.submitted(1, 1000);  // submitted at 1500, because the program was late
   recorder.take(changes({chunk(kA, 1)}, {local(true, {kA}, 1500)}), clock_ahead(), 1500);
   recorder.meshed(kA, 1, 1600);
   recorder.uploaded(kA, 1, 1610);
@@ -140,7 +140,8 @@ TEST_CASE("a local edit counts from the time it was scheduled for, shown and con
   CHECK(report[EditPath::remote].edits == 0);
 }
 
-TEST_CASE("what was never seen is infinite in the stages it did not reach", "[schedule]") {
+TEST_CASE("an edit that was never seen is infinite in the stages that it did not reach",
+          "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
   recorder.take(changes({chunk(kA, 1)}, {local(true, {kA}, 1100)}), clock_ahead(), 1100);
@@ -155,8 +156,7 @@ TEST_CASE("what was never seen is infinite in the stages it did not reach", "[sc
   CHECK(report[EditPath::own_predicted].edits == 2);
 }
 
-TEST_CASE("a rejected edit is counted as rejected and as nothing else but its prediction",
-          "[schedule]") {
+TEST_CASE("a rejected edit counts as rejected and in its prediction only", "[schedule]") {
   LatencyRecorder recorder;
   recorder.submitted(1, 1000);
   ReplicaChanges all = changes({chunk(kA, 1)}, {local(true, {kA}, 1100)});
@@ -183,7 +183,8 @@ TEST_CASE("a local edit whose commit was missed is counted as unseen, not as lat
   CHECK(report.durable.count() == 0);
 }
 
-TEST_CASE("edits without effect and edits that left the view are told apart", "[schedule]") {
+TEST_CASE("edits without effect and edits that left the view are counted separately",
+          "[schedule]") {
   LatencyRecorder recorder;
   recorder.take(changes({}, {remote({})}), clock_ahead(), 350);
   EditChange second = remote({kA});

@@ -1,4 +1,4 @@
-// What a planner says has to be meshed again: the layers that changed, or the whole chunk.
+// What a planner plans to mesh again: the layers that changed, or the whole chunk.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -18,7 +18,8 @@ constexpr auto kFromLeft = static_cast<std::size_t>(Direction::neg_x);
 
 }  // namespace
 
-TEST_CASE_METHOD(PlannerBench, "the first mesh is of the whole chunk, and an edit's of its layers",
+TEST_CASE_METHOD(PlannerBench,
+                 "the first mesh is of the whole chunk, and that of an edit is of its layers",
                  "[schedule]") {
   load_all();
   while (auto job = planner.next()) {
@@ -33,16 +34,16 @@ TEST_CASE_METHOD(PlannerBench, "the first mesh is of the whole chunk, and an edi
   CHECK(job.changed.dirty == layers_of({{5, 6, 7}, {5, 6, 9}}));
   CHECK(job.changed.beyond == VisibleLayers{}.beyond);
   commit({1, 1, 1}, 2);
-  CHECK(only().changed.dirty == layers_of({{1, 1, 1}}));  // no longer what the mesh before holds
+  CHECK(only().changed.dirty ==
+        layers_of({{1, 1, 1}}));  // these layers are not in the previous mesh any more
 }
 
-TEST_CASE_METHOD(PlannerBench,
-                 "at the border the neighbour gets the layers of the edit, wherever it lies",
+TEST_CASE_METHOD(PlannerBench, "an edit at the border is a change of the neighbour, too",
                  "[schedule]") {
   load_all();
   drain();
   commit({15, 6, 7}, 2);
-  commit({3, 3, 3}, 2);  // not at the border: the neighbour does not look at it
+  commit({3, 3, 3}, 2);  // not at the border: no change of the neighbour
   const MeshPtr before = meshes[kRight.at];
   REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
   CHECK(last.before == before);
@@ -52,7 +53,8 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(last.changed == expected);
 }
 
-TEST_CASE_METHOD(PlannerBench, "a prediction taken back dirties what it had changed, meshed or not",
+TEST_CASE_METHOD(PlannerBench,
+                 "a removed prediction changes the layers that it had changed, meshed or not",
                  "[schedule]") {
   load_all();
   drain();
@@ -68,7 +70,7 @@ TEST_CASE_METHOD(PlannerBench, "a prediction taken back dirties what it had chan
   CHECK(last.changed.beyond[kFromLeft] == layers_of({{15, 6, 7}}));
 }
 
-TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk dirties what it changes",
+TEST_CASE_METHOD(PlannerBench, "a snapshot that repairs a chunk changes the layers that differ",
                  "[schedule]") {
   load_all();
   drain();
@@ -83,14 +85,15 @@ TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a who
   load_all();
   drain();
   const Material material =
-      GENERATE(Material{2}, kEmpty);  // kEmpty: no voxel differs, and nothing is told
+      GENERATE(Material{2}, kEmpty);  // kEmpty: no voxel differs, and nothing changes
   static_cast<void>(world.commit({9, 1, ++edits}, {SetVoxel{{4, 5, 6}}, {}, material}));
   ChunkSnapshot turned = world.snapshot(kHere.at);
   const bool was_zyx = turned.chunk.voxels.order == AxisOrder::zyx;
   turned.chunk.voxels = reorder(turned.chunk.voxels, was_zyx ? AxisOrder::xyz : AxisOrder::zyx);
   replica.receive(std::move(turned), {});
   tell();
-  CHECK(planner.dirty_count() == (material == kEmpty ? 0 : 5));  // which layers differ is not known
+  CHECK(planner.dirty_count() ==
+        (material == kEmpty ? 0 : 5));  // the layers that differ are unknown
   commit({1, 1, 1}, 2);
   drain();
   CHECK(made[kHere.at].before == nullptr);
@@ -100,7 +103,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk in another axis order is meshed as a who
 }
 
 TEST_CASE_METHOD(PlannerBench,
-                 "a chunk whose neighbour came, went or came back is meshed as a whole",
+                 "a chunk whose neighbour arrived, left or returned is meshed as a whole",
                  "[schedule]") {
   load_all();
   drain();
@@ -110,7 +113,7 @@ TEST_CASE_METHOD(PlannerBench,
     tell();
     CHECK(only().before == nullptr);
     CHECK(last.key == kHere);
-    load(kRight.at);  // came
+    load(kRight.at);  // arrived
     REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
     CHECK(last.before == nullptr);
   }
@@ -132,7 +135,8 @@ TEST_CASE_METHOD(PlannerBench,
   }
 }
 
-TEST_CASE_METHOD(PlannerBench, "where news were not taken yet the chunk is meshed as a whole",
+TEST_CASE_METHOD(PlannerBench,
+                 "with changes that were not taken yet the chunk is meshed as a whole",
                  "[schedule]") {
   load_all();
   drain();
@@ -145,7 +149,7 @@ TEST_CASE_METHOD(PlannerBench, "where news were not taken yet the chunk is meshe
 }
 
 TEST_CASE_METHOD(PlannerBench,
-                 "when meshes are forgotten all is meshed again, and no job out counts",
+                 "after forget_meshes() everything is meshed again, and open jobs are void",
                  "[schedule]") {
   load_all();
   const auto out = planner.next();
@@ -162,11 +166,11 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(meshes.size() == 5);
 }
 
-TEST_CASE_METHOD(PlannerBench, "kept meshes cost eight bytes a quad and what tells the layers",
+TEST_CASE_METHOD(PlannerBench, "kept meshes cost eight bytes per quad and the index of layers",
                  "[schedule]") {
   load_all();
   drain();
-  CHECK(planner.kept_bytes() == 0);  // chunks without quads share one
+  CHECK(planner.kept_bytes() == 0);  // chunks without quads share one mesh
   commit({5, 5, 5}, 2);
   const auto job = planner.next();
   REQUIRE(job);

@@ -15,7 +15,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk waits for its neighbours in view and not
   load({0, 0, 0});
   CHECK(drain().empty());
   load({1, 0, 0});
-  // Its one neighbour in view is here; the five beyond the view do not count.
+  // Its one neighbour in view has arrived. The five beyond the view do not count.
   CHECK(drain() == std::vector<ChunkCoord>{{1, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::neg_x)] != nullptr);
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
@@ -28,7 +28,7 @@ TEST_CASE_METHOD(PlannerBench, "a chunk waits for its neighbours in view and not
 }
 
 TEST_CASE_METHOD(PlannerBench,
-                 "an edited chunk does not wait for terrain, and closes its sides as that comes",
+                 "an edited chunk does not wait for terrain, and is meshed again when it arrives",
                  "[schedule]") {
   load({0, 0, 0});
   CHECK(drain().empty());
@@ -37,7 +37,7 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
   load({1, 0, 0});
   CHECK(drain() ==
-        std::vector<ChunkCoord>{{1, 0, 0}});  // nothing new to see: it waits for the others
+        std::vector<ChunkCoord>{{1, 0, 0}});  // no change: it waits for the other neighbours
   commit({6, 5, 5}, 2);
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] != nullptr);
@@ -51,7 +51,7 @@ TEST_CASE_METHOD(PlannerBench,
 }
 
 TEST_CASE_METHOD(PlannerBench,
-                 "a kept mesh that does not lead to the picture of now makes a whole chunk",
+                 "a kept mesh with other neighbours makes the chunk be meshed as a whole",
                  "[schedule]") {
   load_all();
   drain();
@@ -64,18 +64,19 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(last.before == nullptr);
 }
 
-TEST_CASE_METHOD(PlannerBench, "an edit whose mesh terrain made void still does not wait",
+TEST_CASE_METHOD(PlannerBench, "an edit whose job was made void by terrain does not wait either",
                  "[schedule]") {
   load({0, 0, 0});
   commit({5, 5, 5}, 2);
   const auto job = planner.next();
   REQUIRE(job);
-  load({1, 0, 0});  // the side it had open has a neighbour now
+  load({1, 0, 0});  // a side without a neighbour has one now
   CHECK_FALSE(finish(*job));
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come before whole chunks",
+TEST_CASE_METHOD(PlannerBench,
+                 "jobs of changed layers can be taken alone, and come before whole chunks",
                  "[schedule]") {
   planner.set_eye({1, 0, 0});
   load({0, 0, 0});
@@ -85,7 +86,7 @@ TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come bef
   CHECK_FALSE(planner.next(JobSize::layers));
   CHECK(drain().size() == 3);
   load({0, 0, -1});       // two whole chunks: it, and the middle
-  commit({5, 5, -5}, 2);  // edited, but nothing is kept of it
+  commit({5, 5, -5}, 2);  // edited, but without a kept mesh
   CHECK_FALSE(planner.next(JobSize::layers));
   planner.set_eye({0, 0, -1});
   commit({20, 5, 5}, 2);
@@ -97,7 +98,7 @@ TEST_CASE_METHOD(PlannerBench, "changed layers are asked for apart, and come bef
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, -1}, {0, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server cannot send",
+TEST_CASE_METHOD(PlannerBench, "a chunk does not wait for a neighbour that the server cannot send",
                  "[schedule]") {
   load({0, 0, 0});
   load({-1, 0, 0});
@@ -109,7 +110,7 @@ TEST_CASE_METHOD(PlannerBench, "nobody waits for a neighbour that the server can
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}});
   CHECK(last.neighbours[static_cast<std::size_t>(Direction::pos_x)] == nullptr);
   CHECK(planner.dirty_count() == 0);
-  load({1, 0, 0});  // after all: the side that stood open closes
+  load({1, 0, 0});  // it arrives later: the neighbour is meshed again
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
@@ -131,8 +132,7 @@ TEST_CASE_METHOD(PlannerBench,
   CHECK(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "changes are joined and the job holds the newest runs",
-                 "[schedule]") {
+TEST_CASE_METHOD(PlannerBench, "changes are merged and the job has the newest runs", "[schedule]") {
   load_all();
   drain();
   commit({5, 5, 5}, 2);
@@ -152,15 +152,15 @@ TEST_CASE_METHOD(PlannerBench, "edited chunks come first, then the nearest", "[s
   CHECK(order[4] == ChunkCoord{-1, 0, 0});
 
   replica.receive(world.snapshot({0, 0, 0}), {});
-  commit({5, 5, 5}, 2);    // here
-  commit({-10, 5, 5}, 2);  // and far from the eye
+  commit({5, 5, 5}, 2);    // at the eye
+  commit({-10, 5, 5}, 2);  // far from the eye
   planner.set_eye({-1, 0, 0});
   order = drain();
   CHECK(order == std::vector<ChunkCoord>{{-1, 0, 0}, {0, 0, 0}});
 }
 
 TEST_CASE_METHOD(PlannerBench,
-                 "a chunk has one job at a time, and what changes meanwhile is for the next",
+                 "a chunk has one job at a time, and later changes are for the next job",
                  "[schedule]") {
   load_all();
   drain();
@@ -207,14 +207,15 @@ TEST_CASE_METHOD(
   CHECK(planner.dirty_count() == 0);
   load({1, 0, 1});
   load({1, 0, -1});
-  CHECK(planner.dirty_count() == 3);  // both and (1, 0, 0), which had drawn its edges open
+  CHECK(planner.dirty_count() == 3);  // both and (1, 0, 0), which had no neighbour there
   load({2, 0, 0});
   const auto order = drain();
   CHECK(std::set<ChunkCoord>(order.begin(), order.end()) ==
         std::set<ChunkCoord>{{1, 0, 0}, {1, 0, 1}, {1, 0, -1}, {2, 0, 0}});
 }
 
-TEST_CASE_METHOD(PlannerBench, "a chunk that waited for a neighbour which left the view goes ahead",
+TEST_CASE_METHOD(PlannerBench,
+                 "a chunk that waited for a neighbour is meshed when the neighbour leaves the view",
                  "[schedule]") {
   load({0, 0, 0});
   load({1, 0, 0});

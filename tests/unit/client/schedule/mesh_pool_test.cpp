@@ -30,7 +30,7 @@ MeshJob job_of(std::uint64_t number, ShownPtr chunk) {
   return job;
 }
 
-/// A pool, and what came out of it.
+/// A pool and its results.
 struct Bench {
   explicit Bench(unsigned workers)
       : pool(std::make_unique<MeshPool>(
@@ -51,7 +51,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("workers mesh every job and say when", "[schedule]") {
+TEST_CASE("workers mesh every job and report the time", "[schedule]") {
   const unsigned workers = GENERATE(0U, 2U);
   CAPTURE(workers);
   Bench bench(workers);
@@ -68,15 +68,14 @@ TEST_CASE("workers mesh every job and say when", "[schedule]") {
     CHECK_FALSE(result.layers_only);
     CHECK(result.mesh->quad_count() == (i == 3 ? 6 : 0));
   }
-  CHECK(bench.results[1].mesh == bench.results[2].mesh);  // nothing to keep
+  CHECK(bench.results[1].mesh == bench.results[2].mesh);  // chunks without quads share one mesh
   CHECK(bench.pool->in_flight() == 0);
-  bench.pool.reset();  // the last worker may still be on its way to wake us
+  bench.pool.reset();  // the last worker may not have called wake yet
   CHECK(bench.woken == (workers == 0 ? 0 : 5));
 }
 
-TEST_CASE(
-    "a job with the mesh before it makes the changed layers anew and leaves that mesh as it was",
-    "[schedule]") {
+TEST_CASE("a job with a previous mesh meshes the changed layers and leaves that mesh unchanged",
+          "[schedule]") {
   Bench bench(GENERATE(0U, 1U));
   const ShownPtr old_chunk = chunk_with({{5, 5, 5}, {0, 9, 9}});
   const ShownPtr old_side = chunk_with({});
@@ -103,14 +102,14 @@ TEST_CASE(
   CHECK(layers.mesh->opaque.first == bench.result_of(3).mesh->opaque.first);
   CHECK(before->quad_count() == 12);
 
-  // The layers it is told of, and no others.
+  // Only the layers named in the job are meshed.
   second.number = 4;
   second.changed.beyond = {};
   REQUIRE(bench.pool->push(second));
   CHECK(bench.result_of(4).mesh->quad_count() == 12);
 }
 
-TEST_CASE("a job can be made by who would push it, whatever the workers do", "[schedule]") {
+TEST_CASE("the pushing thread can mesh a job itself while the workers are busy", "[schedule]") {
   Bench bench(1);
   const MeshResult result = bench.pool->mesh_here(job_of(1, chunk_with({{5, 5, 5}})));
   CHECK(result.number == 1);
@@ -119,7 +118,7 @@ TEST_CASE("a job can be made by who would push it, whatever the workers do", "[s
   CHECK(bench.pool->take_results().empty());
 }
 
-TEST_CASE("a kept mesh is no larger than its quads, whatever was meshed before it", "[schedule]") {
+TEST_CASE("a result has no spare capacity from larger meshes before it", "[schedule]") {
   Bench bench(0);
   std::initializer_list<LocalPos> many = {{1, 1, 1}, {3, 1, 1}, {5, 1, 1},
                                           {7, 1, 1}, {9, 1, 1}, {11, 1, 1}};

@@ -1,4 +1,4 @@
-// PlannerBench: a planner over a replica of a small world, and jobs that are made by hand.
+// PlannerBench: a planner of a replica of a small world. The test meshes its jobs.
 #pragma once
 #include <catch2/catch.hpp>
 #include <initializer_list>
@@ -14,7 +14,7 @@ namespace runstone::test {
 
 inline constexpr std::int32_t kBenchEdge = 16;
 
-/// Five chunks, all in view, and who meshes them.
+/// Five chunks, all in view, and their planner.
 struct PlannerBench {
   PlannerBench() {
     replica.set_view({{0, 0, 0}, 1, 0});  // a cross of five chunks
@@ -34,7 +34,7 @@ struct PlannerBench {
     tell();
   }
   void tell() { planner.take(replica.drain_changes().chunks); }
-  /// Makes all jobs there are, each with a mesh of its own.
+  /// Performs all jobs, each with its own mesh.
   std::vector<ChunkCoord> drain() {
     std::vector<ChunkCoord> out;
     while (auto job = planner.next()) {
@@ -44,7 +44,7 @@ struct PlannerBench {
     }
     return out;
   }
-  /// The one job there is, made.
+  /// Performs the only job and returns it. Fails if there is none or another one.
   MeshJob only() {
     REQUIRE(drain().size() == 1);
     return last;

@@ -8,7 +8,7 @@ namespace {
 
 /// A player and the view that follows, in virtual time.
 struct Follower {
-  /// The player is in chunk `x` at this time. Whether the view moved.
+  /// Moves the player to chunk `x` at this time. Returns true if the view moved.
   bool turn(std::int32_t x, TimeUs now_us) {
     View next = view;
     next.centre.x = x;
@@ -25,18 +25,18 @@ struct Follower {
 
 }  // namespace
 
-TEST_CASE("a view follows the first step at once and stays where its player stays", "[schedule]") {
+TEST_CASE("a view follows the first step at once and rests while its player rests", "[schedule]") {
   Follower follower;
   CHECK_FALSE(follower.turn(0, 0));
   CHECK(follower.turn(1, 1));
   CHECK_FALSE(follower.turn(1, 2));
   CHECK_FALSE(follower.turn(1, 10 * kViewEveryUs));
-  CHECK(follower.turn(2, 10 * kViewEveryUs));  // rest does not count against the next step
+  CHECK(follower.turn(2, 10 * kViewEveryUs));  // after a rest the next step is due at once
 }
 
 TEST_CASE(
-    "a player who crosses a chunk every millisecond moves the view ten times a second, and to the "
-    "end",
+    "a player who crosses a chunk every millisecond moves the view ten times a second, and to "
+    "the end",
     "[schedule]") {
   Follower follower;
   int moves = 0;
@@ -44,7 +44,7 @@ TEST_CASE(
   for (std::int32_t x = 1; x <= 1'000; ++x, now_us += 1'000) {
     const bool moved = follower.turn(x, now_us);
     moves += moved ? 1 : 0;
-    if (moved) CHECK(follower.view.centre.x == x);  // the newest place, none in between
+    if (moved) CHECK(follower.view.centre.x == x);  // the newest position
   }
   CHECK(moves == 10);
   CHECK(follower.view.centre.x < 1'000);
@@ -58,7 +58,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a view follows a turn of more than fifteen degrees, the short way round, and no smaller one",
+    "a view follows a turn of more than fifteen degrees in either direction, and no smaller one",
     "[schedule]") {
   Follower follower;
   const auto turned = [&](std::uint16_t yaw, std::int16_t pitch, TimeUs now_us) {
@@ -75,5 +75,5 @@ TEST_CASE(
   CHECK(turned(20'000, 0, kViewEveryUs));
   CHECK(turned(20'000, -kViewTurn - 1, 2 * kViewEveryUs));
   follower.view.cone = 0;
-  CHECK_FALSE(turned(0, 0, 9 * kViewEveryUs));  // all around: nothing to turn
+  CHECK_FALSE(turned(0, 0, 9 * kViewEveryUs));  // a cone of 360 degrees has no direction
 }

@@ -1,48 +1,48 @@
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 namespace runstone {
 
-TrackedChunk* ChunkTable::find(const ChunkKey& key) {
+TrackedChunk* ReplicaChunks::find(const ChunkKey& key) {
   const auto it = chunks_.find(key);
   return it == chunks_.end() ? nullptr : &it->second;
 }
 
-const TrackedChunk* ChunkTable::find(const ChunkKey& key) const {
+const TrackedChunk* ReplicaChunks::find(const ChunkKey& key) const {
   const auto it = chunks_.find(key);
   return it == chunks_.end() ? nullptr : &it->second;
 }
 
-std::pair<TrackedChunk*, bool> ChunkTable::track(const ChunkKey& key) {
+std::pair<TrackedChunk*, bool> ReplicaChunks::track(const ChunkKey& key) {
   const auto [it, is_new] = chunks_.try_emplace(key, key);
   if (is_new) ++counts_[static_cast<std::size_t>(ChunkState::expected)];
   return {&it->second, is_new};
 }
 
-void ChunkTable::clear() {
+void ReplicaChunks::clear() {
   chunks_.clear();
   counts_.fill(0);
   confirmed_count_ = 0;
   awaiting_.clear();
 }
 
-void ChunkTable::take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed) {
+void ReplicaChunks::take_snapshot(TrackedChunk& chunk, ChunkPtr confirmed) {
   set_confirmed(chunk, std::move(confirmed));
   set_state(chunk, ChunkState::current);
 }
 
-void ChunkTable::withhold(TrackedChunk& chunk) {
+void ReplicaChunks::withhold(TrackedChunk& chunk) {
   set_confirmed(chunk, nullptr);
   chunk.inbox.clear();
   set_state(chunk, ChunkState::unavailable);
 }
 
-void ChunkTable::set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed) {
+void ReplicaChunks::set_confirmed(TrackedChunk& chunk, ChunkPtr confirmed) {
   if (chunk.confirmed_) --confirmed_count_;
   if (confirmed) ++confirmed_count_;
   chunk.confirmed_ = std::move(confirmed);
 }
 
-void ChunkTable::set_state(TrackedChunk& chunk, ChunkState state) {
+void ReplicaChunks::set_state(TrackedChunk& chunk, ChunkState state) {
   --counts_[static_cast<std::size_t>(chunk.state_)];
   ++counts_[static_cast<std::size_t>(state)];
   if (is_awaiting(chunk.state_) != is_awaiting(state)) {
@@ -55,7 +55,7 @@ void ChunkTable::set_state(TrackedChunk& chunk, ChunkState state) {
   chunk.state_ = state;
 }
 
-ChunkTable::Map::iterator ChunkTable::erase(Map::iterator it) {
+ReplicaChunks::Map::iterator ReplicaChunks::erase(Map::iterator it) {
   set_state(it->second, ChunkState::expected);
   --counts_[static_cast<std::size_t>(ChunkState::expected)];
   set_confirmed(it->second, nullptr);

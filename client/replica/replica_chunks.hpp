@@ -1,5 +1,6 @@
-// ChunkTable: the chunks that a replica tracks, by key. It performs the transitions of their states (chunk_state.hpp)
-// and counts chunks by state, so that no count walks the view. One thread. Cost: O(log chunks) unless stated.
+// ReplicaChunks: the chunks that a replica tracks, by key. It performs the transitions of their
+// states (chunk_state.hpp) and counts chunks by state, so that no count walks the view. One thread.
+// Cost: O(log chunks) unless stated.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -12,7 +13,7 @@
 
 namespace runstone {
 
-class ChunkTable {
+class ReplicaChunks {
  public:
   using Map = std::map<ChunkKey, TrackedChunk>;
 
@@ -21,7 +22,8 @@ class ChunkTable {
   const TrackedChunk* find(const ChunkKey& key) const;
   /// Returns the chunk, and true if it was not tracked before: then it is `expected` and empty.
   std::pair<TrackedChunk*, bool> track(const ChunkKey& key);
-  /// Erases the chunks of which `leaves` returns true; `leaves` takes a const TrackedChunk&. Cost: O(chunks).
+  /// Erases the chunks of which `leaves` returns true; `leaves` takes a const TrackedChunk&. Cost:
+  /// O(chunks).
   template <class Leaves>
   void erase_if(Leaves leaves) {
     for (auto it = chunks_.begin(); it != chunks_.end();) {

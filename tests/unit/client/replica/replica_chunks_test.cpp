@@ -1,4 +1,4 @@
-#include "client/replica/chunk_table.hpp"
+#include "client/replica/replica_chunks.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -15,7 +15,7 @@ ChunkPtr some_chunk() {
 }
 
 /// The counts by state, found by walking all chunks.
-std::array<std::size_t, kChunkStateCount> walked(const ChunkTable& table) {
+std::array<std::size_t, kChunkStateCount> walked(const ReplicaChunks& table) {
   std::array<std::size_t, kChunkStateCount> counts{};
   for (const auto& [key, chunk] : table) ++counts[static_cast<std::size_t>(chunk.state())];
   return counts;
@@ -39,7 +39,7 @@ TEST_CASE("a request remembers whether the server has vouched for the chunk", "[
 }
 
 TEST_CASE("a chunk is made once and found by its key", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   CHECK(table.find(kKey) == nullptr);
   const auto [chunk, is_new] = table.track(kKey);
   CHECK(is_new);
@@ -52,7 +52,7 @@ TEST_CASE("a chunk is made once and found by its key", "[replica]") {
 }
 
 TEST_CASE("a snapshot ends a request, and an unavailable chunk holds nothing", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   TrackedChunk& chunk = *table.track(kKey).first;
   table.request(chunk);
   CHECK(table.awaiting().contains(kKey));
@@ -75,7 +75,7 @@ TEST_CASE("a snapshot ends a request, and an unavailable chunk holds nothing", "
 }
 
 TEST_CASE("counts by state equal those of a walk after any transitions", "[replica]") {
-  ChunkTable table;
+  ReplicaChunks table;
   std::uint32_t random = 7;
   const auto draw = [&random](std::uint32_t below) {
     random = random * 1'664'525 + 1'013'904'223;
