@@ -2,13 +2,8 @@
 
 namespace runstone {
 
-<<<<<<< HEAD
-std::vector<CachedChunk> Claims::take(const ChunkTable& chunks) {
+std::vector<CachedChunk> Claims::take(const ReplicaChunks& chunks) {
   std::vector<CachedChunk> claims;
-=======
-std::vector<HeldChunk> Claims::take(const ReplicaChunks& chunks) {
-  std::vector<HeldChunk> claims;
->>>>>>> h-replica
   for (const auto& [key, chunk] : chunks) {
     if (waiting_.size() >= kClaimsMax) break;
     if (!chunk.confirmed() || chunk.state() != ChunkState::expected) continue;

@@ -10,20 +10,9 @@
 
 namespace runstone {
 
-<<<<<<< HEAD
-/// Claims that wait for an answer. Half of what a server accepts, so that the claims for the next view fit beside them.
-inline constexpr std::size_t kClaimsMax = kClaimsPerSessionMax / 2;
-
-class Claims {
- public:
-  /// Returns the chunks to claim now, ascending: those with a confirmed chunk that are `expected` and were not claimed
-  /// on this connection, while fewer than kClaimsMax claims wait for an answer. The digests are computed from the
-  /// runs, so that a copy that has drifted is found. Cost: O(runs of the claimed chunks + chunks).
-  std::vector<CachedChunk> take(const ChunkTable& chunks);
-=======
 /// Claims that wait for an answer. Half of what a server accepts, so that the claims for the next
 /// view fit beside them.
-inline constexpr std::size_t kClaimsMax = kHeldClaimsMax / 2;
+inline constexpr std::size_t kClaimsMax = kClaimsPerSessionMax / 2;
 
 class Claims {
  public:
@@ -31,8 +20,7 @@ class Claims {
   /// and were not claimed on this connection, while fewer than kClaimsMax claims wait for an
   /// answer. The digests are computed from the runs, so that a copy that has drifted is found.
   /// Cost: O(runs of the claimed chunks + chunks).
-  std::vector<HeldChunk> take(const ReplicaChunks& chunks);
->>>>>>> h-replica
+  std::vector<CachedChunk> take(const ReplicaChunks& chunks);
   /// The server answered for the chunk, with whatever message.
   void answer(const ChunkKey& key) { waiting_.erase(key); }
   /// The chunk left the view: it may be claimed again.

@@ -114,17 +114,11 @@ class Replica {
   /// Takes a chunk from a cache: it is shown at once, and claimed. Ignored if a chunk is held, in
   /// the past, and outside of the view. Requires a version that SharedHistory trusts.
   void adopt(const ChunkKey& key, ChunkPtr chunk, TimeUs now_us);
-<<<<<<< HEAD
-  /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the past.
-  std::vector<CachedChunk> take_claims();
-  /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may have them.
-=======
   /// Returns the chunks to claim before the next view is sent, see Claims::take(). Empty in the
   /// past.
-  std::vector<HeldChunk> take_claims();
+  std::vector<CachedChunk> take_claims();
   /// Returns the chunks of the view that are neither held nor answered for, ascending. A cache may
   /// have them.
->>>>>>> h-replica
   std::vector<ChunkKey> missing() const;
   /// From now on chunks that leave the view are collected for the cache.
   void collect_for_cache() { outbox_.enable(); }

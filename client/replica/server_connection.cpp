@@ -47,20 +47,10 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     fail_with(refusal->reason, refusal->text);
     return Dispatch::handled;
   }
-<<<<<<< HEAD
   if (auto* welcome = std::get_if<Welcome>(&message)) return on_welcome(std::move(*welcome));
   if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
-    on_session_accepted(*ready, arrival.now_us);
-    return Dispatch::ready;
-=======
-  if (const auto* accepted = std::get_if<SessionAccepted>(&message)) {
-    if (state_ != SessionState::authenticating) {
-      fail_with(GoodbyeReason::unexpected_message, "session accepted in the wrong state");
-      return Dispatch::handled;
-    }
     on_session_accepted(*accepted, arrival.now_us);
     return Dispatch::session_accepted;
->>>>>>> h-replica
   }
   if (const auto* pong = std::get_if<Pong>(&message); pong != nullptr && is_open()) {
     clock_.add(pong->sent_us, pong->server_us, arrival.received_us);

@@ -1,9 +1,5 @@
-<<<<<<< HEAD
-// runstone-replay play, as people run it: world folder in, edits on a live server out, by runstone-bot.
-=======
-// runstone-replay --into as a program: it reads a world folder, and runstone-bot submits the edits
+// runstone-replay play as a program: it reads a world folder, and runstone-bot submits the edits
 // to a live server.
->>>>>>> h-replica
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>

@@ -38,7 +38,7 @@ TEST_CASE_METHOD(
   CHECK(held[0].digest == claim_digest(server.world.chunk(held[0].key.at).digest));
   CHECK_FALSE(session.loaded());
   ChunksNotModified same;
-  for (const HeldChunk& chunk : held) same.chunks.push_back({chunk.key, chunk.version.seq});
+  for (const CachedChunk& chunk : held) same.chunks.push_back({chunk.key, chunk.version.seq});
   receive(same);
   CHECK(session.loaded());
   // Nothing is claimed twice.

@@ -144,13 +144,8 @@ TEST_CASE_METHOD(Fixture, "messages for the session are left as they are", "[rep
   Message message = Durable{1, 7};
   CHECK(connection.receive(message, {now, now, now}) == Dispatch::for_session);
   CHECK(std::get<Durable>(message).seq == 7);
-<<<<<<< HEAD
-  CHECK(receive(Pong{now, now}) == Dispatch::for_session);  // to no ping: none is sent before ready
-=======
-  receive(welcome());
-  CHECK(receive(Pong{now, now}) ==
-        Dispatch::for_session);  // no ping is sent before the connection opens
->>>>>>> h-replica
+  // No ping is sent before the connection opens.
+  CHECK(receive(Pong{now, now}) == Dispatch::for_session);
   CHECK(connection.pongs() == 0);
   receive(SessionAccepted{6, 0});
   CHECK(receive(Durable{1, 7}) == Dispatch::for_session);
