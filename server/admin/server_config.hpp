@@ -12,14 +12,16 @@
 
 #include "common/core/result.hpp"
 #include "common/materials/material_table.hpp"
+#include "protocol/default_port.hpp"
 
 namespace runstone {
 
 struct ServerConfig {
   // Place.
-  std::string world = "world";          // folder
-  std::string listen = "0.0.0.0:4747";  // HOST:PORT, or [V6]:PORT; port 0 takes a free one
-  std::string log_level = "info";       // debug, info, warn, error
+  std::string world = "world";  // folder
+  // HOST:PORT, or [V6]:PORT; port 0 takes a free one
+  std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
+  std::string log_level = "info";  // debug, info, warn, error
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand
   std::uint64_t worker_threads = 2;  // 1..64: generate, load, encode
