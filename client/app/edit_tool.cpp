@@ -25,7 +25,7 @@ Result<void> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs 
     recorder_.submitted(*seq, due_us);
     return {};
   }
-  if (session_.replica().local_edits().full()) {
+  if (session_.replica().local_edits().all().size() >= kLocalEditsMax) {
     recorder_.not_submitted();
   } else {
     ++refused_;

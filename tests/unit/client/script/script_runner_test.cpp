@@ -305,6 +305,15 @@ TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]")
   CHECK(runner->failures().size() == 1);
 }
 
+TEST_CASE_METHOD(Fixture, "an edit that the client refuses is a failure with its reason",
+                 "[bots]") {
+  host.takes = false;
+  run("set 1 2 3 stone\nexpect 1 2 3 air");
+  CHECK(runner->finished());
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: edit refused: the past cannot be edited"});
+}
+
 TEST_CASE_METHOD(Fixture, "a repeat runs its body N times, also when it is nested or empty",
                  "[bots]") {
   run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 "
