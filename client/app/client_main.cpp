@@ -14,16 +14,19 @@
 #include <utility>
 
 #include "client/app/client.hpp"
+#include "client/app/material_list.hpp"
 #include "client/display/draw_program.hpp"
+#include "client/report/exit_code.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
 
 std::atomic<bool> client_runs{false};
 
-/// Xlib calls exit(1) on whatever thread finds the display gone. To scripts 1 means something else, and other
-/// threads still use what exit() would go on to destroy.
-void correct_exit() {
+/// Ends the process with kExitNoStart. Xlib calls exit(1) on the thread that notices a lost
+/// display. To scripts, 1 has another meaning, and exit() would destroy objects that other threads
+/// still use.
+void end_after_lost_display() {
   if (client_runs) std::_Exit(runstone::kExitNoStart);
 }
 
@@ -40,10 +43,12 @@ int run(runstone::ClientOptions options, const volatile std::sig_atomic_t& stop)
     }
     script = std::move(*parsed);
   }
+  if (options.list_materials) return list_materials(options, stop);
   Client client(std::move(options), script ? &*script : nullptr);
   client_runs = true;
-  std::atexit(
-      correct_exit);  // after the driver is loaded: the newest comes first, and the driver's may hang
+  // exit() calls the newest handler first. This one is registered after the driver has loaded,
+  // because the driver's handler may hang.
+  std::atexit(end_after_lost_display);
   const int code = client.run(stop);
   client_runs = false;
   return code;
@@ -58,7 +63,7 @@ int main(int argc, char** argv) {
     return runstone::draw_program(STDIN_FILENO, STDOUT_FILENO, parsed.options->workers,
                                   runstone::make_headless_screen);
   }
-  // Standard output is for the table.
+  // Standard output is reserved for the table, so log lines go to standard error.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("client"));
   spdlog::set_level(parsed.options->verbose ? spdlog::level::debug : spdlog::level::info);
   const volatile std::sig_atomic_t& stop = runstone::count_stop_signals();

@@ -2,16 +2,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <thread>
 
-#include "common/os/host_port.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
 namespace {
 
+/// Returns an empty text, or what is wrong with the size.
 std::string parse_size(const std::string& text, ClientOptions& out) {
   const std::size_t cross = text.find('x');
   if (cross == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, cross), out.width) ||
@@ -22,85 +21,118 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
   return {};
 }
 
-}  // namespace
-
-ParsedOptions parse_options(int argc, const char* const* argv) {
-  ClientOptions out;
-  CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
-  // The last one wins, so that arguments added to a fixed command line (a container's) change it.
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.set_version_flag("--version",
-                       std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
+/// Values that become options only after the whole command line was read.
+struct RawOptions {
   std::string address, size, encoding = "auto";
-  unsigned view = out.view_radius, view_v = 0;
+  unsigned view = ClientOptions{}.view_radius, view_v = 0;
   bool no_render = false, no_cache = false;
-  app.add_option("--connect", address, "server, HOST:PORT");
+};
+
+void add_session_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
+  app.add_option("--connect", raw.address,
+                 "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort));
   app.add_option("--name", out.name, "name shown to others, 1 to 32 bytes")
       ->check([](const std::string& name) {
         return name.empty() || name.size() > kPlayerNameBytesMax ? "a name has 1 to 32 bytes" : "";
       });
-  app.add_option("--key", out.key_file, "identity; made if missing. Default: a new one each time");
-  app.add_option("--view", view, "view radius in chunks, horizontal")
+  app.add_option("--key", out.key_file,
+                 "file of the identity; created if missing. Default: a new identity each time");
+  app.add_option("--view", raw.view, "view radius in chunks, horizontal")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
-  app.add_option("--view-vertical", view_v, "and vertical; default: half of --view, rounded up")
+  app.add_option("--view-vertical", raw.view_v,
+                 "view radius in chunks, vertical; default: half of --view, rounded up")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
+  app.add_option("--encoding", raw.encoding, "chunk encodings to offer")
+      ->check(CLI::IsMember({"raw", "packed", "coded", "auto"}));
+  app.add_flag("--exit-on-goodbye", out.exit_on_goodbye, "end when the server says goodbye");
+  app.add_option("--reconnect-seconds", out.reconnect_seconds,
+                 "end after this time without the server; default 30")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--cache-dir", out.cache_dir,
+                 "keep chunks for the next run in this folder; default $XDG_CACHE_HOME/runstone "
+                 "with a window, no cache with --headless or --no-render");
+  app.add_option("--cache-mib", out.cache_mib, "greatest size of the cache in MiB; default 256")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 20));
+  app.add_flag("--no-cache", raw.no_cache, "keep no chunks on disk");
+}
+
+void add_output_options(CLI::App& app, ClientOptions& out, RawOptions& raw) {
   app.add_flag("--headless", out.headless, "draw off screen, without a display");
-  app.add_flag("--no-render", no_render, "mesh, but draw nothing (no OpenGL needed)");
-  app.add_option("--size", size, "picture or window, WIDTHxHEIGHT; default 1280x720");
+  app.add_flag("--no-render", raw.no_render, "mesh, but draw nothing (no OpenGL needed)");
+  app.add_option("--size", raw.size,
+                 "size of the window or picture, WIDTHxHEIGHT; default 1280x720");
   app.add_option("--script", out.script, "run this script, then end (docs/client.md)")
       ->check(CLI::ExistingFile);
   app.add_option("--report", out.report, "write latencies and counts as JSON at the end");
   app.add_option("--digests", out.digests,
-                 "write the digests of all chunks held as JSON at the end");
-  app.add_option("--encoding", encoding, "chunk encodings to offer")
-      ->check(CLI::IsMember({"raw", "packed", "coded", "auto"}));
-  app.add_option("--screenshot-dir", out.screenshot_dir, "where screenshots go")
+                 "write the digests of all confirmed chunks as JSON at the end");
+  app.add_option("--screenshot-dir", out.screenshot_dir, "folder for screenshots")
       ->check(CLI::ExistingDirectory);
-  app.add_flag("--exit-on-goodbye", out.exit_on_goodbye, "end when the server says goodbye");
-  app.add_option("--reconnect-seconds", out.reconnect_seconds,
-                 "give up after so long without the server")
-      ->check(CLI::NonNegativeNumber);
   app.add_option("--workers", out.workers, "mesh threads; default: cores - 1, at least 1")
       ->check(CLI::Range(0U, 64U));
-  app.add_option("--cache-dir", out.cache_dir,
-                 "keep chunks for the next run in this folder; default $XDG_CACHE_HOME/runstone "
-                 "with a window, "
-                 "no cache with --headless or --no-render");
-  app.add_option("--cache-mib", out.cache_mib, "size of the cache at most, MiB; default 256")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 20));
-  app.add_flag("--no-cache", no_cache, "keep no chunks");
   app.add_flag("--verbose", out.verbose, "log every step");
+}
+
+/// Adds the modes, which exclude options. Call it after all other options are added.
+void add_modes(CLI::App& app, ClientOptions& out) {
+  CLI::Option* materials = app.add_flag("--materials", out.list_materials,
+                                        "list the materials of the server's world, then end");
+  for (const char* other : {"--script", "--report", "--digests"})
+    materials->excludes(app.get_option(other));
   CLI::Option* draw = app.add_flag(
-      "--draw", out.draw, "draw what standard input orders, off screen; for other programs");
+      "--draw", out.draw, "draw the orders of standard input, off screen; for other programs");
   for (CLI::Option* other : app.get_options()) {
     if (other != draw && !other->check_name("--workers") && !other->check_name("--help") &&
         !other->check_name("--version")) {
       draw->excludes(other);
     }
   }
+}
+
+/// Sets the options that depend on `raw`. Throws CLI::ParseError.
+void finish(const CLI::App& app, const RawOptions& raw, ClientOptions& out) {
+  if (!out.draw) {
+    if (raw.address.empty()) throw CLI::RequiredError("--connect");
+    auto server = parse_host_port(raw.address, kDefaultPort);
+    if (!server) throw CLI::ValidationError("--connect", server.error());
+    out.server = *std::move(server);
+  }
+  const std::string wrong_size = raw.size.empty() ? "" : parse_size(raw.size, out);
+  if (!wrong_size.empty()) throw CLI::ValidationError("--size", wrong_size);
+  out.view_radius = static_cast<std::uint8_t>(raw.view);
+  out.view_radius_v = static_cast<std::uint8_t>(
+      app.count("--view-vertical") != 0 ? raw.view_v : (raw.view + 1) / 2);
+  out.render = !raw.no_render && !out.list_materials;
+  const bool has_window = out.render && !out.headless;
+  const bool asks_for_cache = app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0;
+  out.cache = !raw.no_cache && !out.list_materials && (has_window || asks_for_cache);
+  out.encodings = raw.encoding == "raw"      ? 1
+                  : raw.encoding == "packed" ? 2
+                  : raw.encoding == "coded"  ? 4
+                                             : kEncodingsKnown;
+  if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, const char* const* argv) {
+  ClientOptions out;
+  RawOptions raw;
+  CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
+  // The last value wins, so that a user can append options to the fixed command line of a container.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  app.set_version_flag("--version",
+                       std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
+  add_session_options(app, out, raw);
+  add_output_options(app, out, raw);
+  add_modes(app, out);
   try {
     app.parse(argc, argv);
-    if (address.empty() && !out.draw) throw CLI::RequiredError("--connect");
-    std::string wrong = out.draw ? "" : parse_host_port(address, out.host, out.port);
-    if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
-    if (!size.empty()) wrong = parse_size(size, out);
-    if (!wrong.empty()) throw CLI::ValidationError("--size", wrong);
+    finish(app, raw, out);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
     return {std::nullopt, code == 0 ? 0 : 2};
   }
-  out.view_radius = static_cast<std::uint8_t>(view);
-  out.view_radius_v =
-      static_cast<std::uint8_t>(app.count("--view-vertical") != 0 ? view_v : (view + 1) / 2);
-  out.render = !no_render;
-  const bool is_watched = out.render && !out.headless;
-  out.cache =
-      !no_cache && (is_watched || app.count("--cache-dir") != 0 || app.count("--cache-mib") != 0);
-  out.encodings = encoding == "raw"      ? 1
-                  : encoding == "packed" ? 2
-                  : encoding == "coded"  ? 4
-                                         : kEncodingsKnown;
-  if (out.workers == 0) out.workers = std::max(2U, std::thread::hardware_concurrency()) - 1;
   return {out, 0};
 }
 

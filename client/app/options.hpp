@@ -1,16 +1,18 @@
-// ClientOptions: what the command line of runstone-client says.
+// ClientOptions: the command line of runstone-client.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "common/os/host_port.hpp"
+#include "protocol/default_port.hpp"
+
 namespace runstone {
 
 struct ClientOptions {
-  std::string host = "127.0.0.1";
-  std::uint16_t port = 0;
+  HostPort server{"127.0.0.1", kDefaultPort};
   std::string name = "builder";
-  std::string key_file;            // empty: a key for this process only
+  std::string key_file;            // empty: a new key, for this process only
   std::uint8_t view_radius = 6;    // chunks, horizontal
   std::uint8_t view_radius_v = 3;  // chunks, vertical
   bool headless = false;           // off screen, no display needed
@@ -18,25 +20,27 @@ struct ClientOptions {
   int width = 1280, height = 720;  // pixels
   std::string script;              // file; empty: none
   std::string report;              // file; empty: none
-  std::string digests;             // file written at the end; empty: none
+  std::string digests;             // file; empty: none
   std::uint8_t encodings = 7;      // as in Hello
   std::string screenshot_dir = ".";
   bool exit_on_goodbye = false;
-  double reconnect_seconds = 30;  // without a session for this long: give up
-  unsigned workers = 0;           // mesh threads; 0: one fewer than cores, at least one
-  bool cache = true;              // keep chunks between runs; off by default where nobody watches
+  double reconnect_seconds = 30;  // the client ends after this time without an open world
+  unsigned workers = 0;           // mesh threads, at least 1 after parsing
+  bool cache = true;              // keep chunks on disk between runs
   std::string cache_dir;          // empty: $XDG_CACHE_HOME/runstone
   std::uint64_t cache_mib = 256;  // at most, on disk
   bool verbose = false;
+  bool list_materials = false;  // print the materials of the world instead of playing
   bool draw = false;  // take draw orders from standard input instead of playing (docs/client.md)
 };
 
-/// The options, or the exit code of a program that has nothing more to do (help, or a mistake that was
-/// printed).
+/// Holds options, or nullopt and an exit code if the program is to end. The reason has been
+/// printed.
 struct ParsedOptions {
   std::optional<ClientOptions> options;
   int exit_code = 0;
 };
+/// Reads the command line. --help and --version give exit code 0, a mistake gives 2.
 ParsedOptions parse_options(int argc, const char* const* argv);
 
 }  // namespace runstone

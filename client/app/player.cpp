@@ -8,7 +8,7 @@ namespace runstone {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kPitchMax = kPi / 2 - 0.01;  // straight up has no "forward"
+constexpr double kPitchMax = kPi / 2 - 0.01;  // looking straight up has no forward direction
 constexpr double kRadiansPerPixel = 0.0025;
 constexpr double kSpeed = 12, kSpeedFast = 60;  // voxels a second
 
@@ -56,7 +56,8 @@ ChunkCoord Player::chunk(std::int32_t edge) const {
 }
 
 void Player::steer(const WindowInput& input, double seconds, std::size_t material_count) {
-  // Right-handed with y up: to the right of +z lies -x, so a mouse that moves right lowers the yaw.
+  // In right-handed coordinates with y up, -x is to the right of +z. So moving the mouse right
+  // lowers the yaw.
   look(yaw_ - input.look_dx * kRadiansPerPixel, pitch_ - input.look_dy * kRadiansPerPixel);
   const double forward = (input.forward ? 1 : 0) - (input.back ? 1 : 0);
   const double right = (input.right ? 1 : 0) - (input.left ? 1 : 0);

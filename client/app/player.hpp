@@ -1,4 +1,5 @@
-// Player: the eye that flies through the world, and what it holds.
+// Player: the position and direction of the eye that flies through the world, and the selected
+// material.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -11,34 +12,38 @@
 
 namespace runstone {
 
-inline constexpr double kReach = 64;  // voxels from the eye to what is dug or placed against
+inline constexpr double kReach = 64;  // voxels from the eye to the voxel that a click changes
 
 class Player {
  public:
   const WorldPos& eye() const { return eye_; }
   void move_to(const WorldPos& eye) { eye_ = eye; }
-  /// A world is open. In the one that the player was in before they stay where they are; in any other one
-  /// that place means nothing, and they begin at its spawn.
+  /// Call it when a world opens. The player keeps the position if the world is the one of the last
+  /// call, and otherwise moves to `spawn`.
   void enter(const WorldId& world, const WorldPos& spawn);
-  /// Radians; pitch is kept short of straight up and down.
+  /// Sets the direction. Radians; pitch is limited to just less than straight up and down.
   void look(double yaw, double pitch);
   LookDirection direction() const { return look_direction(yaw_, pitch_); }
   Pose pose() const;
+  /// `view_voxels` is the distance to the far plane; the camera uses 64 at least.
   Camera camera(double view_voxels) const;
+  /// Returns the chunk that the eye is in. `edge` is the edge of a chunk in voxels.
   ChunkCoord chunk(std::int32_t edge) const;
 
+  /// Returns the material that a click places.
   Material held() const { return held_; }
-  /// Keys, mouse and wheel of one frame; `material_count` bounds what can be held.
+  /// Applies keys, mouse and wheel of the last `seconds`. Materials 1 to material_count - 1 can be
+  /// selected.
   void steer(const WindowInput& input, double seconds, std::size_t material_count);
 
  private:
-  std::optional<WorldId> world_;  // none before the first
+  std::optional<WorldId> world_;  // of the last enter()
   WorldPos eye_;
   double yaw_ = 0, pitch_ = 0;
   Material held_ = 1;
 };
 
-/// Yaw in radians of a pose, for drawing others.
+/// Returns the yaw of a pose in radians.
 double yaw_of(const Pose& pose);
 
 }  // namespace runstone

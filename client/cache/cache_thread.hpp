@@ -1,5 +1,6 @@
-// CacheThread: the chunk cache on a thread of its own, so that no disk holds up a session. Questions come before chunks to
-// be kept; each is answered once, in order. Threads: all calls from the one that owns it; `wake` comes from the cache's.
+// CacheThread: runs the chunk cache on its own thread, so that a session never waits for the disk.
+// Questions are handled before chunks to keep. Each question is answered once, in order. Threads:
+// the owner makes all calls. `wake` is called from the cache thread.
 #pragma once
 #include <condition_variable>
 #include <cstddef>
@@ -17,25 +18,25 @@ namespace runstone {
 
 class CacheThread {
  public:
-  static constexpr std::size_t kKeepMax =
-      4'096;  // chunks that wait to be written; more stay with the replica
+  /// The greatest number of chunks that wait to be written. Further ones stay with the replica.
+  static constexpr std::size_t kKeepMax = 4'096;
 
-  /// `wake` is called when there is an answer.
+  /// `wake` is called after each answer.
   CacheThread(std::unique_ptr<ChunkCache> cache, std::function<void()> wake);
-  /// As stop().
+  /// Calls stop().
   ~CacheThread();
 
   void ask(CacheLookup question);
-  /// How many chunks keep() takes now.
+  /// Returns the number of chunks that keep() accepts now.
   std::size_t room() const;
   void keep(const CachedWorld& world, std::vector<KeyedChunk> chunks);
-  /// What was found, one entry for each question, in order.
+  /// Returns the chunks found since the last call: one entry for each question, in order.
   std::vector<std::vector<KeyedChunk>> take_answers();
-  /// Writes what waits, then ends the thread. Nothing is taken afterwards.
+  /// Writes the waiting chunks and ends the thread. Later questions and chunks are ignored.
   void stop();
 
   CacheCounters counters() const;
-  /// One line that went wrong since the last call, or empty.
+  /// Returns the newest warning since the last call, one line, or an empty text.
   std::string take_warning();
 
  private:
@@ -45,9 +46,10 @@ class CacheThread {
   };
   void run();
 
-  std::unique_ptr<ChunkCache> cache_;  // of the thread
+  std::unique_ptr<ChunkCache> cache_;  // used by the thread only
   const std::function<void()> wake_;
-  mutable std::mutex mutex_;  // a leaf: guards all that follows, but for the thread
+  mutable std::mutex
+      mutex_;  // guards all members below except thread_; no other lock is taken under it
   std::condition_variable has_work_;
   std::deque<CacheLookup> questions_;
   std::deque<Batch> batches_;

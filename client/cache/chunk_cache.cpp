@@ -13,10 +13,10 @@
 namespace runstone {
 namespace {
 
-constexpr std::uint64_t kRowOverheadBytes = 160;  // of a row and its place in three indexes
+constexpr std::uint64_t kRowOverheadBytes = 160;  // of a row and its entries in three indexes
 constexpr std::int64_t kEvictedAtATime = 64;
 
-// user_version names the layout: another one is begun anew.
+// user_version is kLayout. A database with another one is replaced by a new one.
 constexpr const char* kSchema =
     "PRAGMA auto_vacuum = INCREMENTAL;"
     "PRAGMA journal_mode = WAL;"
@@ -42,7 +42,7 @@ Bytes digest_bytes(const Digest& digest) {
   return bytes;
 }
 
-/// Over all that a row says.
+/// Returns the checksum over the other columns of a row.
 std::int64_t checksum_of(const WorldId& world, const ChunkKey& key, const Version& version,
                          ByteView digest, ByteView data) {
   Bytes bytes;
@@ -66,8 +66,8 @@ void remove_database(const std::string& file) {
 
 std::string default_cache_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && cache[0] == '/')
-    return std::string(cache) + "/runstone";  // a relative one is void (XDG)
+  // The XDG specification ignores a relative path.
+  if (cache != nullptr && cache[0] == '/') return std::string(cache) + "/runstone";
   const char* home = std::getenv("HOME");
   return home != nullptr && home[0] == '/' ? std::string(home) + "/.cache/runstone" : std::string();
 }
@@ -129,7 +129,7 @@ void ChunkCache::open_database() {
     const std::int64_t layout = database_->integer("PRAGMA user_version");
     if (is_first && database_->ok() && layout != 0 && layout != kLayout) {
       database_.reset();
-      remove_database(file_);  // of another version of this program: nothing there is worth keeping
+      remove_database(file_);  // it belongs to another version of this program
       continue;
     }
     database_->run(kSchema);
@@ -148,12 +148,12 @@ void ChunkCache::open_database() {
   if (database_ && database_->ok()) return;
   has_ended_ = true;
   warning_ = "chunk cache " + file_ +
-             " cannot be used: " + (database_ ? database_->error() : "its layout");
+             " cannot be used: " + (database_ ? database_->error() : "wrong layout");
 }
 
 void ChunkCache::set_aside() {
-  warning_ =
-      "chunk cache " + file_ + " is damaged (" + database_->error() + "): set aside, begun anew";
+  warning_ = "chunk cache " + file_ + " is damaged (" + database_->error() + "): set aside as " +
+             file_ + ".damaged, and a new one is begun";
   tables_.reset();
   database_.reset();
   std::error_code ignored;
@@ -162,7 +162,7 @@ void ChunkCache::set_aside() {
   ++counters_.databases_set_aside;
 }
 
-void ChunkCache::settle() {
+void ChunkCache::handle_failure() {
   if (database_->ok()) return;
   if (database_->is_corrupt()) {
     set_aside();
@@ -243,20 +243,20 @@ std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_
   const bool is_old = t.find.integer(2) != stamp_;
   const std::int64_t id = t.find.integer(6);
   const ByteView digest = t.find.blob(4), data = t.find.blob(5);
-  bool holds = t.find.integer(3) == checksum_of(world.id, key, chunk->version, digest, data);
+  bool is_intact = t.find.integer(3) == checksum_of(world.id, key, chunk->version, digest, data);
   const auto size = static_cast<std::uint64_t>(data.size()) + kRowOverheadBytes;
-  if (holds) {
+  if (is_intact) {
     auto voxels = decode_chunk(data, Extent::cube(world.chunk_edge));
-    holds = voxels.has_value();
-    if (holds) {
+    is_intact = voxels.has_value();
+    if (is_intact) {
       chunk->voxels = *std::move(voxels);
       chunk->digest = digest_of(chunk->voxels);
       const Bytes found = digest_bytes(chunk->digest);
-      holds = std::equal(found.begin(), found.end(), digest.begin(), digest.end());
+      is_intact = std::equal(found.begin(), found.end(), digest.begin(), digest.end());
     }
   }
   t.find.reset();
-  if (!holds) {
+  if (!is_intact) {
     ++counters_.corrupt;
     database_->run(t.drop.bind(1, id));
     bytes_ -= std::min(bytes_, size);
@@ -277,7 +277,7 @@ std::vector<KeyedChunk> ChunkCache::find(const CachedWorld& world, std::span<con
     if (auto chunk = read(world, row, key)) found.push_back(*std::move(chunk));
   }
   database_->run("COMMIT");
-  settle();
+  handle_failure();
   return found;
 }
 
@@ -311,10 +311,10 @@ void ChunkCache::keep(const CachedWorld& world, std::span<const KeyedChunk> chun
     bytes_ += size;
     ++counters_.kept;
   }
-  ++stamp_;  // what was kept before is older than what will be
+  ++stamp_;  // chunks of later batches count as newer
   evict();
   database_->run("COMMIT");
-  settle();
+  handle_failure();
 }
 
 void ChunkCache::evict() {

@@ -1,13 +1,17 @@
-// ChunkCache: chunks that a client keeps on disk between its runs, by world and key: version, digest, packed bytes. What
-// comes out of it is what went in, or nothing:
-//   - every row has a checksum over all of it, and its voxels must give the digest; a row that does not hold is dropped
-//     and counted;
-//   - a database that is damaged as a whole is set aside ("cache.sqlite.damaged") and begun anew;
-//   - SQLite's WAL survives the end of the process at any moment (synchronous NORMAL: the end of power as well, but for
-//     the newest batches);
-//   - of a world whose server lost edits or stands on a backup, what is not common history goes (SharedHistory).
-// Bounded: beyond `bytes_max` the chunks that were longest unused go. One process at a time has the folder. Blocks on the
-// disk; one thread at a time.
+// ChunkCache: chunks that a client keeps on disk between its runs. A row has world, chunk key,
+// version, digest and packed bytes. The cache returns a chunk exactly as it was stored, or not at
+// all:
+//   - every row has a checksum over its other columns, and the digest of its voxels must match; a
+//     row that fails a check is dropped and counted;
+//   - a database that is damaged as a whole is renamed to "cache.sqlite.damaged", and a new one is
+//     begun;
+//   - the write-ahead log of SQLite survives a kill at any moment; after a power failure the newest
+//     batches may be missing (synchronous NORMAL);
+//   - if the server of a world lost edits or was restored from a backup, chunks outside the common
+//     history are dropped (SharedHistory).
+// The size is bounded: beyond `bytes_max` the chunks that were unused for longest are evicted. One
+// process at a time uses the folder. Calls wait for the disk.
+// Thread: one at a time.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -25,55 +29,61 @@ namespace runstone {
 
 struct CacheCounters {
   std::uint64_t hits = 0, misses = 0;
-  std::uint64_t corrupt = 0;     // rows that did not hold
+  std::uint64_t corrupt = 0;     // rows that failed a check
   std::uint64_t kept = 0;        // chunks written
-  std::uint64_t evicted = 0;     // to keep the bound
-  std::uint64_t not_common = 0;  // edited by a server that is gone
+  std::uint64_t evicted = 0;     // chunks dropped for the size bound
+  std::uint64_t not_common = 0;  // chunks dropped because they are outside the common history
   std::uint64_t databases_set_aside = 0;
 };
 
-/// $XDG_CACHE_HOME/runstone, else $HOME/.cache/runstone; empty if neither variable names a folder.
+/// Returns $XDG_CACHE_HOME/runstone, otherwise $HOME/.cache/runstone, or an empty text if neither
+/// variable is an absolute path.
 std::string default_cache_folder();
 
 class ChunkCache {
  public:
-  /// Makes the folder if needed. The error is one line that names the folder: it cannot be written, or another process
-  /// has it. `bytes_max` counts rows with what they need around them; the file may be half as large again.
+  /// Opens the cache and makes the folder if needed. Fails with one line of text that names the
+  /// folder if it cannot be written or another process uses it. `bytes_max` counts rows with their
+  /// share of the indexes; the file may be half as large again.
   static Result<std::unique_ptr<ChunkCache>, std::string> open(const std::string& folder,
                                                                std::uint64_t bytes_max);
 
-  /// Those of the chunks that are here, in the order asked.
+  /// Returns the chunks of `keys` that are in the cache, in the order of `keys`.
   std::vector<KeyedChunk> find(const CachedWorld& world, std::span<const ChunkKey> keys);
-  /// Writes chunks, and what is known of their world now, in one transaction.
+  /// Writes chunks and the state of their world in one transaction.
   void keep(const CachedWorld& world, std::span<const KeyedChunk> chunks);
 
   ~ChunkCache();
 
   const CacheCounters& counters() const { return counters_; }
   std::uint64_t bytes() const { return bytes_; }
-  /// What went wrong since the last call, for the log: one line, or empty. After a failure other than damage (a full disk)
-  /// the cache finds and keeps nothing any more.
+  /// Returns the newest warning since the last call, one line, or an empty text. After a failure
+  /// other than damage, such as a full disk, the cache finds and keeps nothing any more.
   std::string take_warning();
 
  private:
   struct Tables;
   ChunkCache(std::string file, std::uint64_t bytes_max, FileLock lock);
   void open_database();
-  /// Of this world, with only common history left in it.
+  /// Returns the row id of the world. Adds the world if needed, and drops its chunks outside the
+  /// common history.
   std::int64_t enter(const CachedWorld& world);
+  /// Drops the chunks unused for longest until the size is within the bound.
   void evict();
+  /// Renames the damaged database.
   void set_aside();
-  /// After a batch: damage sets the database aside, anything else ends the cache.
-  void settle();
+  /// Handles a failure of the last batch: sets a damaged database aside, and ends the cache after
+  /// any other failure.
+  void handle_failure();
   std::optional<KeyedChunk> read(const CachedWorld& world, std::int64_t row, const ChunkKey& key);
 
   const std::string file_;
   const std::uint64_t bytes_max_;
   FileLock lock_;
-  std::unique_ptr<CacheDatabase> database_;  // before the statements
+  std::unique_ptr<CacheDatabase> database_;  // declared before the statements, which use it
   std::unique_ptr<Tables> tables_;
   std::uint64_t bytes_ = 0;  // of all rows
-  std::int64_t stamp_ = 0;   // of this run: rows with a lower one were not used in it
+  std::int64_t stamp_ = 0;  // of rows that are used or written now; lower ones were used longer ago
   bool has_ended_ = false;
   CacheCounters counters_;
   std::string warning_;

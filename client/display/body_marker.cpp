@@ -6,9 +6,10 @@ namespace runstone {
 namespace {
 
 constexpr double kHalfWidth = 0.3, kHeight = 1.8;
-constexpr double kEyeHeight = 1.6;  // of a pose above the feet
-constexpr double kTooNear =
-    2 * Camera{}.near;  // the corners of the near plane lie farther than its middle
+constexpr double kEyeHeight = 1.6;  // above the feet; a pose is at the eye
+/// The corners of the near plane are farther from the eye than its middle, but less than twice as
+/// far.
+constexpr double kTooNear = 2 * Camera{}.near;
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The box that stands for another player.
+// The box that is drawn for another player.
 #pragma once
 #include <optional>
 
@@ -8,9 +8,9 @@
 
 namespace runstone {
 
-/// A player's body, in a colour of their own, so that two builders are told apart. None if `eye` is in it, or
-/// so near that the picture would begin inside: two players in one place (at the spawn, say) both want to see
-/// the world.
+/// Returns the box of a player whose pose is `at`, in a colour that depends on the author. Returns
+/// nullopt if `eye` is inside the box, or so near that the near plane would cut it, because the box
+/// would hide the world. Two players at the spawn are in this situation.
 std::optional<Marker> body_marker(AuthorId author, const WorldPos& at, const WorldPos& eye);
 
 }  // namespace runstone

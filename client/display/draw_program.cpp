@@ -13,7 +13,7 @@
 
 #include "client/display/drawn_world.hpp"
 #include "client/render/image.hpp"
-#include "common/os/exit_code.hpp"
+#include "client/report/exit_code.hpp"
 #include "common/os/low_priority.hpp"
 #include "common/os/steady_clock.hpp"
 #include "protocol/codec/draw_answer.hpp"
@@ -43,12 +43,12 @@ class DrawService {
       : orders_(orders), answers_(answers), workers_(workers), screen_(screen) {}
 
   int serve() {
-    if (!answer(DrawReady{kDrawVersion, screen_.name()})) return kExitNoStart;
+    if (!send(DrawReady{kDrawVersion, screen_.name()})) return kExitNoStart;
     std::array<std::uint8_t, kReadBytes> buffer;
     while (!reader_.ended()) {
       const ssize_t got = ::read(orders_, buffer.data(), buffer.size());
       if (got < 0 && errno == EINTR) continue;
-      if (got < 0) return refuse(std::string("the orders cannot be read: ") + std::strerror(errno));
+      if (got < 0) return refuse(std::string("cannot read the orders: ") + std::strerror(errno));
       const auto taken =
           got == 0 ? reader_.finish()
                    : reader_.feed({buffer.data(), static_cast<std::size_t>(got)},
@@ -83,21 +83,22 @@ class DrawService {
         world_->draw(camera_of(picture.camera), picture.size.width, picture.size.height);
     if (!write_png(picture.file, screen_.read_image())) {
       code_ = kExitFailed;
-      answer(PictureUnwritten{picture.file});
+      send(PictureUnwritten{picture.file});
       return {};
     }
     const auto took = static_cast<std::uint64_t>(steady_now_us() - start);
-    answer(PictureDrawn{stats.quads_drawn, stats.chunks_drawn, took, picture.file});
+    send(PictureDrawn{stats.quads_drawn, stats.chunks_drawn, took, picture.file});
     return {};
   }
   Result<void> take_one(const DrawEnd&) { return {}; }
 
   int refuse(const std::string& why) {
-    answer(DrawFailed{why});
+    send(DrawFailed{why});
     return kExitNoStart;
   }
-  bool answer(const DrawAnswer& what) {
-    const std::string line = to_line(what);
+  /// Returns false if the answer cannot be written.
+  bool send(const DrawAnswer& answer) {
+    const std::string line = to_line(answer);
     std::size_t done = 0;
     while (done < line.size()) {
       const ssize_t put = ::write(answers_, line.data() + done, line.size() - done);
@@ -111,13 +112,14 @@ class DrawService {
   const unsigned workers_;
   Screen& screen_;
   DrawOrderReader reader_;
-  std::optional<DrawnWorld> world_;  // from the first order on
+  std::optional<DrawnWorld> world_;  // set by the first order
   int code_ = kExitOk;
 };
 
-void say(int answers, const std::string& why) {
+void send_failure(int answers, const std::string& why) {
   const std::string line = to_line(DrawFailed{why});
-  static_cast<void>(!::write(answers, line.data(), line.size()));  // the exit code says it as well
+  // If this write fails, the exit code still reports the failure.
+  static_cast<void>(!::write(answers, line.data(), line.size()));
 }
 
 }  // namespace
@@ -129,7 +131,7 @@ int draw_program(int orders, int answers, unsigned workers,
     const std::unique_ptr<Screen> screen = make_screen();
     return DrawService(orders, answers, workers, *screen).serve();
   } catch (const std::exception& error) {
-    say(answers, error.what());
+    send_failure(answers, error.what());
     return kExitNoStart;
   }
 }

@@ -1,9 +1,9 @@
-// The draw program: `runstone-client --draw`. Reads draw orders (protocol/codec/draw_order.hpp), draws each
-// picture off screen into its PNG and answers it with a line (draw_answer.hpp). A program that has no OpenGL
-// of its own, the server or runstone-replay, starts it as a child: the renderer stays on this side of the
-// house, and a driver that crashes takes down nobody else.
-// Orders are read, meshed and drawn by one thread, one after another; whoever writes them is held back by the
-// pipe meanwhile. Runs at low priority: nobody watches.
+// The draw program is `runstone-client --draw`. It reads draw orders
+// (protocol/codec/draw_order.hpp), draws each picture off screen into a PNG file and answers with a
+// line (protocol/codec/draw_answer.hpp). Programs without OpenGL, the server and runstone-replay,
+// start it as a child process. A driver that crashes ends only the child. One thread handles the
+// orders one after another; the pipe holds the sender back meanwhile. The process runs at low
+// priority.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,10 +12,14 @@
 
 namespace runstone {
 
-/// Serves the descriptor `orders` until its last order, answering on `answers`. `workers`: mesh threads.
-/// Returns an exit code: kExitOk; kExitFailed if a picture could not be written (the answer said so, and the
-/// orders after it were served); kExitNoStart if there is no OpenGL or no more, or an order is wrong: the last
-/// answer says which. Who no longer reads the answers ends the process (SIGPIPE).
+/// Handles the orders of the descriptor `orders` until the last one, and answers on the descriptor
+/// `answers`. `workers` is the number of mesh threads. If the reader of the answers closes its end,
+/// SIGPIPE ends the process. Returns an exit code:
+///   kExitOk       all pictures were written
+///   kExitFailed   a picture could not be written; its answer named it, and later orders were
+///                 handled
+///   kExitNoStart  OpenGL is missing or failed, or an order is wrong; the last answer gives the
+///                 reason
 int draw_program(int orders, int answers, unsigned workers,
                  const std::function<std::unique_ptr<Screen>()>& make_screen);
 

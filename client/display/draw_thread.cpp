@@ -92,12 +92,10 @@ std::size_t DrawThread::waiting() const {
   return work_.changes.size();
 }
 
-// ---- the thread
-
 void DrawThread::run(const std::stop_token& stop,
                      const std::function<std::unique_ptr<Screen>()>& make_screen,
                      DrawPriority priority) {
-  // Nothing may leave this function: an exception would end the program.
+  // No exception may leave this function, because it would end the program.
   try {
     if (priority == DrawPriority::background) lower_priority();
     const std::unique_ptr<Screen> screen = make_screen();

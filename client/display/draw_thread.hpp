@@ -1,11 +1,13 @@
-// DrawThread: the thread that owns the screen. A frame may take long (a tenth of a second in software); what
-// changes meanwhile waits here, so that the main thread never does: edits are applied, meshed and sent on
-// time.
-//   in    changes (meshes, removals, materials), the newest of each chunk, and at most one frame order;
-//         bounded by the number of chunks
-//   out   what was done, in its order; bounded by what went in since it was last taken
-// A frame shows every change that was handed over before its order. Hand-overs cost a lock and a map
-// insertion. Threads: made, called and destroyed by the main thread; `wake` is called from the draw thread.
+// DrawThread: the thread that owns the screen. A frame may take long (a tenth of a second in
+// software). Changes are queued meanwhile, so the main thread never waits and applies, meshes and
+// sends edits on time.
+//   in    changes (meshes, removals, materials), of which the newest per chunk is kept, and at most
+//         one frame order; bounded by the number of chunks
+//   out   completed uploads and frames, in order; bounded by the number of orders since the last
+//         take_done()
+// A frame shows every change that was queued before its order. Queueing costs a lock and a map
+// insertion.
+// Threads: the main thread makes, calls and destroys it. `wake` is called from the draw thread.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -26,7 +28,7 @@
 
 namespace runstone {
 
-/// A chunk's new quads. `serial`: Replica::shown_serial() of what was meshed.
+/// The new quads of a chunk. `serial` is Replica::shown_serial() of the runs that were meshed.
 struct ChunkUpload {
   std::uint64_t serial = 0;
   std::int32_t edge = 0;  // voxels
@@ -37,10 +39,10 @@ struct FrameOrder {
   Camera camera;
   int width = 0, height = 0;  // pixels
   std::vector<Marker> markers;
-  std::vector<std::string> screenshots;  // PNG files that this frame becomes
+  std::vector<std::string> screenshots;  // PNG files to write of this frame
 };
 
-/// Times are of steady_now_us().
+/// Times are those of steady_now_us().
 struct UploadDone {
   ChunkKey key;
   std::uint64_t serial = 0;
@@ -55,15 +57,16 @@ using DrawDone = std::variant<UploadDone, FrameDone>;
 
 enum class DrawPriority : std::uint8_t {
   normal,
-  background,  // below the threads that apply and mesh, for pictures that nobody watches
+  background,  // below the threads that apply and mesh; for off-screen frames
 };
 
 class DrawThread {
  public:
-  /// `make_screen` is called on the new thread; its exception is thrown here, as std::runtime_error.
+  /// Calls `make_screen` on the new thread. If that throws, throws std::runtime_error with the same
+  /// text.
   DrawThread(std::function<std::unique_ptr<Screen>()> make_screen, DrawPriority priority,
              std::function<void()> wake);
-  /// Lets a frame under way end; drops what waits.
+  /// Finishes the current frame and drops queued work.
   ~DrawThread();
   DrawThread(const DrawThread&) = delete;
   DrawThread& operator=(const DrawThread&) = delete;
@@ -71,20 +74,23 @@ class DrawThread {
   const std::string& screen_name() const { return name_; }
 
   void set_materials(const MaterialTable& materials);
-  /// Replaces a waiting change of this chunk, which is then never done.
+  /// Queues new quads. They replace a queued change of the same chunk, which is then never reported
+  /// as done.
   void upload(const ChunkKey& key, ChunkUpload upload);
+  /// Queues a removal, which replaces a queued change of the same chunk.
   void remove(const ChunkKey& key);
-  /// Requires that the frame ordered before is among the done ones taken.
+  /// Orders a frame. Requires that take_done() has returned the frame ordered before.
   void draw(FrameOrder order);
 
-  /// What was done since the last call. Throws std::runtime_error with the reason once drawing has failed.
+  /// Returns the uploads and frames completed since the last call. Throws std::runtime_error with
+  /// the reason if drawing has failed.
   std::vector<DrawDone> take_done();
-  /// Changes that wait.
+  /// Returns the number of queued changes.
   std::size_t waiting() const;
 
  private:
   struct Work {
-    std::map<ChunkKey, std::optional<ChunkUpload>> changes;  // none: remove the chunk
+    std::map<ChunkKey, std::optional<ChunkUpload>> changes;  // nullopt: remove the chunk
     std::optional<MaterialTable> materials;
     std::optional<FrameOrder> frame;
     bool empty() const { return changes.empty() && !materials && !frame; }
@@ -99,7 +105,7 @@ class DrawThread {
   void fail(const char* why);
 
   const std::function<void()> wake_;
-  std::string name_;  // written before `drawing`, read after
+  std::string name_;  // written before state_ becomes `drawing`, read after
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   State state_ = State::starting;  // guarded by mutex_, as are the next three
@@ -107,7 +113,7 @@ class DrawThread {
   Work work_;
   std::vector<DrawDone> done_;
   bool frame_ordered_ = false;  // main thread
-  std::jthread thread_;         // last: it uses what is above
+  std::jthread thread_;         // last: it uses the members above
 };
 
 }  // namespace runstone

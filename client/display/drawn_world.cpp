@@ -76,8 +76,8 @@ void DrawnWorld::mesh_changes() {
     for (const MeshResult& result : pool_.take_results())
       screen_.upload(result.key, result.edge, *result.mesh);
     if (pool_.in_flight() == 0) continue;
-    // Each job out releases once, after its result is there, so this cannot wait in vain; what else was
-    // released meanwhile is taken with it.
+    // Each job in flight releases the semaphore once, after it has queued its result, so this wait
+    // ends. The loop takes further releases whose results the next turn takes as well.
     results_.acquire();
     while (results_.try_acquire()) {
     }

@@ -1,7 +1,7 @@
-// DrawnWorld: chunks that somebody hands over whole, meshed and on a screen. A change meshes the chunk again,
-// and those neighbours whose touching layer sees it; nothing else. What a client's Replica, MeshPlanner and
-// DrawThread are to a world that is played is this to one of which only pictures are wanted.
-// One thread: that of the screen. Meshing is on the pool's threads while draw() waits for them.
+// DrawnWorld: the world of the draw program. It receives whole chunks, meshes them and uploads them
+// to a screen. A changed chunk is meshed again, together with each neighbour that touches a changed
+// border layer. In a client that is played, Replica, MeshPlanner and DrawThread do this work.
+// Thread: that of the screen. The pool's threads mesh while draw() waits for them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,22 +19,24 @@ namespace runstone {
 
 class DrawnWorld {
  public:
-  /// Chunks held at most: a peer must not fill our memory with empty ones.
+  /// The greatest number of chunks held. It keeps a peer from filling the memory with empty chunks.
   static constexpr std::size_t kChunksMax = 1U << 18;
 
-  /// `screen` must outlive the world. `edge`: voxels, of every chunk. `workers`: mesh threads; 0 meshes in
-  /// draw() itself.
+  /// `screen` must outlive the world. `edge` is the edge of every chunk in voxels. `workers` is the
+  /// number of mesh threads; with 0, draw() meshes itself.
   DrawnWorld(Screen& screen, std::int32_t edge, const MaterialTable& materials, unsigned workers);
 
-  /// Holds the chunk from now on. False if there are kChunksMax others. O(runs).
+  /// Stores or replaces the chunk. Returns false if the chunk is new and kChunksMax are stored.
+  /// Cost: O(runs).
   bool put(const ChunkKey& key, RunChunk voxels);
-  /// Nothing is known of the chunk any more: its neighbours show their faces towards it.
+  /// Removes the chunk. Its neighbours then show their faces towards it.
   void forget(const ChunkKey& key);
   std::size_t chunk_count() const { return chunks_.size(); }
 
-  /// Meshes what changed, uploads it and draws. Throws std::runtime_error if the driver gave up.
+  /// Meshes and uploads the changed chunks, and draws. Throws std::runtime_error if the driver
+  /// fails.
   RenderStats draw(const Camera& camera, int width, int height);
-  /// Meshes made so far.
+  /// Returns the number of meshes made so far.
   std::uint64_t meshes() const { return jobs_; }
 
  private:
@@ -45,10 +47,10 @@ class DrawnWorld {
   Screen& screen_;
   const std::int32_t edge_;
   std::map<ChunkKey, ShownPtr> chunks_;
-  std::set<ChunkKey> dirty_;  // held, and not meshed as they are now
+  std::set<ChunkKey> dirty_;  // stored, and changed since they were last meshed
   std::uint64_t jobs_ = 0;
   std::counting_semaphore<> results_{0};  // released by mesh threads
-  MeshPool pool_;                         // its threads use what is above
+  MeshPool pool_;                         // last: its threads use the members above
 };
 
 }  // namespace runstone

@@ -28,12 +28,12 @@ void MeshPipeline::set_materials(const MaterialTable& materials) {
                                      steady_now_ns, wake_);
 }
 
-void MeshPipeline::take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us) {
-  recorder_.take(news, clock, now_us);
-  planner_.take(news.chunks);
-  for (const auto& [key, reason] : news.unavailable) join_.done(key, now_us);
+void MeshPipeline::take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us) {
+  recorder_.take(changes, clock, now_us);
+  planner_.take(changes.chunks);
+  for (const auto& [key, reason] : changes.unavailable) join_.done(key, now_us);
   if (!draw_thread_) return;
-  for (const ChunkChange& chunk : news.chunks) {
+  for (const ChunkChange& chunk : changes.chunks) {
     if (!chunk.removed) continue;
     draw_thread_->remove(chunk.key);
     changed_ = true;
@@ -42,7 +42,7 @@ void MeshPipeline::take(const ReplicaChanges& news, const ClockOffset& clock, Ti
 
 void MeshPipeline::take_drawn() {
   if (!draw_thread_) return;
-  // In the order of the draw thread: a frame presents the uploads before it and none after it.
+  // The draw thread reports in order: a frame presents the uploads before it and none after it.
   for (const DrawDone& done : draw_thread_->take_done()) {
     if (const auto* upload = std::get_if<UploadDone>(&done)) {
       recorder_.uploaded(upload->key, upload->serial, upload->at_us);
@@ -59,7 +59,7 @@ void MeshPipeline::take_frame(const FrameDone& frame) {
   frame_ = {};
   if (!watched_) next_frame_us_ = frame.presented_us + kFrameOffScreenUs;
   for (const std::string& file : frame.unwritten)
-    spdlog::warn("picture={} cannot be written", file);
+    spdlog::warn("screenshot={} cannot be written", file);
 }
 
 void MeshPipeline::mesh() {
@@ -102,11 +102,10 @@ void MeshPipeline::push_jobs() {
 
 void MeshPipeline::draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
                         const std::function<std::vector<Marker>()>& markers) {
-  if (!draw_thread_ || frame_.under_way) return;
+  if (!draw_thread_ || frame_.in_progress) return;
   const bool screenshot_due =
       !screenshots_.empty() && (is_idle() || now_us - screenshot_since_us_ > kScreenshotWaitUs);
-  // Off screen nobody watches terrain arrive: frames are for edits and pictures, and would only slow the
-  // loading.
+  // Off screen, frames serve edits and screenshots. More frames would only slow down loading.
   const bool due = changed_ && now_us >= next_frame_us_;
   if (!due && !screenshot_due && !edits_waiting_) return;
   FrameOrder order{camera, size[0], size[1], markers(), {}};
@@ -128,13 +127,13 @@ bool MeshPipeline::has_caught_up() {
   return frames_.presented >= *last_frame_;
 }
 
-void MeshPipeline::report(ChunkStats& chunks, FrameStats& frames) const {
-  chunks.whole_ns = whole_ns_;
-  chunks.layers_ns = layers_ns_;
-  chunks.kept_mesh_bytes = planner_.kept_bytes();
-  chunks.mesh_jobs = planner_.jobs();
-  chunks.chunks_meshed = planner_.chunks_meshed();
-  frames = frames_;
+void MeshPipeline::add_to(ClientReport& report) const {
+  report.meshes.whole_ns = whole_ns_;
+  report.meshes.layers_ns = layers_ns_;
+  report.meshes.kept_bytes = planner_.kept_bytes();
+  report.meshes.jobs = planner_.jobs();
+  report.meshes.chunks = planner_.chunks_meshed();
+  report.frames = frames_;
 }
 
 }  // namespace runstone

@@ -1,6 +1,6 @@
-// Picture: the way from what changed to what is seen: mesh jobs, uploads, frames, and when each of them was
-// done. Main thread only; the meshing itself is on the pool's threads and the drawing on the draw thread.
-// Here is decided what they do and when.
+// MeshPipeline: turns changes of the replica into frames. It schedules mesh jobs, uploads and
+// frames, and records when each of them was done.
+// Thread: the main thread only. The pool's threads mesh, and the draw thread uploads and draws.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,61 +23,65 @@ namespace runstone {
 
 class MeshPipeline {
  public:
-  /// `draw_thread` may be null: then edits end at `meshed`. `watched`: frames go to somebody's eyes, not only
-  /// into files. `replica` must outlive the picture. `wake` is called from mesh threads.
+  /// `replica` must outlive the pipeline. `draw_thread` may be null; then the last stage of an edit
+  /// is `meshed`. `watched` is true if frames go to a window. `wake` is called from mesh threads.
   MeshPipeline(const Replica& replica, std::unique_ptr<DrawThread> draw_thread, bool watched,
                unsigned workers, std::function<void()> wake);
 
   bool draws() const { return draw_thread_ != nullptr; }
   std::string renderer_name() const { return draw_thread_ ? draw_thread_->screen_name() : "none"; }
 
-  /// The world's materials are known, or are other ones now.
+  /// Sets the world's materials. If they differ from those before, all chunks are meshed again.
   void set_materials(const MaterialTable& materials);
   const MaterialTable& materials() const { return materials_; }
-  /// The replica's view moved.
+  /// Call it when the replica's view covers other chunks.
   void view_changed() { planner_.view_changed(); }
   void set_eye(ChunkCoord eye) { planner_.set_eye(eye); }
-  /// The camera, or something else that is drawn, moved.
+  /// Call it when the camera or a marker moved.
   void moved() { changed_ = true; }
 
-  void take(const ReplicaChanges& news, const ClockOffset& clock, TimeUs now_us);
-  /// Learns what the draw thread did. Throws std::runtime_error if it failed.
+  void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
+  /// Records the uploads and frames that the draw thread completed. Throws std::runtime_error if it
+  /// failed.
   void take_drawn();
-  /// Hands over the meshes that are done and gives the workers what is next.
+  /// Queues the completed meshes for upload, meshes small changes itself and gives the workers new
+  /// jobs.
   void mesh();
-  /// Orders a frame of width x height pixels if there is reason to, the time has come and none is under way.
-  /// `markers` is asked only then.
+  /// Orders a frame of `size` (width, height in pixels) if no frame is in progress and one is due.
+  /// Calls `markers` only in that case.
   void draw(TimeUs now_us, const Camera& camera, std::array<int, 2> size,
             const std::function<std::vector<Marker>()>& markers);
 
-  /// The next frame in which no mesh is missing, or one after kScreenshotWaitUs, becomes this PNG. Requires
-  /// draws().
+  /// Writes a PNG of the next frame that no unfinished mesh is missing from, or of the first frame
+  /// after kScreenshotWaitUs. Requires draws().
   void request_screenshot(std::string path, TimeUs now_us);
   bool screenshots_done() const { return screenshots_.empty() && !frame_.screenshots; }
-  /// Whether the newest screenshots that are done could be written.
+  /// Returns true if the newest completed screenshots could be written.
   bool screenshots_written() const { return screenshots_written_; }
 
-  /// Everything that the replica shows is meshed, and a frame that shows all of these meshes was presented.
-  bool is_settled() const {
+  /// Returns true if all shown runs are meshed and a frame with all of these meshes was presented.
+  bool is_up_to_date() const {
     return planner_.dirty_count() == 0 && is_idle() && !uploads_waiting_ && !frame_.uploads;
   }
-  /// Whether all that was handed over before the first such question is on the screen: two frames later at
-  /// the most, whatever others edit meanwhile. Asked when the program wants to end.
+  /// Returns true if every mesh that was queued for upload before the first call has been
+  /// presented. That takes at most two frames, whatever other players edit meanwhile. Call it when
+  /// the program wants to end.
   bool has_caught_up();
   std::uint64_t frames_presented() const { return frames_.presented; }
   LatencyRecorder& recorder() { return recorder_; }
   const LatencyRecorder& recorder() const { return recorder_; }
-  /// The world's first view, by a client that began to connect then.
+  /// Records the world's first view, of a client that began to connect at `began_us`.
   void joined(const View& view, TimeUs began_us) { join_.begin(view, began_us); }
   const JoinReport& join() const { return join_.report(); }
-  /// Adds what was meshed and drawn.
-  void report(ChunkStats& chunks, FrameStats& frames) const;
+  /// Sets the counts of meshes and frames.
+  void add_to(ClientReport& report) const;
 
-  static constexpr TimeUs kFrameUs =
-      16'000;  // in a window, from order to order; the swap paces more finely
-  static constexpr TimeUs kMeshHereUs = 1'000;  // of a turn; what is more goes to the workers
-  static constexpr TimeUs kFrameOffScreenUs =
-      100'000;  // off screen, after a frame until one without new edits
+  /// In a window, the least time between two frame orders. The swap paces frames more finely.
+  static constexpr TimeUs kFrameUs = 16'000;
+  /// The time per turn that mesh() spends on meshes of changed layers. The workers make the rest.
+  static constexpr TimeUs kMeshHereUs = 1'000;
+  /// Off screen, the least time between a frame and the next one that shows no new edit.
+  static constexpr TimeUs kFrameOffScreenUs = 100'000;
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
 
  private:
@@ -86,7 +90,8 @@ class MeshPipeline {
   }
   void take_results();
   void take_result(MeshResult result);
-  /// What edits changed is made here and now: to hand it to a worker and to take it back takes longer.
+  /// Meshes the layers that edits changed, on this thread: passing such a job to a worker and back
+  /// takes longer than the job.
   void mesh_layers();
   void push_jobs();
   void take_frame(const FrameDone& frame);
@@ -100,21 +105,22 @@ class MeshPipeline {
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
-  // Since the last frame was ordered:
-  bool changed_ = true;           // something that is drawn
-  bool uploads_waiting_ = false;  // a mesh was handed over
-  bool edits_waiting_ = false;    // a mesh with edits was
+  // What happened since the last frame was ordered:
+  bool changed_ = true;           // the camera, a marker or a mesh changed
+  bool uploads_waiting_ = false;  // a mesh was queued for upload
+  bool edits_waiting_ = false;    // a mesh with edits was queued for upload
   struct {
-    bool under_way = false, uploads = false, screenshots = false;
-  } frame_;  // the one that was ordered last, and whether it shows new meshes
+    bool in_progress = false, uploads = false, screenshots = false;
+  } frame_;  // the frame in progress: whether it shows new meshes and becomes screenshots
   std::uint64_t frames_ordered_ = 0;
   std::optional<std::uint64_t> last_frame_;  // has_caught_up(): the frame to wait for
-  TimeUs next_frame_us_ = 0;                 // not before, if there is no new edit
-  std::vector<std::string> screenshots_;     // to take
+  TimeUs next_frame_us_ = 0;                 // the earliest time of a frame without new edits
+  std::vector<std::string> screenshots_;     // files requested
   TimeUs screenshot_since_us_ = 0;
   bool screenshots_written_ = true;
   std::unique_ptr<DrawThread> draw_thread_;  // may be null
-  std::unique_ptr<MeshPool> pool_;  // once the materials are known; its threads use what is above
+  std::unique_ptr<MeshPool>
+      pool_;  // set with the materials; last: its threads use the members above
 };
 
 }  // namespace runstone

@@ -33,7 +33,7 @@ class GlScreen final : public Screen {
 
  private:
   std::unique_ptr<GlContext> context_;
-  Renderer renderer_;  // dies before its context
+  Renderer renderer_;  // destroyed before its context
 };
 
 }  // namespace

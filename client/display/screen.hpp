@@ -1,5 +1,6 @@
-// Screen: where frames go: a window, or an off-screen target. Made, used and destroyed by one thread, which
-// is DrawThread's; a window is made, polled and destroyed by the main thread around that.
+// Screen: the target of frames, a window or an off-screen buffer. Thread: one thread, that of
+// DrawThread, makes, uses and destroys it. The main thread makes the window before the screen,
+// polls it, and destroys it after the screen.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,21 +22,21 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  /// Of the OpenGL context; the text lives for ever.
+  /// Returns the name of the OpenGL context, a static string.
   virtual const char* name() const = 0;
   virtual void set_materials(const MaterialTable& materials) = 0;
-  /// As Renderer::upload() and remove().
+  /// Same as Renderer::upload() and Renderer::remove().
   virtual void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh) = 0;
   virtual void remove(const ChunkKey& key) = 0;
-  /// Draws and waits until the picture is done: off screen the fence after the frame, else the swap. Pixels.
-  /// Throws std::runtime_error if the driver gave up.
+  /// Draws a frame of width x height pixels. Waits for the fence after the frame off screen, and
+  /// for the swap in a window. Throws std::runtime_error if the driver fails.
   virtual RenderStats draw(const Camera& camera, int width, int height,
                            std::span<const Marker> markers) = 0;
-  /// What the last draw() made. Requires a draw() before.
+  /// Returns the last frame. Requires a draw() before.
   virtual Image read_image() = 0;
 };
 
-/// Throw std::runtime_error if there is no OpenGL of that kind.
+/// Both functions throw std::runtime_error if no such OpenGL context can be made.
 std::unique_ptr<Screen> make_headless_screen();
 /// `window` must outlive the screen.
 std::unique_ptr<Screen> make_window_screen(Window& window);

@@ -1,5 +1,4 @@
-// runstone-bot: many players in one process. Exit codes: 0 played to the end, 1 something was lost, drifted or, of
-// a recorded log, refused, 2 could not start (docs/bots.md).
+// runstone-bot: many players in one process. docs/bots.md lists the exit codes.
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -7,19 +6,19 @@
 #include <cstdio>
 #include <exception>
 
-#include "client/fleet/bot_fleet.hpp"
+#include "client/fleet/behaviour_fleet.hpp"
 #include "client/fleet/play_fleet.hpp"
 #include "client/fleet/recorded_file.hpp"
+#include "client/report/exit_code.hpp"
 #include "client/report/report.hpp"
-#include "common/os/exit_code.hpp"
 #include "common/os/stop_signals.hpp"
 
 namespace {
 
-/// Prints what a fleet did and writes the report that was asked for. Returns `code`, or the one for a report that cannot
-/// be written.
+/// Prints the table of a report and writes the file of --report. Returns `code`, or kExitFailed if
+/// that file cannot be written.
 template <class Report>
-int tell(const Report& report, const runstone::BotOptions& options, int code) {
+int finish(const Report& report, const runstone::BotOptions& options, int code) {
   using namespace runstone;
   std::fputs(to_table(report).c_str(), stdout);
   if (!report.failure.empty()) std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
@@ -40,16 +39,16 @@ int play(const runstone::BotOptions& options, const volatile std::sig_atomic_t& 
     std::fprintf(stderr, "runstone-bot: %s\n", report.failure.c_str());
     return kExitNoStart;
   }
-  return tell(report, options, report.is_complete() ? kExitOk : kExitFailed);
+  return finish(report, options, report.is_complete() ? kExitOk : kExitFailed);
 }
 
 int run(const runstone::BotOptions& options, const volatile std::sig_atomic_t& stop) {
   using namespace runstone;
   if (!options.play.empty()) return play(options, stop);
-  const FleetReport report = BotFleet(options).run(stop);
+  const FleetReport report = BehaviourFleet(options).run(stop);
   int code = report.is_sound() ? kExitOk : kExitFailed;
   if (!report.failure.empty()) code = report.counts.due == 0 ? kExitNoStart : kExitFailed;
-  return tell(report, options, code);
+  return finish(report, options, code);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/os/host_port.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -20,7 +19,8 @@ double speed_of(const std::string& text) {
 constexpr const char* kRoleNames = "idle, walk, run-away, build, brush, griefer, join-storm";
 constexpr std::size_t kMixSharesMax = 1'000;
 
-/// "build=8,walk=2": eight builders and two walkers of every ten.
+/// Returns the roles of a text such as "build=8,walk=2", which makes eight of ten bots build and
+/// two walk.
 std::vector<BotRole> roles_of(const std::string& text) {
   const auto wrong = [&text](const std::string& why) {
     return CLI::ValidationError("--mix",
@@ -46,12 +46,14 @@ std::vector<BotRole> roles_of(const std::string& text) {
 ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   BotOptions out;
   CLI::App app{"Runstone bots: many players in one process, seeded, open loop.", "runstone-bot"};
-  app.option_defaults()->multi_option_policy(
-      CLI::MultiOptionPolicy::TakeLast);  // as the other programs
+  // The last value wins, as in the other programs.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   std::string address, role = "build", mix;
   unsigned view = out.view_radius;
   std::uint64_t edits = 0;
-  app.add_option("--connect", address, "server, HOST:PORT")->required();
+  app.add_option("--connect", address,
+                 "server: HOST or HOST:PORT; default port " + std::to_string(kDefaultPort))
+      ->required();
   app.add_option("--count", out.count, "bots")->check(CLI::Range(1, 10'000));
   CLI::Option* behaviour =
       app.add_option("--behaviour", role, std::string("what they do: ") + kRoleNames)
@@ -62,7 +64,7 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
       ->excludes(behaviour);
   app.add_option(
       "--replicas", out.replicas,
-      "so many bots, the first ones, keep a replica and compare digests; the others verify");
+      "this many bots, the first ones, keep a replica and compare digests; the others verify");
   app.add_option("--join-rate", out.join_rate, "bots a second that join")
       ->check(CLI::Range(0.1, 100'000.0));
   app.add_option("--name", out.name, "name of one bot; of several, NAME-1, NAME-2, ...")
@@ -71,22 +73,23 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
                    ? "a bot's name has 1 to 26 bytes"
                    : "";
       });
-  app.add_option("--key-dir", out.key_dir,
-                 "folder of their keys, made if missing; default: new keys each time")
+  app.add_option(
+         "--key-dir", out.key_dir,
+         "folder of their key files, which are made if missing; default: new keys each time")
       ->check(CLI::ExistingDirectory);
   app.add_option("--rate", out.rate, "edits, or joins of a join storm, a second, each bot")
       ->check(CLI::Range(0.001, 100'000.0));
   app.add_option("--duration", out.seconds, "seconds for which edits are due")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--edits", edits, "edits at most, each bot");
-  app.add_option(
-      "--sites", out.sites,
-      "building sites of the whole crowd, where several fleets share a world; default: --count");
-  app.add_option("--seed", out.seed, "draws everything the bots do");
+  app.add_option("--sites", out.sites,
+                 "building sites of all fleets that share the world; default: --count");
+  app.add_option("--seed", out.seed, "seed of everything that bots choose at random");
   app.add_option("--view", view, "view radius in chunks, both ways")
       ->check(CLI::Range(0U, unsigned{kViewRadiusMax}));
-  app.add_option("--patience", out.load_seconds,
-                 "seconds to wait for the world at the start and for the disk at the end")
+  app.add_option(
+         "--patience", out.load_seconds,
+         "seconds to wait for the world at the start and for the disk at the end; default 60")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--report", out.report, "write counts and latencies as JSON at the end");
   app.add_flag("--verbose", out.verbose, "log every step");
@@ -105,8 +108,9 @@ ParsedBotOptions parse_bot_options(int argc, const char* const* argv) {
   }
   try {
     app.parse(argc, argv);
-    const std::string wrong = parse_host_port(address, out.host, out.port);
-    if (!wrong.empty()) throw CLI::ValidationError("--connect", wrong);
+    auto server = parse_host_port(address, kDefaultPort);
+    if (!server) throw CLI::ValidationError("--connect", server.error());
+    out.server = *std::move(server);
     if (app.count("--mix") != 0) out.roles = roles_of(mix);
   } catch (const CLI::ParseError& e) {
     return {std::nullopt, app.exit(e) == 0 ? 0 : 2};

@@ -4,7 +4,7 @@
 
 #include "client/bots/headless_bot.hpp"
 #include "client/bots/replica_bot.hpp"
-#include "client/fleet/fleet.hpp"
+#include "client/fleet/connected_bot.hpp"
 #include "common/os/steady_clock.hpp"
 
 namespace runstone {
@@ -29,39 +29,41 @@ void add_session(FleetReport& report, const HeadlessBot& bot) {
 }
 
 template <class BotType>
-class Member final : public FleetBot {
+class ConnectedFleetBot final : public FleetBot {
  public:
   template <class... BotArguments>
-  Member(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
-      : member_(io, net, std::forward<BotArguments>(arguments)...) {}
+  ConnectedFleetBot(asio::io_context& io, const NetConfig& net, BotArguments&&... arguments)
+      : bot_(io, net, std::forward<BotArguments>(arguments)...) {}
 
-  Bot& bot() override { return member_.bot(); }
-  const NetStats& stats() const override { return member_.link().stats(); }
-  bool is_final() const override { return member_.link().is_final(); }
-  std::string failure(const std::string& what) const override { return member_.failure(what); }
-  void step(TimeUs now_us) override { member_.step(now_us); }
-  void leave(std::int64_t milliseconds) override { member_.leave(milliseconds); }
+  Bot& bot() override { return bot_.bot(); }
+  const NetStats& stats() const override { return bot_.link().stats(); }
+  bool is_final() const override { return bot_.link().is_final(); }
+  std::string failure(const std::string& what) const override { return bot_.failure(what); }
+  void step(TimeUs now_us) override { bot_.step(now_us); }
+  void leave(std::int64_t milliseconds) override { bot_.leave(milliseconds); }
   void add_to(FleetReport& report) const override {
-    const BotType& bot = member_.bot();
+    const BotType& bot = bot_.bot();
     report.counts.merge(bot.counts());
     report.bytes_received += stats().bytes_received.load();
     report.bytes_sent += stats().bytes_sent.load();
     report.traffic.add({stats().received.read(), stats().sent.read()});
-    for (const auto& [reason, count] : member_.link().losses()) report.losses[reason] += count;
+    for (const auto& [reason, count] : bot_.link().losses()) report.losses[reason] += count;
     add_session(report, bot);
   }
 
  private:
-  FleetMember<BotType> member_;
+  ConnectedBot<BotType> bot_;
 };
 
 }  // namespace
 
-std::unique_ptr<FleetBot> make_member(asio::io_context& io, const NetConfig& net,
-                                      const BotConfig& config, FleetStatistics& fleet,
-                                      bool has_replica) {
-  if (has_replica) return std::make_unique<Member<ReplicaBot>>(io, net, config, fleet);
-  return std::make_unique<Member<HeadlessBot>>(io, net, config, fleet, steady_now_us);
+std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const NetConfig& net,
+                                         const BotConfig& config, FleetStatistics& statistics,
+                                         bool has_replica) {
+  if (has_replica)
+    return std::make_unique<ConnectedFleetBot<ReplicaBot>>(io, net, config, statistics);
+  return std::make_unique<ConnectedFleetBot<HeadlessBot>>(io, net, config, statistics,
+                                                          steady_now_us);
 }
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// FleetBot: a bot of a crowd and its link, whichever kind of session it has.
+// FleetBot: a connected bot of a BehaviourFleet, with a replica or without one.
 #pragma once
 #include <asio/io_context.hpp>
 #include <cstdint>
@@ -17,18 +17,19 @@ class FleetBot {
   virtual ~FleetBot() = default;
   virtual Bot& bot() = 0;
   virtual const NetStats& stats() const = 0;
-  /// To try again is pointless.
+  /// Returns true if the server refused this bot for good.
   virtual bool is_final() const = 0;
-  /// "bot-3 was sent away: the server is full"
+  /// Returns a line such as "bot-3 does not see the world around it: the server is full".
   virtual std::string failure(const std::string& what) const = 0;
   virtual void step(TimeUs now_us) = 0;
+  /// Says goodbye and ends the link after `milliseconds` of running the io_context at most.
   virtual void leave(std::int64_t milliseconds) = 0;
   virtual void add_to(FleetReport& report) const = 0;
 };
 
-/// Also starts connecting. `io` and `crowd` must outlive the member.
-std::unique_ptr<FleetBot> make_member(asio::io_context& io, const NetConfig& net,
-                                      const BotConfig& config, FleetStatistics& fleet,
-                                      bool has_replica);
+/// Makes a bot, which starts connecting. `io` and `statistics` must outlive it.
+std::unique_ptr<FleetBot> make_fleet_bot(asio::io_context& io, const NetConfig& net,
+                                         const BotConfig& config, FleetStatistics& statistics,
+                                         bool has_replica);
 
 }  // namespace runstone

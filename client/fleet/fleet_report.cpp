@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of `bytes` within the report's seconds, those of one bot in one second.
+/// Returns `bytes` per bot and second of the report.
 double each_second(const FleetReport& report, std::uint64_t bytes) {
   const double of = static_cast<double>(std::max<std::size_t>(report.bots, 1)) * report.seconds;
   return of > 0 ? static_cast<double>(bytes) / of : 0;
@@ -102,13 +102,12 @@ std::string to_table(const FleetReport& report) {
   };
   std::string table = fmt::format(
       "bots {} ({} with a replica): {} edits due in {:.1f} s, {} submitted, {} confirmed, {} "
-      "rejected, {} "
-      "durable; {} not ready, {} refused\n",
+      "rejected, {} durable; {} not ready, {} refused\n",
       report.bots, report.replicas, c.due, report.seconds, c.submitted, c.confirmed, c.rejected,
       c.durable, c.not_ready, c.refused);
   table += histogram_line("due to confirmed", c.confirm_us);
   table += histogram_line("due to received and verified, over all subscribers", report.seen_us);
-  table += histogram_picture(report.seen_us);
+  table += histogram_bars(report.seen_us);
   table += "slowest of each second, ms:";
   for (const TimeUs worst_us : report.seen_worst_us)
     table += fmt::format(" {}", (worst_us + 500) / 1000);
@@ -121,8 +120,7 @@ std::string to_table(const FleetReport& report) {
       c.others, report.drifted, report.audited);
   table += fmt::format(
       "without a replica: {} commits of {} edits verified, {} chunk edits followed, {} snapshots, "
-      "{} chunks "
-      "resent, {} versions audited, {} violations\n",
+      "{} chunks resent, {} versions audited, {} violations\n",
       report.commits, report.commit_edits, v.followed, v.snapshots, v.resent, v.audited,
       report.violations.total());
   for (const auto& [name, entry] : report.violations.all()) {

@@ -1,4 +1,4 @@
-// FleetReport: what a crowd of bots did and saw.
+// FleetReport: the measurements of a BehaviourFleet.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -15,36 +15,36 @@
 
 namespace runstone {
 
-/// Summed over its bots.
+/// Sums over all bots.
 struct FleetReport {
-  std::size_t bots = 0, replicas = 0;  // of the bots, those with a replica
+  std::size_t bots = 0, replicas = 0;  // replicas: bots with a replica
   BotCounts counts;
-  Histogram seen_us;  // due -> commit received and verified, each edit at each bot that got it
-  std::vector<TimeUs> seen_worst_us;  // the slowest of the edits that were due in each second
+  Histogram seen_us;  // due -> commit received and verified; each edit at each bot that received it
+  std::vector<TimeUs> seen_worst_us;  // the slowest edit of those due in each second
   std::uint64_t unattributed = 0;     // edits received that no bot of the fleet made
   EditLedger::Standing standing;      // of the bots with a replica
-  std::uint64_t audited = 0,
-                drifted = 0;  // chunk digests compared with the server's, and found different
+  // Of the bots with a replica: chunk digests compared with the server's, and those that differed.
+  std::uint64_t audited = 0, drifted = 0;
   // Of the bots without a replica.
   std::uint64_t commits = 0, commit_edits = 0;
   VersionCounts versions;
   Violations violations;
   std::map<std::string, std::uint64_t> losses;       // connections lost or not made, by reason
-  std::uint64_t bytes_received = 0, bytes_sent = 0;  // all of the fleet's time
-  FleetTraffic traffic;                              // likewise
+  std::uint64_t bytes_received = 0, bytes_sent = 0;  // from the first connection on
+  FleetTraffic traffic;                              // from the first connection on
   double seconds = 0;                                // from the first due edit to the last
   // Within these seconds.
   std::array<std::uint64_t, kFrameClassCount> class_bytes{};  // messages received, by class
   std::uint64_t frame_bytes = 0;  // the same with frame headers, all classes
   ProcessTime process;            // spent by this process
   Histogram lag_us;               // how late the bots' steps were
-  std::string failure;            // why it ended early; empty: it did not
+  std::string failure;            // why the run ended early, or empty
 
-  /// Played to the end without a broken rule.
+  /// Returns true if the run was complete, no replica drifted and the server broke no rule.
   bool is_sound() const { return failure.empty() && drifted == 0 && violations.total() == 0; }
 };
 std::string to_json(const FleetReport& report);
-/// Some lines for standard output.
+/// Returns some lines for standard output.
 std::string to_table(const FleetReport& report);
 
 }  // namespace runstone

@@ -11,7 +11,7 @@ Result<RecordedLog, std::string> read_recorded_file(const std::string& file) {
   if (!in) return Unexpected<std::string>{file + ": cannot be read: " + std::strerror(errno)};
   auto log = read_recorded_log(
       [&in](std::uint64_t position, std::span<std::uint8_t> out) -> std::optional<std::size_t> {
-        in.clear();  // of an end that was read before
+        in.clear();  // an earlier read may have met the end
         if (!in.seekg(static_cast<std::streamoff>(position))) return std::nullopt;
         in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
         if (in.bad()) return std::nullopt;

@@ -1,4 +1,4 @@
-// A recorded log from a file. Blocks on the disk: for start-up.
+// Reads a recorded log from a file. It waits for the disk, so it is for the start of a program.
 #pragma once
 #include <string>
 
@@ -6,7 +6,8 @@
 
 namespace runstone {
 
-/// Reads and verifies the whole .rlog. The error is one line that names the file and the place in it.
+/// Reads and verifies the whole .rlog file. Fails with one line of text that names the file and the
+/// place in it.
 Result<RecordedLog, std::string> read_recorded_file(const std::string& file);
 
 }  // namespace runstone

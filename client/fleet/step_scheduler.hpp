@@ -1,4 +1,5 @@
-// StepScheduler: who of many is to be stepped next, by the time it is due. Each has one turn at a time. One thread.
+// StepScheduler: a queue of the times at which the bots of a fleet are to be stepped. Each bot has
+// at most one entry. One thread.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -14,33 +15,34 @@ namespace runstone {
 
 class StepScheduler {
  public:
-  struct Turn {
+  struct Step {
     TimeUs due_us = 0;
-    std::size_t who = 0;
-    friend auto operator<=>(const Turn&, const Turn&) = default;
+    std::size_t bot = 0;  // index
+    friend auto operator<=>(const Step&, const Step&) = default;
   };
-  void add(std::size_t who, TimeUs due_us) { turns_.push({due_us, who}); }
-  /// All turns that were added come now: what each has to do may have changed.
-  void hasten(TimeUs now_us) {
-    std::vector<Turn> turns;
-    for (; !turns_.empty(); turns_.pop())
-      turns.push_back({std::min(turns_.top().due_us, now_us), turns_.top().who});
-    turns_ = decltype(turns_)(std::greater<>(), std::move(turns));
+  void add(std::size_t bot, TimeUs due_us) { steps_.push({due_us, bot}); }
+  /// Makes every step due by `now_us`. Call it when a change gives all bots something to do.
+  void bring_forward(TimeUs now_us) {
+    std::vector<Step> steps;
+    for (; !steps_.empty(); steps_.pop())
+      steps.push_back({std::min(steps_.top().due_us, now_us), steps_.top().bot});
+    steps_ = decltype(steps_)(std::greater<>(), std::move(steps));
   }
-  /// The next turn that is due by now, taken out.
-  std::optional<Turn> take(TimeUs now_us) {
-    if (turns_.empty() || turns_.top().due_us > now_us) return std::nullopt;
-    const Turn turn = turns_.top();
-    turns_.pop();
-    return turn;
+  /// Removes and returns the first step that is due by `now_us`, or nullopt if none is.
+  std::optional<Step> take(TimeUs now_us) {
+    if (steps_.empty() || steps_.top().due_us > now_us) return std::nullopt;
+    const Step step = steps_.top();
+    steps_.pop();
+    return step;
   }
+  /// Returns the time of the first step, or nullopt if there is none.
   std::optional<TimeUs> next_us() const {
-    if (turns_.empty()) return std::nullopt;
-    return turns_.top().due_us;
+    if (steps_.empty()) return std::nullopt;
+    return steps_.top().due_us;
   }
 
  private:
-  std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns_;
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> steps_;
 };
 
 }  // namespace runstone

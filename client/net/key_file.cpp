@@ -26,7 +26,7 @@ bool parse_hex(const std::string& text, std::array<std::uint8_t, N>& out) {
          read == N;
 }
 
-[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+[[noreturn]] void throw_error(const std::string& file, const std::string& why) {
   throw std::runtime_error(file + ": " + why);
 }
 
@@ -38,11 +38,11 @@ KeySeed create_seed(const std::string& file) {
   KeySeed seed;
   randombytes_buf(seed.data(), seed.size());
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) refuse(file, std::strerror(errno));
+  if (fd < 0) throw_error(file, std::strerror(errno));
   const std::string text = to_hex(seed) + "\n";
   const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   const bool closed = ::close(fd) == 0;
-  if (!written || !closed) refuse(file, "cannot be written");
+  if (!written || !closed) throw_error(file, "cannot be written");
   return seed;
 }
 
@@ -52,15 +52,16 @@ KeyPair load_or_create_key(const std::string& file) {
   need_sodium();
   struct stat info{};
   if (::stat(file.c_str(), &info) != 0) {
-    if (errno != ENOENT) refuse(file, std::strerror(errno));
+    if (errno != ENOENT) throw_error(file, std::strerror(errno));
     return key_pair_of(create_seed(file));
   }
-  if ((info.st_mode & 077) != 0) refuse(file, "others may read this key: chmod 600 it");
+  if ((info.st_mode & 077) != 0)
+    throw_error(file, "other users may read this key: run chmod 600 on it");
   std::ifstream in(file);
   std::string line;
   KeySeed seed;
   if (!std::getline(in, line) || !parse_hex(line, seed))
-    refuse(file, "is not a key file (64 hex digits)");
+    throw_error(file, "is not a key file (64 hex digits)");
   return key_pair_of(seed);
 }
 
@@ -96,7 +97,8 @@ std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
     WorldId world_id;
     PublicKey server_key;
     if (!(fields >> world >> key) || !parse_hex(world, world_id) || !parse_hex(key, server_key)) {
-      refuse(file + ":" + std::to_string(number), "expected a world id and a server key in hex");
+      throw_error(file + ":" + std::to_string(number),
+                  "expected a world id and a server key in hex");
     }
     pinned[world_id] = server_key;
   }
@@ -105,12 +107,12 @@ std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file) {
 
 void save_pinned_servers(const std::string& key_file, const std::map<WorldId, PublicKey>& pinned) {
   const std::string file = key_file + kPinsSuffix;
-  // Renamed into place, so that a crash leaves the old list or the new one.
+  // A new file is renamed into place, so that after a crash the old list or the new one is there.
   const std::string fresh = file + ".new";
   std::ofstream out(fresh, std::ios::trunc);
   for (const auto& [world, key] : pinned) out << to_hex(world) << ' ' << to_hex(key) << '\n';
   out.close();
-  if (!out || ::rename(fresh.c_str(), file.c_str()) != 0) refuse(file, "cannot be written");
+  if (!out || ::rename(fresh.c_str(), file.c_str()) != 0) throw_error(file, "cannot be written");
 }
 
 }  // namespace runstone

@@ -1,7 +1,9 @@
-// Key file: a client's identity on disk, and the server keys it has come to trust.
-//   KEY FILE          one line, 64 hex digits: the Ed25519 seed; made with mode 0600 where missing
-//   KEY FILE.servers  one line per world: 32 hex digits world id, space, 64 hex digits server key
-// Blocks on the disk; for start-up and shut-down. Throws std::runtime_error with the file's name.
+// Key file: the identity of a client on disk, and the server keys that it trusts.
+//   KEY FILE          one line of 64 hex digits, the Ed25519 seed; created with mode 0600
+//   KEY FILE.servers  one line per world: 32 hex digits of world id, a space, 64 hex digits of
+//                     server key
+// The functions wait for the disk, so they are for the start and the end of a program. They throw
+// std::runtime_error with the file's name if a file cannot be read or written.
 #pragma once
 #include <map>
 #include <string>
@@ -11,16 +13,18 @@
 
 namespace runstone {
 
-/// Reads the key, or draws one and stores it. Refuses a file that others may read.
+/// Reads the key, or creates the file with a random key. Throws if other users may read the file.
 KeyPair load_or_create_key(const std::string& file);
-/// A key for this process only.
+/// Returns a random key.
 KeyPair random_key();
 
-/// Fresh randomness for hello.
+/// Random values for Hello.
 Nonce random_nonce();
 ClientInstance random_instance();
 
+/// Returns the server key of each known world; empty if the file is missing.
 std::map<WorldId, PublicKey> load_pinned_servers(const std::string& key_file);
+/// Replaces the file of known server keys.
 void save_pinned_servers(const std::string& key_file, const std::map<WorldId, PublicKey>& pinned);
 
 }  // namespace runstone

@@ -28,9 +28,9 @@ struct Link::State {
   State(asio::io_context& context, NetConfig net_config, LinkEvents& link_events)
       : io(context), config(std::move(net_config)), events(link_events) {}
 
-  // One connection.
+  // Of the current connection.
   Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
-  void tell_read();
+  void send_receive_ack();
   void enqueue(ConnectionNumber to, const EncodedMessage& message);
   void close_socket();
 
@@ -42,21 +42,21 @@ struct Link::State {
   asio::ip::tcp::resolver resolver{io};
   asio::ip::tcp::socket socket{io};
   asio::steady_timer pause{io};  // between attempts; for the connect timeout; while events are full
-  asio::steady_timer work_to_send{io};  // never expires: cancelled when there is something to send
+  asio::steady_timer work_to_send{io};  // never expires; cancelled when there is something to send
   bool stopping = false;
 
-  ConnectionNumber connection = 0;  // the last one made
+  ConnectionNumber connection = 0;  // the newest one
   bool up = false;
-  bool closing = false;  // close once everything is sent
+  bool closing = false;  // close once all queued messages are sent
   std::string why_closed;
-  std::uint16_t chunk_edge = 0;   // of this connection's world; 0 before welcome
-  std::uint64_t features = 0;     // in force; none before welcome
-  std::uint64_t chunk_bytes = 0;  // of frames of chunks read on this connection
-  std::array<std::uint64_t, kFrameClassCount>
-      frames_before{};  // read on it, up to the last message of the class
-  ReceiveAckScheduler report;
-  asio::steady_timer report_due{io};
-  bool is_report_due_set = false;
+  std::uint16_t chunk_edge = 0;   // of this connection's world; 0 before Welcome
+  std::uint64_t features = 0;     // in force; none before Welcome
+  std::uint64_t chunk_bytes = 0;  // of chunk frames read on this connection
+  /// Frames read on this connection up to the last message of each class.
+  std::array<std::uint64_t, kFrameClassCount> frames_before{};
+  ReceiveAckScheduler receive_acks;
+  asio::steady_timer ack_timer{io};
+  bool is_ack_timer_set = false;
   std::deque<EncodedMessage> edits, others;
   std::size_t queued_bytes = 0;
 };
@@ -93,21 +93,21 @@ Result<void> Link::State::take_message(FrameReader& reader, ByteView bytes, Time
   });
 }
 
-// Tells the server what was read, now or when it is due.
-void Link::State::tell_read() {
+// Acknowledges the chunk bytes read, now or when the acknowledgement is due.
+void Link::State::send_receive_ack() {
   if (!up || (features & kFeatureReceiveAck) == 0) return;
   const TimeUs now_us = steady_now_us();
-  if (report.is_due(chunk_bytes, now_us)) {
-    report.told(chunk_bytes, now_us);
+  if (receive_acks.is_due(chunk_bytes, now_us)) {
+    receive_acks.sent(chunk_bytes, now_us);
     enqueue(connection, encode_message(ReceiveAck{chunk_bytes}));
   }
-  const auto due_us = report.due(chunk_bytes);
-  if (!due_us || is_report_due_set) return;
-  is_report_due_set = true;
-  report_due.expires_after(std::chrono::microseconds(std::max<TimeUs>(*due_us - now_us, 0)));
-  report_due.async_wait([this](const std::error_code& /*cancelled*/) {
-    is_report_due_set = false;
-    tell_read();
+  const auto due_us = receive_acks.due(chunk_bytes);
+  if (!due_us || is_ack_timer_set) return;
+  is_ack_timer_set = true;
+  ack_timer.expires_after(std::chrono::microseconds(std::max<TimeUs>(*due_us - now_us, 0)));
+  ack_timer.async_wait([this](const std::error_code& /*cancelled*/) {
+    is_ack_timer_set = false;
+    send_receive_ack();
   });
 }
 
@@ -130,8 +130,8 @@ void Link::State::close_socket() {
   work_to_send.cancel();
 }
 
-// Coroutines: named functions over the state, results as tuples, no temporaries with destructors beside a
-// co_await.
+// The coroutines are named functions over the state. Results are tuples, and no expression with a
+// co_await has temporaries with destructors, because g++ 11 and 12 can destroy those twice.
 namespace {
 
 template <class State>
@@ -151,7 +151,7 @@ asio::awaitable<void> read_messages(State& state) {
       break;
     }
     state.chunk_bytes = reader.frame_bytes(FrameClass::chunks);
-    state.tell_read();
+    state.send_receive_ack();
     while (!state.stopping && state.events.is_full()) {
       state.pause.expires_after(milliseconds(1));
       co_await state.pause.async_wait(kTuple);
@@ -159,8 +159,8 @@ asio::awaitable<void> read_messages(State& state) {
   }
   state.up = false;
   state.close_socket();
-  state.report_due.cancel();
-  if (state.stopping) state.pause.cancel();  // stop() need not wait any longer
+  state.ack_timer.cancel();
+  if (state.stopping) state.pause.cancel();  // ends the wait of stop()
 }
 
 template <class State>
@@ -189,12 +189,13 @@ asio::awaitable<void> write_messages(State& state, ConnectionNumber mine) {
       continue;
     }
     const auto [error, count] = co_await asio::async_write(state.socket, asio::buffer(out), kTuple);
-    if (error) break;  // the reader sees it too and says why
+    if (error) break;  // the reader gets the same error and records the reason
     state.stats.bytes_sent.fetch_add(count, std::memory_order_relaxed);
   }
 }
 
-/// Resolves and connects; the socket is open afterwards iff the result is empty.
+/// Resolves the host and connects. Returns an empty text if the socket is open, otherwise the
+/// reason.
 template <class State>
 asio::awaitable<std::string> connect(State& state) {
   const std::string port = std::to_string(state.config.port);
@@ -232,7 +233,7 @@ asio::awaitable<void> keep_connected(State& state) {
       state.features = 0;
       state.chunk_bytes = 0;
       state.frames_before = {};
-      state.report = {};
+      state.receive_acks = {};
       state.edits.clear();
       state.others.clear();
       state.queued_bytes = 0;
@@ -282,7 +283,7 @@ void Link::stop(std::int64_t wait_ms) {
   state.pause.cancel();
   state.work_to_send.cancel();
   if (!state.up) return state.close_socket();
-  // The pause is free now that stopping is set: it bounds the wait for what is still being sent.
+  // The pause timer is unused once `stopping` is set. Here it bounds the wait for queued messages.
   state.pause.expires_after(milliseconds(wait_ms));
   state.pause.async_wait([raw = &state](const std::error_code& cancelled) {
     if (!cancelled && raw->up) raw->close_socket();

@@ -1,8 +1,9 @@
-// Link: a connection to the server that mends itself. It connects, cuts the bytes that come into messages,
-// decodes and verifies them, and sends what it is given; when the connection breaks it connects again, with
-// growing pauses, until stopped. Messages carry the number of their connection: what belongs to an older one is
-// dropped. It borrows its io_context, so one thread may carry one link (NetClient) or a thousand (bots).
-// Threads: all calls and callbacks on the thread that runs the io_context; one thread runs it.
+// Link: a connection to the server that is made again after a loss. It splits received bytes into
+// messages, decodes and verifies them, and sends messages. After a loss it connects again, with
+// growing pauses, until it is stopped. Messages carry the number of their connection; those of an
+// older connection are dropped. The io_context belongs to the caller, so one thread may run one
+// link (NetClient) or a thousand (bots).
+// Thread: all calls and callbacks on the one thread that runs the io_context.
 #pragma once
 #include <asio/io_context.hpp>
 #include <atomic>
@@ -16,8 +17,8 @@
 
 namespace runstone {
 
-/// Bytes to send that a link holds; beyond, the connection is cut: the session resumes and offers its edits
-/// again.
+/// The greatest size of a link's send queue. If it is exceeded, the link closes the connection. The
+/// session resumes on the next connection and offers its edits again.
 inline constexpr std::size_t kSendBytesMax = 8 * 1024 * 1024;
 
 using ConnectionNumber = std::uint64_t;  // from 1
@@ -25,49 +26,52 @@ using ConnectionNumber = std::uint64_t;  // from 1
 struct NetReceived {
   ConnectionNumber connection = 0;
   Message message;
-  std::size_t bytes = 0;       // of the message, without frame headers
-  TimeUs received_us = 0;      // steady clock: its last byte was read
-  TimeUs unpacked_us = 0;      // decoded and verified
-  std::int64_t unpack_ns = 0;  // spent on that
+  std::size_t bytes = 0;       // size of the message without frame headers
+  TimeUs received_us = 0;      // when its last byte was read, steady clock
+  TimeUs unpacked_us = 0;      // when it was decoded and verified
+  std::int64_t unpack_ns = 0;  // time spent decoding and verifying
 };
 
 struct NetConfig {
   std::string host;
   std::uint16_t port = 0;
-  std::size_t events_max = 4096;  // NetClient: events not taken
+  std::size_t events_max = 4096;  // of NetClient: events that were not taken yet
   std::int64_t connect_ms_max = 5'000;
-  std::int64_t pause_ms_first = 100,
-               pause_ms_max = 3'000;  // between attempts, doubling, +- a quarter at random
+  /// The pause between attempts starts with `first` and doubles up to `max`. A random quarter is
+  /// added or subtracted.
+  std::int64_t pause_ms_first = 100, pause_ms_max = 3'000;
 };
 
-/// Counts since the start, over all connections.
+/// Counts over all connections since the start.
 struct NetStats {
-  std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // frames included
-  TrafficMeter received, sent;  // messages; received: that were verified
+  std::atomic<std::uint64_t> bytes_received{0}, bytes_sent{0};  // with frame headers
+  TrafficMeter received, sent;  // messages; received ones count once they are verified
   std::atomic<std::uint64_t> connections{0};
 };
 
-/// What a link tells.
+/// The callbacks of a link.
 class LinkEvents {
  public:
   virtual ~LinkEvents() = default;
   virtual void on_connected(ConnectionNumber connection) = 0;
   virtual void on_received(NetReceived received) = 0;
-  /// Offers a message before it is decoded; `body` is 8-aligned and lives until the call returns, `chunk_edge` is 0 before
-  /// welcome. True: it was verified and taken, and on_received() is not told of it. An error closes the connection.
+  /// Offers a message before it is decoded. `body` is 8-aligned and lives until the call returns.
+  /// `chunk_edge` is 0 before Welcome. Returns true if the callee verified and handled the message;
+  /// then on_received() is not called for it. An error closes the connection.
   virtual Result<bool> on_bytes(FrameClass /*frame_class*/, ByteView /*body*/,
                                 std::uint16_t /*chunk_edge*/, TimeUs /*received_us*/) {
     return false;
   }
-  /// `connection` 0: no connection came up at all.
+  /// `connection` is 0 if no connection could be made.
   virtual void on_disconnected(ConnectionNumber connection, std::string why) = 0;
-  /// While true nothing more is read, and TCP holds the server back.
+  /// While this returns true the link reads nothing, and TCP holds the server back.
   virtual bool is_full() { return false; }
 };
 
 class Link {
  public:
-  /// `io` and `events` must outlive the link, and `io` must not be run any more when the link is destroyed.
+  /// `io` and `events` must outlive the link. `io` must not run any more when the link is
+  /// destroyed.
   Link(asio::io_context& io, NetConfig config, LinkEvents& events);
   ~Link();
   Link(const Link&) = delete;
@@ -75,12 +79,14 @@ class Link {
 
   /// Starts connecting. Call once.
   void start();
-  /// Queues a message. Of what is queued, edits go first. Ignored if the connection is gone.
+  /// Queues a message. Queued edits are sent before other messages. Does nothing if the connection
+  /// has ended.
   void send(ConnectionNumber connection, const EncodedMessage& message);
-  /// Closes this connection once everything queued is sent. Another one is made after a pause.
+  /// Closes this connection once all queued messages are sent. The link connects again after a
+  /// pause.
   void close(ConnectionNumber connection);
-  /// Ends for good after sending what is queued, but waits at most `wait_ms` for that. The io_context runs
-  /// out of the link's work then.
+  /// Stops the link after the queued messages are sent, or after `wait_ms`. Then the io_context has
+  /// no more work of the link.
   void stop(std::int64_t wait_ms);
   const NetStats& stats() const;
 

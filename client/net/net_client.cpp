@@ -34,7 +34,7 @@ struct NetClient::State final : private LinkEvents {
   const std::size_t events_max;
   const std::function<void()> wake;
   asio::io_context io{1};
-  Link link;  // belongs to the thread
+  Link link;  // used by the thread only
   std::mutex mutex;
   std::vector<NetEvent> events;  // guarded by mutex
   std::thread thread;

@@ -1,6 +1,8 @@
-// NetClient: one thread that carries one link to the server, for a program whose main thread must never wait.
-// Bounds: events not taken, `events_max` (full: reading stops and TCP holds the server back); bytes to send,
-// kSendBytesMax.
+// NetClient: a thread with one link to the server, for a program whose main thread must never wait.
+// Bounds:
+//   - `events_max` events that were not taken; beyond it the link stops reading and TCP holds the
+//     server back;
+//   - kSendBytesMax bytes to send; beyond it the link closes the connection.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -17,27 +19,25 @@ struct NetConnected {
   ConnectionNumber connection = 0;
 };
 struct NetDisconnected {
-  ConnectionNumber connection = 0;  // 0: no connection came up at all
+  ConnectionNumber connection = 0;  // 0: no connection could be made
   std::string why;
 };
 using NetEvent = std::variant<NetConnected, NetReceived, NetDisconnected>;
 
 class NetClient {
  public:
-  /// Starts connecting. `wake` is called from the network thread whenever there is an event to take.
+  /// Starts connecting. `wake` is called from the network thread after each new event.
   NetClient(NetConfig config, std::function<void()> wake);
   /// Stops and joins.
   ~NetClient();
   NetClient(const NetClient&) = delete;
   NetClient& operator=(const NetClient&) = delete;
 
-  /// Everything since the last call, in order.
+  /// Returns the events since the last call, in order.
   std::vector<NetEvent> take_events();
-  /// Queues a message. Of what is queued, edits go first. Ignored if the connection is gone.
+  /// These calls have the meaning of those of Link. stop() also waits for the thread to end.
   void send(ConnectionNumber connection, const EncodedMessage& message);
-  /// Closes this connection once everything queued is sent. Another one is made after a pause.
   void close(ConnectionNumber connection);
-  /// Ends for good after sending what is queued, but waits at most `milliseconds` for that.
   void stop(std::int64_t milliseconds);
   const NetStats& stats() const;
 

@@ -1,6 +1,8 @@
-// ReceiveAckScheduler: when a client tells the server how much terrain it has read, so that the server can tell how fast the link
-// is and how long its round trip. At most every kReceiveAckEveryUs, or each kReceiveAckEveryBytes where that comes first, but
-// never more often than every kReceiveAckUsMin; the last bytes are told too. Pure: times are arguments. One thread.
+// ReceiveAckScheduler: decides when a client acknowledges the chunk bytes it has read. From the
+// acknowledgements the server computes the rate and the round trip of the link. One is due every
+// kReceiveAckEveryUs, or after kReceiveAckEveryBytes if that is earlier, but no sooner than
+// kReceiveAckUsMin after the one before. The last bytes are acknowledged too. Pure: times are
+// arguments. One thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,26 +14,28 @@ namespace runstone {
 
 class ReceiveAckScheduler {
  public:
-  /// `total`: bytes of chunk frames read on this connection. Whether to tell it now; then told() follows.
+  /// Returns true if an acknowledgement is due. Then call sent(). `total` is the number of bytes of
+  /// chunk frames read on this connection.
   bool is_due(std::uint64_t total, TimeUs now_us) const {
     const auto due_us = due(total);
     return due_us && now_us >= *due_us;
   }
-  /// When `total` is to be told if nothing more comes; nothing if it was.
+  /// Returns when `total` is to be acknowledged if no more bytes come, or nullopt if it was
+  /// acknowledged.
   std::optional<TimeUs> due(std::uint64_t total) const {
-    if (total == told_) return std::nullopt;
-    if (!told_us_) return 0;
-    return *told_us_ +
-           (total - told_ >= kReceiveAckEveryBytes ? kReceiveAckUsMin : kReceiveAckEveryUs);
+    if (total == acknowledged_) return std::nullopt;
+    if (!sent_us_) return 0;
+    return *sent_us_ +
+           (total - acknowledged_ >= kReceiveAckEveryBytes ? kReceiveAckUsMin : kReceiveAckEveryUs);
   }
-  void told(std::uint64_t total, TimeUs now_us) {
-    told_ = total;
-    told_us_ = now_us;
+  void sent(std::uint64_t total, TimeUs now_us) {
+    acknowledged_ = total;
+    sent_us_ = now_us;
   }
 
  private:
-  std::uint64_t told_ = 0;
-  std::optional<TimeUs> told_us_;
+  std::uint64_t acknowledged_ = 0;
+  std::optional<TimeUs> sent_us_;
 };
 
 }  // namespace runstone

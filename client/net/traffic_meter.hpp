@@ -1,4 +1,5 @@
-// TrafficMeter: counts messages of one way by kind. One thread counts, any thread reads.
+// TrafficMeter: counts the messages of one direction by kind. Threads: one thread counts, any
+// thread reads.
 #pragma once
 #include <array>
 #include <atomic>
@@ -11,7 +12,7 @@ namespace runstone {
 
 class TrafficMeter {
  public:
-  /// One message of `bytes`, without the headers of the `frames` that carried it.
+  /// Counts a message of `bytes` bytes, without frame headers, that `frames` frames carried.
   void add(MessageKind kind, std::size_t bytes, std::uint64_t frames) {
     Cell& cell = cells_[kind];
     cell.messages.fetch_add(1, std::memory_order_relaxed);

@@ -1,4 +1,5 @@
-// WakeUp: other threads tell the main thread that there is something to do. A call before wait() is not lost.
+// WakeUp: lets other threads wake the main thread. A notify() before wait() is not lost. Thread:
+// any for notify(), one for wait().
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -15,7 +16,8 @@ class WakeUp {
     }
     condition_.notify_one();
   }
-  /// Returns at once if notify() was called since the last wait(), otherwise when it is, or after `longest`.
+  /// Returns at once if notify() was called since the last wait(), otherwise at the next notify()
+  /// or after `longest`.
   void wait(std::chrono::microseconds longest) {
     std::unique_lock lock(mutex_);
     condition_.wait_for(lock, longest, [this] { return pending_; });

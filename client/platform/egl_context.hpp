@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-/// Null on failure; the reason is appended to `tried`.
+/// Returns null on failure and appends the reason to `tried`.
 std::unique_ptr<GlContext> make_egl_surfaceless_context(std::string& tried);
 
 }  // namespace runstone

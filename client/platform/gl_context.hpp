@@ -1,6 +1,6 @@
-// GlContext: a current OpenGL context and where it came from. Headless: EGL surfaceless first, OSMesa second
-// (both without an X server). With a display: client/platform/window.hpp. Made current on the thread that
-// makes it, and used and destroyed there.
+// GlContext: a current OpenGL context. Off screen it is made by EGL surfaceless or, if that fails,
+// by OSMesa; neither needs an X server. client/platform/window.hpp makes the context of a window.
+// Thread: the context is current on the thread that makes it, and is used and destroyed there.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,18 +13,19 @@ class GlContext {
   virtual ~GlContext() = default;
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
-  /// Address of a GL function, for the loader.
+  /// Returns the address of a GL function by its name.
   using Loader = void (*(*)(const char*))();
   virtual Loader loader() const = 0;
   /// "EGL surfaceless", "OSMesa" or "GLFW".
   virtual const char* name() const = 0;
-  /// Whether the default framebuffer is seen by anybody.
+  /// Returns true if the default framebuffer is that of a window.
   virtual bool is_window() const { return false; }
-  /// Shows the default framebuffer; may wait for the display. Off screen there is nothing to show.
+  /// Shows the default framebuffer in the window; may wait for the display. Does nothing off
+  /// screen.
   virtual void swap() {}
 };
 
-/// Throws std::runtime_error that lists every path tried and why it failed.
+/// Throws std::runtime_error that lists each attempt and why it failed.
 std::unique_ptr<GlContext> make_headless_context();
 
 }  // namespace runstone

@@ -8,7 +8,8 @@
 namespace runstone {
 namespace {
 
-// Frames go to framebuffer objects; the context itself only wants some memory to call its window.
+// Frames are drawn into framebuffer objects. OSMesa still requires a buffer as the window of a
+// context.
 constexpr int kWindowSide = 16;
 
 class OsmesaContext final : public GlContext {

@@ -1,4 +1,4 @@
-// OpenGL in plain memory, for machines without EGL.
+// OpenGL in main memory, for machines without EGL.
 #pragma once
 #include <memory>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace runstone {
 
-/// Null on failure; the reason is appended to `tried`.
+/// Returns null on failure and appends the reason to `tried`.
 std::unique_ptr<GlContext> make_osmesa_context(std::string& tried);
 
 }  // namespace runstone

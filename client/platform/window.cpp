@@ -13,7 +13,7 @@ struct Window::State {
   GLFWwindow* window = nullptr;
   WindowInput pending;  // presses since the last poll
   bool captured = false;
-  bool have_cursor = false;  // the first position after capture is a start, not a movement
+  bool have_cursor = false;  // false until the first position after a capture, which is no movement
   double cursor_x = 0, cursor_y = 0;
 
   void capture(bool on) {
@@ -26,10 +26,10 @@ struct Window::State {
 
 namespace {
 
-std::string glfw_words() {
-  const char* words = nullptr;
-  glfwGetError(&words);
-  return words != nullptr ? words : "unknown GLFW error";
+std::string glfw_error_text() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "unknown GLFW error";
 }
 
 class WindowContext final : public GlContext {
@@ -37,7 +37,7 @@ class WindowContext final : public GlContext {
   explicit WindowContext(GLFWwindow* window) : window_(window) {
     glfwMakeContextCurrent(window_);
     if (glfwGetCurrentContext() != window_)
-      throw std::runtime_error("no OpenGL in the window: " + glfw_words());
+      throw std::runtime_error("no OpenGL in the window: " + glfw_error_text());
     glfwSwapInterval(1);
   }
   ~WindowContext() override { glfwMakeContextCurrent(nullptr); }
@@ -55,7 +55,7 @@ class WindowContext final : public GlContext {
 
 Window::Window(int width, int height, const std::string& title)
     : state_(std::make_unique<State>()) {
-  if (glfwInit() != GLFW_TRUE) throw std::runtime_error("no window: " + glfw_words());
+  if (glfwInit() != GLFW_TRUE) throw std::runtime_error("no window: " + glfw_error_text());
   constexpr std::array<std::array<int, 2>, 2> kVersions = {{{4, 5}, {3, 3}}};
   for (const auto& [major, minor] : kVersions) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
@@ -65,9 +65,9 @@ Window::Window(int width, int height, const std::string& title)
     if (state_->window != nullptr) break;
   }
   if (state_->window == nullptr) {
-    const std::string words = glfw_words();
+    const std::string text = glfw_error_text();
     glfwTerminate();
-    throw std::runtime_error("no window: " + words);
+    throw std::runtime_error("no window: " + text);
   }
   glfwSetWindowUserPointer(state_->window, state_.get());
   glfwSetMouseButtonCallback(state_->window, [](GLFWwindow* w, int button, int action, int) {

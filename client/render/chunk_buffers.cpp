@@ -23,7 +23,7 @@ ChunkBuffers::ChunkBuffers(std::int32_t edge, const ChunkMesh& mesh)
 void ChunkBuffers::draw(std::uint32_t first, std::uint32_t count) const {
   if (count == 0) return;
   glBindVertexArray(array_.get());
-  // Setting the pointer stands in for a base instance, which OpenGL 3.3 lacks.
+  // OpenGL 3.3 has no base instance, so the attribute pointer is set to the first quad.
   glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
   glVertexAttribIPointer(
       0, 2, GL_UNSIGNED_INT, sizeof(Quad),

@@ -1,4 +1,5 @@
-// ChunkBuffers: one chunk's quads on the GPU: opaque ones first, then transparent ones, in one buffer.
+// ChunkBuffers: the quads of one chunk on the GPU, in one buffer: the opaque ones, then the
+// transparent ones.
 #pragma once
 #include <cstdint>
 

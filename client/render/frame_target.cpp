@@ -17,7 +17,7 @@ void FrameTarget::bind(int width, int height) {
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.get());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw std::runtime_error("the driver refuses an off-screen target of this size");
+      throw std::runtime_error("the driver cannot make an off-screen target of this size");
     }
     width_ = width;
     height_ = height;

@@ -1,4 +1,4 @@
-// FrameTarget: the off-screen picture a frame is drawn into; grows and shrinks with the size asked for.
+// FrameTarget: the off-screen framebuffer of a frame.
 #pragma once
 #include "client/render/gl_handle.hpp"
 
@@ -6,7 +6,8 @@ namespace runstone {
 
 class FrameTarget {
  public:
-  /// Binds the target for drawing at this size, making it anew only when the size changed.
+  /// Binds the framebuffer for drawing at this size. Makes a new one only if the size changed.
+  /// Throws std::runtime_error if the driver cannot make one.
   void bind(int width, int height);
   GLuint framebuffer() const { return framebuffer_.get(); }
   int width() const { return width_; }

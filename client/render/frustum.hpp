@@ -1,5 +1,5 @@
-// Frustum: the six planes of a view, to skip chunks outside it. Camera-relative coordinates (eye at the
-// origin).
+// Frustum: the six planes of a view, for skipping chunks outside it. Coordinates are relative to
+// the eye.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
@@ -8,12 +8,13 @@ namespace runstone {
 
 class Frustum {
  public:
-  /// Planes of a clip-from-relative matrix. Source: Gribb and Hartmann 2001 (rows of the matrix, summed).
+  /// Takes the planes from a matrix that maps eye-relative coordinates to clip space. Source: Gribb
+  /// and Hartmann 2001 (sums of rows of the matrix).
   explicit Frustum(const glm::mat4& clip) {
     const glm::mat4 t = glm::transpose(clip);
     planes_ = {t[3] + t[0], t[3] - t[0], t[3] + t[1], t[3] - t[1], t[3] + t[2], t[3] - t[2]};
   }
-  /// False only if the box is wholly outside one plane.
+  /// Returns false only if the whole box is outside one plane.
   bool may_see(const glm::vec3& min, const glm::vec3& max) const {
     for (const glm::vec4& p : planes_) {
       const glm::vec3 far_corner{p.x > 0 ? max.x : min.x, p.y > 0 ? max.y : min.y,

@@ -1,4 +1,5 @@
-// Move-only owners of GL names. Destroyed on the GL thread with the context current.
+// Move-only owners of GL names. Thread: the GL thread, with the context current, also for
+// destruction.
 #pragma once
 #include <glad/gl.h>
 
@@ -81,7 +82,8 @@ using GlFramebuffer = GlHandle<GlFramebufferTraits>;
 using GlRenderbuffer = GlHandle<GlRenderbufferTraits>;
 using GlProgram = GlHandle<GlProgramTraits>;
 
-/// Compiles and links; throws std::runtime_error with `name` and the driver's log.
+/// Compiles and links a program. Throws std::runtime_error with `name` and the driver's log on
+/// failure.
 GlProgram link_program(const char* name, const char* vertex_source, const char* fragment_source);
 
 }  // namespace runstone

@@ -36,7 +36,8 @@ Image halved(const Image& image) {
 }
 
 bool write_png(const std::string& file, const Image& image) {
-  // Flat faces repeat: without a filter before compression these pictures are smaller, and made in half the time.
+  // Flat faces repeat. Without a filter before compression the file is smaller and takes half the
+  // time.
   stbi_write_force_png_filter = 0;
   return stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(),
                         image.width * 3) != 0;

@@ -1,4 +1,4 @@
-// Image: a picture in memory, and its way to a file.
+// Image: a picture in memory, which can be written to a PNG file.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,11 +11,11 @@ struct Image {
   std::vector<std::uint8_t> rgb;  // rows from the top, 3 bytes a pixel, sRGB
 };
 
-/// Half the size each way, averaging 2 x 2 pixels: a frame drawn twice as large becomes a smooth picture.
-/// An odd last row or column is dropped.
+/// Returns the image at half the width and height, with the mean of each 2 x 2 pixels. It makes a
+/// smooth picture of a frame that was drawn twice as large. An odd last row or column is dropped.
 Image halved(const Image& image);
 
-/// Writes a PNG; false if the file cannot be written.
+/// Writes a PNG file. Returns false if it cannot be written.
 bool write_png(const std::string& file, const Image& image);
 
 }  // namespace runstone

@@ -17,7 +17,8 @@
 namespace runstone {
 namespace {
 
-/// Corners of the unit cube as 12 edges, then as 12 triangles.
+/// The corners of the unit cube as the ends of 12 edges and as 12 triangles. Bits 0, 1, 2 of a
+/// corner are x, y, z.
 constexpr int kEdgeVertices = 24;
 constexpr int kCubeVertices = 36;
 constexpr std::array<std::uint8_t, kEdgeVertices> kEdges = {0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7,
@@ -68,8 +69,8 @@ struct Renderer::State {
   }
 
   void set_materials(const MaterialTable& materials) {
-    // Light is added in linear space, so the palette is stored linear; 16-bit floats keep dark colours
-    // smooth.
+    // Light is added in linear space, so the palette is stored in linear space. 16-bit floats keep
+    // dark colours smooth.
     std::vector<float> texels(std::size_t{256} * 256 * 4, 1.0F);
     for (std::size_t id = 0; id < materials.size(); ++id) {
       const auto& colour = materials[static_cast<Material>(id)].colour;
@@ -131,7 +132,8 @@ struct Renderer::State {
     glUniform1i(glGetUniformLocation(quad_program.get(), "palette"), 0);
     glEnable(GL_CULL_FACE);
     glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0002F);
-    for (const Visible& v : visible) {  // near to far: hidden pixels fail the depth test early
+    // From near to far, so that hidden pixels fail the depth test early.
+    for (const Visible& v : visible) {
       place(v);
       v.buffers->draw_opaque();
       stats.quads_drawn += v.buffers->opaque_count() + v.buffers->transparent_count();
@@ -140,9 +142,9 @@ struct Renderer::State {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
-    glDisable(GL_CULL_FACE);  // water is seen from below, too
-    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"),
-                0.0F);  // overlaps would blend twice
+    glDisable(GL_CULL_FACE);  // water is also seen from below
+    // Quads that overlap would be blended twice.
+    glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0F);
     for (auto v = visible.rbegin(); v != visible.rend(); ++v) {
       if (v->buffers->transparent_count() == 0) continue;
       place(*v);
@@ -158,7 +160,8 @@ struct Renderer::State {
     set_matrix(marker_program, "clip", clip);
     glBindVertexArray(marker_array.get());
     for (const Marker& m : markers) {
-      // Outlines stand off the voxel a little, or they would fight its faces for depth.
+      // An outline is a little larger than its voxel. Otherwise the depth test would hide parts of
+      // it.
       const double grow = m.filled ? 0.0 : 0.01;
       glUniform3f(glGetUniformLocation(marker_program.get(), "origin"),
                   static_cast<float>(m.x - grow - camera.x),
@@ -210,7 +213,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
   const glm::vec3 forward{static_cast<float>(std::sin(camera.yaw) * std::cos(camera.pitch)),
                           static_cast<float>(std::sin(camera.pitch)),
                           static_cast<float>(std::cos(camera.yaw) * std::cos(camera.pitch))};
-  // Straight up and down, the up vector must not be parallel to the view.
+  // The up vector must not be parallel to the view, which may point straight up or down.
   const glm::vec3 up = std::abs(forward.y) > 0.999F
                            ? glm::vec3{static_cast<float>(std::sin(camera.yaw)), 0,
                                        static_cast<float>(std::cos(camera.yaw))}
@@ -234,7 +237,7 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
 void Renderer::finish() {
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   constexpr GLuint64 kNanosecondsMax =
-      30'000'000'000;  // a hung driver must not hang the client for ever
+      30'000'000'000;  // a driver that hangs must not hang the client
   const GLenum waited = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
   glDeleteSync(fence);
   if (waited == GL_TIMEOUT_EXPIRED)

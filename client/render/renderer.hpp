@@ -1,7 +1,8 @@
-// Renderer: draws chunk meshes by instancing packed quads (8 bytes each, unpacked in the vertex shader), with
-// sun, sky, fog and a blended pass for transparent materials. OpenGL 4.5 core where there, 3.3 core as the
-// floor. All calls from the one thread whose context is current. Chunk positions are subtracted from the eye
-// in integers and doubles before they become floats, so far-away worlds do not jitter.
+// Renderer: draws chunk meshes with sun, sky and fog, and transparent materials in a blended pass.
+// Quads are packed into 8 bytes, drawn as instances and unpacked in the vertex shader. Requires
+// OpenGL 3.3 core or newer. The position of the eye is subtracted from chunk positions in double
+// precision before they become floats, so that places far from the origin do not jitter. Thread:
+// all calls on the one thread whose context is current.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,12 +15,12 @@
 
 namespace runstone {
 
-/// Right-handed, y up. yaw 0 looks along +z and grows towards +x; pitch is positive upward. Angles in
-/// radians.
+/// The axes are right-handed with y up. Angles are in radians. Yaw 0 looks along +z and grows
+/// towards +x. Pitch is positive upward.
 struct Camera {
   double x = 0, y = 0, z = 0;  // eye, voxels
   double yaw = 0, pitch = 0;
-  double fov_y = 1.2;  // radians
+  double fov_y = 1.2;  // vertical field of view
   double near = 0.1, far = 1000;
 };
 
@@ -29,39 +30,41 @@ struct RenderStats {
   std::uint64_t gpu_bytes = 0;
 };
 
-/// A box to outline (picked voxel) or a coloured marker (another player), in world voxels.
+/// A box in world voxels: the outline of the picked voxel, or the body of another player.
 struct Marker {
   double x = 0, y = 0, z = 0;  // smallest corner
   double size_x = 1, size_y = 1, size_z = 1;
   std::uint8_t r = 255, g = 255, b = 255;
-  bool filled = false;  // filled box, or edges only
+  bool filled = false;  // false: edges only
 };
 
-/// Finds a GL function by name; what eglGetProcAddress, OSMesaGetProcAddress and glfwGetProcAddress are.
+/// Finds a GL function by name. eglGetProcAddress, OSMesaGetProcAddress and glfwGetProcAddress have
+/// this type.
 using GlContextLoader = void (*(*)(const char*))();
 
 class Renderer {
  public:
-  /// Compiles shaders; throws std::runtime_error with the driver's log on failure.
+  /// Compiles the shaders. Throws std::runtime_error with the driver's log on failure.
   explicit Renderer(GlContextLoader loader);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   void set_materials(const MaterialTable& materials);
-  /// Replaces the chunk's quads on the GPU; an empty mesh removes it. `edge` in voxels.
+  /// Replaces the chunk's quads on the GPU. An empty mesh removes the chunk. `edge` is in voxels.
   void upload(const ChunkKey& key, std::int32_t edge, const ChunkMesh& mesh);
   void remove(const ChunkKey& key);
 
-  /// Draws into an own off-screen target of width x height.
+  /// Draws into the renderer's off-screen target of width x height pixels.
   RenderStats draw(const Camera& camera, int width, int height,
                    std::span<const Marker> markers = {});
-  /// Blocks until the GPU has finished what draw() queued (a fence): the "presented" moment of a headless
-  /// client. Throws std::runtime_error if it never does, or has no memory left.
+  /// Waits for a fence after the commands that draw() queued. Off screen this is the moment at
+  /// which a frame is presented. Throws std::runtime_error if the fence does not come within 30 s
+  /// or the GPU has no memory left.
   void finish();
-  /// What the last draw() made. Requires a draw() before.
+  /// Returns the last frame. Requires a draw() before.
   Image read_image();
-  /// Copies the last draw() to the window's default framebuffer.
+  /// Copies the last frame to the window's default framebuffer.
   void present(int window_width, int window_height);
 
  private:

@@ -1,9 +1,10 @@
-// GLSL 3.30, so that every context from 3.3 core on runs them. One place for the look: sun, sky, fog.
+// The shaders, in GLSL 3.30 for OpenGL 3.3 core and newer.
 #pragma once
 
 namespace runstone {
 
-// Shared by sky and terrain: what the sky looks like in a direction, so that fog fades into exactly that.
+// The colour of the sky in a direction. Sky and terrain share it, so that fog fades into exactly
+// this colour.
 #define RUNSTONE_SKY_GLSL                                                                         \
   "const vec3 kSun = normalize(vec3(0.55, 0.70, 0.35));\n"                                        \
   "vec3 sky(vec3 d) {\n"                                                                          \
@@ -38,13 +39,14 @@ inline constexpr const char* kQuadVertexShader =
     "  bool positive = (d & 1u) != 0u;\n"
     "  int corner = gl_VertexID & 3;\n"
     "  float cu = float(corner & 1), cv = float(corner >> 1);\n"
-    // A negative face swaps u's direction, so that its strip winds the other way round.
+    // A negative face reverses u, so that its strip has the opposite winding.
     "  if (!positive) cu = 1.0 - cu;\n"
     "  vec3 n = vec3(0.0), u = vec3(0.0), v = vec3(0.0);\n"
     "  n[axis] = 1.0; u[(axis + 1) % 3] = 1.0; v[(axis + 2) % 3] = 1.0;\n"
     "  vec3 local = base + (positive ? n : vec3(0.0)) + u * (cu * w) + v * (cv * h);\n"
     "  relative = origin + local;\n"
-    // Merged quads meet in T-junctions; growing each by a fraction of a pixel closes the pinholes.
+    // Merged quads meet in T-junctions. Each quad grows by a fraction of a pixel, which closes
+    // pinholes there.
     "  relative += (u * (cu * 2.0 - 1.0) + v * (cv * 2.0 - 1.0)) * length(relative) * seam;\n"
     "  voxel = pattern + local - (positive ? n : -n) * 0.5;\n"
     "  normal = positive ? n : -n;\n"
@@ -74,7 +76,8 @@ inline constexpr const char* kQuadFragmentShader =
     "  vec3 light = vec3(1.00, 0.93, 0.80) * (0.75 * sun) + mix(vec3(0.33, 0.31, 0.30), vec3(0.44, "
     "0.52, "
     "0.62), skylight);\n"
-    // Each voxel differs a little, so that merged faces still read as voxels; fades before it would flicker.
+    // Each voxel has a slightly different tint, so that merged faces still look like voxels. The
+    // tint fades out with distance before it would flicker.
     "  vec3 face = abs(normal);\n"
     "  vec2 st = face.x > 0.5 ? voxel.yz : face.y > 0.5 ? voxel.zx : voxel.xy;\n"
     "  float pixel = max(fwidth(st.x), fwidth(st.y));\n"
@@ -89,7 +92,8 @@ inline constexpr const char* kQuadFragmentShader =
     "fog));\n"
     "}\n";
 
-// One triangle over the screen; the direction comes from the inverse of the rotation and projection.
+// One triangle covers the screen. The inverse of view and projection gives the direction of each
+// pixel.
 inline constexpr const char* kSkyVertexShader =
     "#version 330 core\n"
     "uniform mat4 relative_from_clip;\n"

@@ -47,7 +47,7 @@ std::string histogram_line(std::string_view what, const Histogram& us) {
                      value_text(us.max()), us.count());
 }
 
-std::string histogram_picture(const Histogram& us) {
+std::string histogram_bars(const Histogram& us) {
   constexpr std::size_t kBarMax = 50;
   const auto rows = us.rows();
   std::uint64_t most = 1;

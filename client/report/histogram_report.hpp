@@ -1,4 +1,4 @@
-// How a fleet's report shows a histogram of durations in microseconds.
+// Histograms of durations, in microseconds, in the report of a fleet.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,13 +8,15 @@
 
 namespace runstone {
 
-/// {"count", "infinite", "below_zero", "mean", "p50", "p90", "p99", "p99_9", "max", "rows": [[from, below, count], ...]}:
-/// microseconds; "infinite" in place of a number for what never came, and null where nothing was counted. `rows` as of
-/// Histogram::rows(): with `infinite` they add up to `count`.
+/// Returns {"count", "infinite", "below_zero", "mean", "p50", "p90", "p99", "p99_9", "max", "rows":
+/// [[from, below, count], ...]}, durations in microseconds. An infinite value is the word
+/// "infinite", and a value of an empty histogram is null. `rows` are those of Histogram::rows();
+/// with `infinite` they add up to `count`.
 nlohmann::ordered_json histogram_json(const Histogram& us);
-/// "what, ms: p50 1.20 p90 3.40 p99 5.60 p99.9 7.80 max 9.10, 2000 counted" and a line end.
+/// Returns a line such as "what, ms: p50 1.20 p90 3.40 p99 5.60 p99.9 7.80 max 9.10, 2000
+/// counted\n".
 std::string histogram_line(std::string_view what, const Histogram& us);
-/// The rows as lines with bars.
-std::string histogram_picture(const Histogram& us);
+/// Returns a line with a bar for each row.
+std::string histogram_bars(const Histogram& us);
 
 }  // namespace runstone

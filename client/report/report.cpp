@@ -1,8 +1,8 @@
 #include "client/report/report.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -35,17 +35,17 @@ Json histogram_json(const Histogram& histogram) {
   return out;
 }
 
-Json way_json(const PathReport& way) {
+Json path_json(const PathReport& path) {
   Json out;
-  out["edits"] = way.edits;
-  out["without_effect"] = way.without_effect;
-  out["left_view"] = way.left_view;
-  out["unknown_submit"] = way.unknown_submit;
+  out["edits"] = path.edits;
+  out["without_effect"] = path.without_effect;
+  out["left_view"] = path.left_view;
+  out["unknown_submit"] = path.unknown_submit;
   Json since = Json::object(), step = Json::object();
   for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
     const char* const name = to_string(static_cast<LatencyStage>(s));
-    if (way.since_submit[s].count() != 0) since[name] = histogram_json(way.since_submit[s]);
-    if (way.step[s].count() != 0) step[name] = histogram_json(way.step[s]);
+    if (path.since_submit[s].count() != 0) since[name] = histogram_json(path.since_submit[s]);
+    if (path.step[s].count() != 0) step[name] = histogram_json(path.step[s]);
   }
   out["since_submit"] = std::move(since);
   out["step"] = std::move(step);
@@ -112,24 +112,48 @@ Json cache_json(const std::optional<CacheCounters>& c) {
               {"databases_set_aside", c->databases_set_aside}};
 }
 
-/// Milliseconds, or "inf", or "-" where nothing was measured.
+/// Returns milliseconds, "inf", or "-" if nothing was measured.
 std::string cell(const std::optional<std::int64_t>& us) {
   if (!us) return "-";
   if (*us == Histogram::kInfinite) return "inf";
   return fmt::format("{:.2f}", static_cast<double>(*us) / 1000);
 }
 
-void add_row(std::string& out, const char* way, const char* stage, const Histogram& h) {
+void add_row(std::string& out, const char* path, const char* stage, const Histogram& h) {
   if (h.count() == 0) return;
-  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", way,
+  fmt::format_to(std::back_inserter(out), "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", path,
                  stage, h.count(), cell(h.percentile(0.5)), cell(h.percentile(0.9)),
                  cell(h.percentile(0.99)), cell(h.max()));
 }
 
-double per_chunk(const ChunkStats& chunks) {
-  return chunks.chunks_meshed == 0
-             ? 0
-             : static_cast<double>(chunks.mesh_jobs) / static_cast<double>(chunks.chunks_meshed);
+double per_chunk(const MeshStats& meshes) {
+  return meshes.chunks == 0 ? 0
+                            : static_cast<double>(meshes.jobs) / static_cast<double>(meshes.chunks);
+}
+
+/// `edge`: of a chunk, voxels; 0 or less before a world was open.
+void add_chunk_lines(std::string& out, const ClientReport& report, std::int32_t edge) {
+  const auto into = std::back_inserter(out);
+  const SnapshotStats& snapshots = report.snapshots;
+  const auto each = [&snapshots](std::uint64_t total) {
+    return snapshots.count == 0 ? 0.0
+                                : static_cast<double>(total) / static_cast<double>(snapshots.count);
+  };
+  const MeshStats& meshes = report.meshes;
+  const Extent extent = Extent::cube(static_cast<unsigned>(std::max(edge, 0)));
+  fmt::format_to(into,
+                 "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as "
+                 "raw runs, {} as a dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
+                 snapshots.count, snapshots.runs.mean().value_or(0), each(snapshots.wire_bytes),
+                 each(snapshots.raw_bytes), extent.volume() * sizeof(Material),
+                 snapshots.unpack_ns.mean().value_or(0) / 1000,
+                 meshes.whole_ns.mean().value_or(0) / 1000);
+  fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(meshes),
+                 meshes.jobs, meshes.chunks);
+  fmt::format_to(into,
+                 "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
+                 meshes.layers_ns.count(), meshes.layers_ns.mean().value_or(0) / 1000,
+                 static_cast<double>(meshes.kept_bytes) / (1 << 20));
 }
 
 }  // namespace
@@ -148,29 +172,31 @@ std::string to_json(const ClientReport& report, const ClientSession& session) {
   }
   Json latency;
   for (std::size_t w = 0; w < kEditPathCount; ++w) {
-    const auto way = static_cast<EditPath>(w);
-    latency[to_string(way)] = way_json(report.latency[way]);
+    const auto path = static_cast<EditPath>(w);
+    latency[to_string(path)] = path_json(report.latency[path]);
   }
   latency["own_durable"] = histogram_json(report.latency.durable);
   latency["own_rejected"] = report.latency.rejected;
   latency["own_unseen"] = report.latency.unseen;
+  latency["own_refused"] = report.edits_refused;
   out["latency_us"] = std::move(latency);
   out["join"] = Json{{"near", part_json(report.join.near)}, {"view", part_json(report.join.view)}};
-  const ChunkStats& chunks = report.chunks;
+  const SnapshotStats& snapshots = report.snapshots;
   const char* encoding = "none";
   if (session.welcome()) encoding = name_of(session.welcome()->encoding);
   out["snapshots"] = Json{{"encoding", encoding},
-                          {"count", chunks.snapshots},
-                          {"wire_bytes", chunks.wire_bytes},
-                          {"raw_bytes", chunks.raw_bytes},
-                          {"runs", histogram_json(chunks.runs)},
-                          {"unpack_ns", histogram_json(chunks.unpack_ns)}};
-  out["mesh"] = Json{{"jobs", chunks.mesh_jobs},
-                     {"chunks", chunks.chunks_meshed},
-                     {"per_chunk", per_chunk(chunks)},
-                     {"kept_bytes", chunks.kept_mesh_bytes},
-                     {"whole_ns", histogram_json(chunks.whole_ns)},
-                     {"layers_ns", histogram_json(chunks.layers_ns)}};
+                          {"count", snapshots.count},
+                          {"wire_bytes", snapshots.wire_bytes},
+                          {"raw_bytes", snapshots.raw_bytes},
+                          {"runs", histogram_json(snapshots.runs)},
+                          {"unpack_ns", histogram_json(snapshots.unpack_ns)}};
+  const MeshStats& meshes = report.meshes;
+  out["mesh"] = Json{{"jobs", meshes.jobs},
+                     {"chunks", meshes.chunks},
+                     {"per_chunk", per_chunk(meshes)},
+                     {"kept_bytes", meshes.kept_bytes},
+                     {"whole_ns", histogram_json(meshes.whole_ns)},
+                     {"layers_ns", histogram_json(meshes.layers_ns)}};
   out["cache"] = cache_json(report.cache);
   out["frames"] = Json{{"presented", report.frames.presented},
                        {"draw_us", histogram_json(report.frames.draw_us)}};
@@ -192,10 +218,10 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
   fmt::format_to(into, "{:<14} {:<10} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "edits (ms)", "until",
                  "count", "p50", "p90", "p99", "max");
   for (std::size_t w = 0; w < kEditPathCount; ++w) {
-    const auto way = static_cast<EditPath>(w);
+    const auto path = static_cast<EditPath>(w);
     for (std::size_t s = 0; s < kLatencyStageCount; ++s) {
-      add_row(out, to_string(way), to_string(static_cast<LatencyStage>(s)),
-              report.latency[way].since_submit[s]);
+      add_row(out, to_string(path), to_string(static_cast<LatencyStage>(s)),
+              report.latency[path].since_submit[s]);
     }
   }
   add_row(out, "own", "durable", report.latency.durable);
@@ -203,28 +229,9 @@ std::string to_table(const ClientReport& report, const ClientSession& session) {
     fmt::format_to(into, "clock offset error: at most {:.3f} ms\n",
                    static_cast<double>(session.clock().error_us()) / 1000);
   }
-  const ChunkStats& chunks = report.chunks;
-  const auto each = [&chunks](std::uint64_t total) {
-    return chunks.snapshots == 0
-               ? 0.0
-               : static_cast<double>(total) / static_cast<double>(chunks.snapshots);
-  };
-  const Extent extent =
-      Extent::cube(static_cast<unsigned>(std::max(session.replica().chunk_edge(), 0)));
-  fmt::format_to(into,
-                 "chunks: {} snapshots; means: {:.0f} runs, {:.0f} bytes on the wire, {:.0f} as "
-                 "raw runs, {} as a "
-                 "dense grid; unpack {:.1f} us, mesh {:.1f} us\n",
-                 chunks.snapshots, chunks.runs.mean().value_or(0), each(chunks.wire_bytes),
-                 each(chunks.raw_bytes), extent.volume() * sizeof(Material),
-                 chunks.unpack_ns.mean().value_or(0) / 1000,
-                 chunks.whole_ns.mean().value_or(0) / 1000);
-  fmt::format_to(into, "meshes per chunk: {:.2f} ({} of {} chunks)\n", per_chunk(chunks),
-                 chunks.mesh_jobs, chunks.chunks_meshed);
-  fmt::format_to(into,
-                 "meshes of changed layers only: {}, each {:.1f} us; {:.1f} MiB of meshes kept\n",
-                 chunks.layers_ns.count(), chunks.layers_ns.mean().value_or(0) / 1000,
-                 static_cast<double>(chunks.kept_mesh_bytes) / (1 << 20));
+  if (report.edits_refused != 0)
+    fmt::format_to(into, "edits refused by this client: {}\n", report.edits_refused);
+  add_chunk_lines(out, report, session.replica().chunk_edge());
   if (report.frames.presented != 0) {
     fmt::format_to(into, "frames: {}, each {} ms (p50)\n", report.frames.presented,
                    cell(report.frames.draw_us.percentile(0.5)));

@@ -1,4 +1,4 @@
-// Report: what a client measured, as JSON and as a table for people.
+// ClientReport: the measurements of a client, as JSON and as a table for people.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,52 +11,63 @@
 
 namespace runstone {
 
-/// Chunks as they came and were meshed.
-struct ChunkStats {
-  std::uint64_t snapshots = 0;
+/// Chunk snapshots received.
+struct SnapshotStats {
+  std::uint64_t count = 0;
   std::uint64_t wire_bytes = 0;  // messages, frame headers not counted
   std::uint64_t raw_bytes = 0;   // the same chunks in the raw encoding
   Histogram runs;                // per snapshot
   Histogram unpack_ns;           // per snapshot: verify, decode, validate
-  Histogram whole_ns;            // per mesh of a whole chunk
-  Histogram layers_ns;           // per mesh of what changed since the one before
-  std::uint64_t mesh_jobs = 0, chunks_meshed = 0;
-  std::uint64_t kept_mesh_bytes = 0;  // of the newest meshes of all chunks in view, at the end
 };
 
-/// Frames as they were drawn, on the draw thread.
+/// Meshes made.
+struct MeshStats {
+  Histogram whole_ns;            // per mesh of a whole chunk
+  Histogram layers_ns;           // per mesh of the layers that changed since the chunk's last mesh
+  std::uint64_t jobs = 0;        // meshes of either kind
+  std::uint64_t chunks = 0;      // chunks meshed at least once
+  std::uint64_t kept_bytes = 0;  // the newest meshes of all chunks in view, at the end
+};
+
+/// Frames drawn by the draw thread.
 struct FrameStats {
   std::uint64_t presented = 0;
-  Histogram draw_us;  // per frame: from its start until it is done (LatencyStage::presented)
+  Histogram draw_us;  // per frame, from its start until it was presented
 };
 
 struct NetCounts {
   std::uint64_t bytes_received = 0, bytes_sent = 0;
-  std::uint64_t control_bytes = 0, edit_bytes = 0, chunk_bytes = 0;  // messages received, by class
+  std::uint64_t control_bytes = 0, edit_bytes = 0, chunk_bytes = 0;  // received messages, by class
   std::uint64_t messages_received = 0, connections = 0;
 };
 
 struct ClientReport {
-  std::string renderer;  // "none" or the context's name
+  std::string renderer;  // name of the OpenGL context, or "none"
   double seconds = 0;
   LatencyReport latency;
   JoinReport join;
-  ChunkStats chunks;
+  std::uint64_t edits_refused = 0;  // local edits that this client did not accept, by EditTool
+  SnapshotStats snapshots;
+  MeshStats meshes;
   FrameStats frames;
   NetCounts net;
-  std::optional<CacheCounters> cache;  // nothing without one
+  std::optional<CacheCounters> cache;  // nullopt without a cache
 };
 
-/// Durations in microseconds unless named otherwise; what was never seen is the string "inf".
+/// Durations are in microseconds where the key names no other unit. An infinite value is the string
+/// "inf".
 std::string to_json(const ClientReport& report, const ClientSession& session);
 
-/// A few lines for standard output: latency by stage, meshes per chunk, dense expansions.
+/// Returns the closing table for standard output: latency by stage, chunks and meshes, frames,
+/// drift, dense expansions.
 std::string to_table(const ClientReport& report, const ClientSession& session);
 
-/// {"world_id", "seq", "chunks": [{"lod", "x", "y", "z", "epoch", "seq", "digest"}]}: all confirmed chunks,
-/// their digests recomputed from runs. False if the file cannot be written.
+/// Writes {"world_id", "seq", "chunks": [{"lod", "x", "y", "z", "epoch", "seq", "digest"}]} with
+/// all confirmed chunks. The digests are recomputed from the runs. Returns false if the file cannot
+/// be written.
 bool write_digests(const std::string& file, const ClientSession& session);
 
+/// Replaces the file. Returns false if it cannot be written.
 bool write_text(const std::string& file, const std::string& text);
 
 }  // namespace runstone

@@ -32,15 +32,15 @@ Json json_of(const Traffic& traffic) {
   return {{"by_kind", std::move(kinds)}, {"by_class", std::move(classes)}};
 }
 
-std::string row(const char* way, const char* name, const KindTraffic& traffic) {
-  return fmt::format("{:<9} {:<18} {:>9} {:>12} {:>9} {:>10.1f}\n", way, name, traffic.messages,
-                     traffic.bytes, traffic.frames,
+std::string row(const char* direction, const char* name, const KindTraffic& traffic) {
+  return fmt::format("{:<9} {:<18} {:>9} {:>12} {:>9} {:>10.1f}\n", direction, name,
+                     traffic.messages, traffic.bytes, traffic.frames,
                      traffic.messages == 0 ? 0.0
                                            : static_cast<double>(traffic.bytes) /
                                                  static_cast<double>(traffic.messages));
 }
 
-void add_rows(const char* way, const Traffic& traffic, std::string& out) {
+void add_rows(const char* direction, const Traffic& traffic, std::string& out) {
   std::vector<MessageKind> kinds;
   for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
     if (traffic[kind].messages != 0) kinds.push_back(kind);
@@ -48,10 +48,10 @@ void add_rows(const char* way, const Traffic& traffic, std::string& out) {
   std::sort(kinds.begin(), kinds.end(), [&](MessageKind a, MessageKind b) {
     return traffic[a].bytes != traffic[b].bytes ? traffic[a].bytes > traffic[b].bytes : a < b;
   });
-  for (const MessageKind kind : kinds) out += row(way, info_of(kind).name, traffic[kind]);
+  for (const MessageKind kind : kinds) out += row(direction, info_of(kind).name, traffic[kind]);
   for (const auto& [frame_class, name] : kClasses) {
     const KindTraffic sum = of_class(traffic, frame_class);
-    if (sum.messages != 0) out += row(way, fmt::format("= class {}", name).c_str(), sum);
+    if (sum.messages != 0) out += row(direction, fmt::format("= class {}", name).c_str(), sum);
   }
 }
 

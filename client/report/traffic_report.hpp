@@ -1,4 +1,4 @@
-// How a fleet's report shows what passed its links, by kind of message.
+// The traffic of a fleet's links, by kind and class of message, as JSON and as a table.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -7,16 +7,18 @@
 
 namespace runstone {
 
-/// What a fleet received and sent, over all its connections from start to end.
+/// The messages that a fleet received and sent, over all connections from start to end.
 struct FleetTraffic {
   Traffic received{}, sent{};
   void add(const FleetTraffic& other);
 };
 
-/// {"received": {"by_kind": {"Commit": {"messages", "bytes", "frames"}, ...}, "by_class": {"control": {...}, ...}}, "sent": ...}:
-/// bytes without frame headers, kFrameHeaderBytes each; kinds that did not pass are left out.
+/// Returns {"received": {"by_kind": {"Commit": {"messages", "bytes", "frames"}, ...}, "by_class":
+/// {"control": {...}, ...}}, "sent": ...}. Bytes do not include frame headers, which have
+/// kFrameHeaderBytes each. Kinds without messages are left out.
 nlohmann::ordered_json traffic_json(const FleetTraffic& traffic);
-/// The same as a table: a row for each kind that passed, the most bytes first, then one for each class.
+/// Returns a table with a row for each kind that has messages, most bytes first, and a row for each
+/// class.
 std::string traffic_table(const FleetTraffic& traffic);
 
 }  // namespace runstone

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRepeatDepthMax = 8;
 
-/// What is wrong with a line; thrown inside this file only.
+/// An error in a line. It is thrown and caught in this file only.
 struct LineError {
   std::string what;
 };
@@ -30,13 +30,14 @@ class Words {
   }
   bool more() const { return next_ < words_.size(); }
   bool empty() const { return words_.empty(); }
-  /// The next word, without taking it; empty if there is none.
+  /// Returns the next word without taking it, or an empty text if there is none.
   std::string_view peek() const { return more() ? words_[next_] : std::string_view{}; }
+  /// Takes the next word. Throws LineError if there is none; `what` says what was expected.
   std::string_view word(const char* what) {
     if (!more()) throw LineError{std::string("expected ") + what};
     return words_[next_++];
   }
-  /// All that follows the last word taken, as it stands, comments too.
+  /// Takes the rest of the line after the last word taken, including comments.
   std::string_view rest() {
     const std::size_t first =
         next_ == 0 ? 0
@@ -217,7 +218,7 @@ script::Step wait_step(Words& words) {
   return script::Wait{*seconds};
 }
 
-/// One line without `end`, which needs the lines before it.
+/// Parses any command except `end`, which needs the lines before it.
 script::Step step_of(std::string_view verb, Words& words) {
   if (verb == "move") return script::Move{position(words)};
   if (verb == "walk") {
@@ -300,7 +301,7 @@ script::Step step_of(std::string_view verb, Words& words) {
 Result<Script, TextError> parse_script(std::string_view text, std::string_view file) {
   Script script;
   script.file = file;
-  std::vector<std::size_t> open;  // indices of repeats without their end
+  std::vector<std::size_t> open;  // indices of repeats that have no end yet
   std::uint32_t number_of_line = 0;
   const auto error = [&](std::uint32_t line, std::string what) {
     return Unexpected<TextError>{TextError{std::string(file), line, "", std::move(what)}};

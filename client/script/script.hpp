@@ -1,5 +1,5 @@
-// Script: what a client shall do, line by line (docs/client.md gives the language). Parsed once, before
-// connecting, so that a mistake costs nothing; run by ScriptRunner.
+// Script: a list of commands for a client. docs/client.md describes the language. A script is
+// parsed before the client connects, so that a mistake is reported at once. ScriptRunner runs it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace runstone {
 
-/// `7`, `~` and `~-2` (from the player), `^` and `^+1` (y only: from the highest shown solid voxel of the
-/// column).
+/// A coordinate: `7` is absolute, `~` and `~-2` are relative to the player, and `^` and `^+1` are
+/// relative to the highest shown solid voxel of the column. The last form is for y only.
 struct ScriptCoordinate {
   enum class Base : std::uint8_t { world, player, surface };
   Base base = Base::world;
@@ -36,16 +36,17 @@ struct Move {
 };
 struct Walk {
   ScriptPosition to;
-  double speed = 1;
-};  // voxels a second
-/// To and fro between here and there, while later commands run, until the next Move, Walk or Roam.
+  double speed = 1;  // voxels a second
+};
+/// Moves to and fro between the player's place and `to` while later commands run, until the next
+/// Move, Walk or Roam.
 struct Roam {
   ScriptPosition to;
-  double speed = 1;
-};  // voxels a second
+  double speed = 1;  // voxels a second
+};
 struct Look {
-  double yaw = 0, pitch = 0;
-};  // degrees
+  double yaw = 0, pitch = 0;  // degrees
+};
 struct LookAt {
   ScriptPosition at;
 };
@@ -54,10 +55,10 @@ struct Set {
   std::string material;
 };
 struct Box {
-  ScriptPosition from, to;
+  ScriptPosition from, to;  // corner voxels, both included
   std::string material;
   ScriptMask mask;
-};  // corner voxels, both included
+};
 struct Sphere {
   ScriptPosition centre;
   std::uint16_t radius = 0;
@@ -72,12 +73,12 @@ struct Stroke {
 };
 struct Copy {
   std::string name;
-  ScriptPosition from, to;
-  bool solid = false;  // empty voxels become untouched
-};  // corner voxels, both included
+  ScriptPosition from, to;  // corner voxels, both included
+  bool solid = false;       // true: a paste leaves the voxels alone where the copy is empty
+};
 struct Paste {
   std::string name;
-  ScriptPosition at;  // smallest corner of what is copied, as it is turned
+  ScriptPosition at;  // smallest corner of the clipboard after `orientation` is applied
   Orientation orientation;
   ScriptMask mask;
 };
@@ -102,12 +103,13 @@ struct Expect {
 };
 struct Repeat {
   std::uint32_t times = 0;
-  std::size_t end = 0;
-};  // index of its End
+  std::size_t end = 0;  // index of its End
+};
 struct End {
-  std::size_t repeat = 0;
-};  // index of its Repeat
-/// Open loop: edit i is due i / rate seconds after the start, whatever became of the ones before.
+  std::size_t repeat = 0;  // index of its Repeat
+};
+/// Open loop: edit i is due i / rate seconds after the start, whatever happened to the edits
+/// before.
 struct Burst {
   std::uint32_t count = 0;
   double rate = 1;
@@ -120,10 +122,10 @@ struct Digests {
 };
 struct HistoryRequest {
   HistoryTarget to = HistoryTarget::live;
-  Sequence seq = 0;        // TravelTo::sequence
-  double seconds_ago = 0;  // TravelTo::time
+  Sequence seq = 0;        // for HistoryTarget::sequence
+  double seconds_ago = 0;  // for HistoryTarget::time
 };
-/// A command for the server; undo and redo are two of them.
+/// A command for the server, such as undo.
 struct Command {
   std::string text;
 };
@@ -141,14 +143,15 @@ struct ScriptCommand {
 };
 
 struct Script {
-  std::string file;  // for messages
+  std::string file;  // for error messages
   std::vector<ScriptCommand> commands;
 };
 
-inline constexpr double kScriptWaitSecondsMax = 120;  // default of `wait loaded` and its kin
+inline constexpr double kScriptWaitSecondsMax =
+    120;  // default limit of commands that wait for a state
 
-/// Names the first wrong line. Materials are names or numbers; only the world knows them, so they are checked
-/// later.
+/// Parses a script. Fails with the first wrong line. Names of materials are not checked, because
+/// only the world knows them. `file` is for error messages.
 Result<Script, TextError> parse_script(std::string_view text, std::string_view file);
 
 }  // namespace runstone

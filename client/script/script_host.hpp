@@ -1,4 +1,4 @@
-// ScriptHost: what a script can do to a client. The client program implements it; tests do with a few lines.
+// ScriptHost: the interface between ScriptRunner and a client.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,53 +19,60 @@ class ScriptHost {
  public:
   virtual ~ScriptHost() = default;
 
-  /// The world is open for the first time; nothing of a script runs before.
+  /// Returns true once a world was opened. No command runs before that.
   virtual bool ready() const = 0;
   virtual WorldPos eye() const = 0;
   virtual void move_to(const WorldPos& eye) = 0;
-  /// Radians.
+  /// Sets the direction, in radians.
   virtual void look(double yaw, double pitch) = 0;
 
-  /// By name or number; none if the world has no such material.
-  virtual std::optional<Material> material(std::string_view name) const = 0;
+  /// Returns a material by number or, as find_material() does, by name. Fails with one line of
+  /// text.
+  virtual Result<Material, std::string> material(std::string_view name) const = 0;
+  /// Returns nullopt if the chunk is not here.
   virtual std::optional<Material> shown_at(VoxelPos at) const = 0;
-  /// The shown voxels of a box; with `solid` the empty ones become untouched. Errors as of copy_box().
+  /// Copies the shown voxels of a box; with `solid`, empty voxels become untouched. Fails as
+  /// copy_box() does.
   virtual Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const = 0;
-  /// What the player looks at, within reach.
+  /// Returns the voxel that the player looks at, or nullopt if there is none within reach.
   virtual std::optional<RayHit> pick() const = 0;
-  /// y of the highest shown voxel of the column that is not empty.
+  /// Returns the y of the highest shown voxel of the column that is not empty, or nullopt if there
+  /// is none.
   virtual std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const = 0;
-  /// Hands in an edit that was due at `due_us`. False: the client holds too many; it counts as never seen.
-  virtual bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
+  /// Submits an edit that was due at `due_us`. Fails if the client refuses it.
+  virtual Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) = 0;
 
-  /// Every chunk in the view around the player is here, and drawn by a client that draws.
+  /// Returns true if every chunk in the view around the player is here and, in a client that draws,
+  /// drawn.
   virtual bool loaded() const = 0;
-  /// No own edit is left that is not known to be on disk.
+  /// Returns true if all local edits are known to be on the server's disk.
   virtual bool durable() const = 0;
-  /// A mark for synced(): what the server had ordered before now will have arrived.
+  /// Returns a mark for synced().
   virtual std::uint64_t sync_mark() const = 0;
+  /// Returns true if everything that the server ordered before sync_mark() returned `mark` has
+  /// arrived, and every local edit was answered.
   virtual bool synced(std::uint64_t mark) const = 0;
 
-  /// Asks to go to a moment of the past, or back.
-  virtual void travel(const HistoryRequest& travel) = 0;
-  /// Gives the server a command. Empty, or why it cannot be given.
+  /// Requests a moment of the past, or the live world.
+  virtual void travel(const HistoryRequest& request) = 0;
+  /// Sends a command to the server. Returns an empty text, or why it cannot be sent.
   virtual std::string command(const std::string& text) = 0;
-  /// Its answer is not complete.
+  /// Returns true until the answer to the command is complete.
   virtual bool commanding() const = 0;
-  /// What came of it, once it is complete: shows its lines, and says whether it did what it was asked.
+  /// Prints the lines of the complete answer. Returns true if the command succeeded.
   virtual bool show_answer() = 0;
-  /// Not all of what was asked for is here.
+  /// Returns true until all chunks of the requested moment are here, or the request was refused.
   virtual bool travelling() const = 0;
-  /// Why the last travel() was refused; empty if it was not.
+  /// Returns why the last travel() was refused, or an empty text.
   virtual std::string travel_refusal() const = 0;
-  /// UTC, for travels so and so long ago.
+  /// Returns the time in UTC, for requests of a moment some seconds ago.
   virtual TimeUs utc_now_us() const = 0;
 
-  /// Asks for a picture of the current view; poll screenshot_written(). False: this client draws nothing.
+  /// Requests a screenshot; poll screenshot_written(). Returns false if this client draws nothing.
   virtual bool screenshot(const std::string& file) = 0;
-  /// None while it is under way; then whether its file could be written.
+  /// Returns nullopt while the screenshot is in progress, then true if its file was written.
   virtual std::optional<bool> screenshot_written() const = 0;
-  /// Writes the digests of all confirmed chunks; false if the file cannot be written.
+  /// Writes the digests of all confirmed chunks. Returns false if the file cannot be written.
   virtual bool digests(const std::string& file) = 0;
 };
 

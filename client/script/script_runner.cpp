@@ -10,8 +10,9 @@
 namespace runstone {
 namespace {
 
-constexpr TimeUs kWalkStepUs =
-    20'000;  // often enough to look smooth to others, of a walk and a roam
+/// The time between two steps of a walk or roam. It is short enough to look smooth to other
+/// players.
+constexpr TimeUs kWalkStepUs = 20'000;
 constexpr double kUsPerSecond = 1e6;
 
 VoxelPos voxel_of(const WorldPos& at) {
@@ -19,7 +20,8 @@ VoxelPos voxel_of(const WorldPos& at) {
   return {down(at.x), down(at.y), down(at.z)};
 }
 
-VoxelBox box_between(VoxelPos a, VoxelPos b) {  // both included
+/// Returns the box with these corners, both included.
+VoxelBox box_between(VoxelPos a, VoxelPos b) {
   return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
           {std::max(a.x, b.x) + 1, std::max(a.y, b.y) + 1, std::max(a.z, b.z) + 1}};
 }
@@ -59,7 +61,7 @@ void ScriptRunner::run_commands() {
       return;
     }
   }
-  due_us_ = now_us_;  // more to do at once
+  due_us_ = now_us_;  // more commands can run at once
 }
 
 void ScriptRunner::fail(const std::string& what) {
@@ -78,8 +80,6 @@ void ScriptRunner::start() {
   state_ = {};
   state_.at_us = state_.last_us = now_us_;
 }
-
-// ---- words to values
 
 std::optional<WorldPos> ScriptRunner::resolve(const ScriptPosition& position) {
   using Base = ScriptCoordinate::Base;
@@ -114,8 +114,9 @@ std::optional<VoxelPos> ScriptRunner::resolve_voxel(const ScriptPosition& positi
 
 std::optional<Material> ScriptRunner::resolve_material(const std::string& name) {
   const auto id = host_.material(name);
-  if (!id) fail("the world has no material \"" + name + "\"");
-  return id;
+  if (id) return *id;
+  fail(id.error());
+  return std::nullopt;
 }
 
 std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
@@ -128,11 +129,10 @@ std::optional<Mask> ScriptRunner::resolve_mask(const ScriptMask& mask) {
 ScriptRunner::Progress ScriptRunner::submit(const EditDescriptor& edit) {
   if (const auto ok = validate(edit); !ok)
     return give_up(std::string("not an edit: ") + ok.error().what);
-  if (!host_.submit(edit, now_us_, now_us_)) fail("the client refused the edit");
+  if (const auto ok = host_.submit(edit, now_us_, now_us_); !ok)
+    fail(std::string("edit refused: ") + ok.error().what);
   return Progress::done;
 }
-
-// ---- moving
 
 ScriptRunner::Progress ScriptRunner::run(const script::Move& c) {
   const auto to = resolve(c.to);
@@ -158,7 +158,7 @@ bool ScriptRunner::go(const WorldPos& to, double distance) {
 ScriptRunner::Progress ScriptRunner::run(const script::Walk& c) {
   if (!started_) {
     start();
-    const auto to = resolve(c.to);  // once: `~` means the player at the start
+    const auto to = resolve(c.to);  // once, because `~` means the player at the start
     if (!to) return Progress::stop;
     state_.centre = *to;
     roaming_.reset();
@@ -199,8 +199,6 @@ ScriptRunner::Progress ScriptRunner::run(const script::LookAt& c) {
   host_.look(std::atan2(dx, dz), std::atan2(dy, std::sqrt(dx * dx + dz * dz)));
   return Progress::done;
 }
-
-// ---- edits
 
 ScriptRunner::Progress ScriptRunner::run(const script::Set& c) {
   const auto at = resolve_voxel(c.at);
@@ -251,12 +249,12 @@ ScriptRunner::Progress ScriptRunner::run(const script::Copy& c) {
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Paste& c) {
-  const auto held = clipboards_.find(c.name);
-  if (held == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
+  const auto clipboard = clipboards_.find(c.name);
+  if (clipboard == clipboards_.end()) return give_up("nothing was copied as \"" + c.name + "\"");
   const auto at = resolve_voxel(c.at);
   const auto mask = resolve_mask(c.mask);
   if (!at || !mask) return Progress::stop;
-  return submit({runstone::Paste{*at, held->second, c.orientation}, *mask, kEmpty});
+  return submit({runstone::Paste{*at, clipboard->second, c.orientation}, *mask, kEmpty});
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::Dig&) {
@@ -300,13 +298,11 @@ ScriptRunner::Progress ScriptRunner::run(const script::Burst& c) {
     at.x += offset();
     at.y += offset();
     at.z += offset();
-    // Not failing the script: a refused edit is counted by the host as never seen.
+    // A refused edit does not fail the script. The host counts it.
     static_cast<void>(host_.submit({SetVoxel{at}, {}, *material}, due_us, now_us_));
   }
   return Progress::done;
 }
-
-// ---- waiting, looking
 
 ScriptRunner::Progress ScriptRunner::run(const script::Wait& c) {
   start();
@@ -350,7 +346,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Screenshot& c) {
   if (!started_) {
     start();
     if (!host_.screenshot(c.file)) {
-      fail("no picture: this client draws nothing");
+      fail("no screenshot: this client draws nothing");
       return Progress::done;
     }
   }
@@ -382,14 +378,14 @@ ScriptRunner::Progress ScriptRunner::run(const script::Digests& c) {
 ScriptRunner::Progress ScriptRunner::run(const script::HistoryRequest& c) {
   if (!started_) {
     start();
-    HistoryRequest travel;
-    travel.to = c.to;
-    travel.seq = c.seq;
+    HistoryRequest request;
+    request.to = c.to;
+    request.seq = c.seq;
     if (c.to == HistoryTarget::time) {
-      travel.utc_us =
+      request.utc_us =
           host_.utc_now_us() - static_cast<TimeUs>(std::llround(c.seconds_ago * kUsPerSecond));
     }
-    host_.travel(travel);
+    host_.travel(request);
   }
   if (!host_.travelling()) {
     const std::string refusal = host_.travel_refusal();
@@ -405,7 +401,7 @@ ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
   if (!started_) {
     start();
     const std::string refusal = host_.command(c.text);
-    if (!refusal.empty()) return give_up("the command cannot be given: " + refusal);
+    if (!refusal.empty()) return give_up("the command cannot be sent: " + refusal);
   }
   if (!host_.commanding()) {
     if (!host_.show_answer()) fail("the server refused \"" + c.text + "\"");
@@ -417,22 +413,20 @@ ScriptRunner::Progress ScriptRunner::run(const script::Command& c) {
   return Progress::waits;
 }
 
-// ---- flow
-
 ScriptRunner::Progress ScriptRunner::run(const script::Repeat& c) {
   if (c.times == 0) {
     next_ = c.end + 1;
   } else {
-    turns_left_.push_back(c.times);
+    repeats_left_.push_back(c.times);
   }
   return Progress::done;
 }
 
 ScriptRunner::Progress ScriptRunner::run(const script::End& c) {
-  if (--turns_left_.back() != 0) {
+  if (--repeats_left_.back() != 0) {
     next_ = c.repeat + 1;
   } else {
-    turns_left_.pop_back();
+    repeats_left_.pop_back();
   }
   return Progress::done;
 }

@@ -1,4 +1,4 @@
-// ScriptRunner: runs a script against a host, a step at a time, on the clock that it is told. One thread.
+// ScriptRunner: runs a script against a ScriptHost. Time is an argument of step(). One thread.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,29 +15,31 @@ namespace runstone {
 
 class ScriptRunner {
  public:
-  /// Both must outlive the runner.
+  /// Script and host must outlive the runner.
   ScriptRunner(const Script& script, ScriptHost& host) : script_(script), host_(host) {}
 
-  /// Runs commands until one has to wait. Cheap while waiting. At most kStepCommandsMax commands a call.
+  /// Runs commands until one has to wait, and kStepCommandsMax at most. A call while a command
+  /// waits is cheap.
   void step(TimeUs now_us);
   bool finished() const { return finished_; }
-  /// When something is due without news from outside; none if only news can go on.
+  /// Returns when step() is to be called again without an event, or nullopt if only an event can
+  /// end the wait.
   std::optional<TimeUs> due_us() const { return due_us_; }
-  /// "file:line: what", in order. An expectation that fails does not end the script; a command that cannot
-  /// run does.
+  /// Returns lines "file:line: what", in order. A failed expectation does not end the script. A
+  /// command that cannot run ends it.
   const std::vector<std::string>& failures() const { return failures_; }
 
   static constexpr int kStepCommandsMax = 256;
 
  private:
   enum class Progress { done, waits, stop };
-  struct Started {  // the command that waits
+  struct Started {  // state of the command that waits
     TimeUs at_us = 0;
-    TimeUs last_us = 0;       // walk: moved up to here
+    TimeUs last_us = 0;       // walk: time of the last movement
     std::uint64_t mark = 0;   // synced
-    std::uint32_t count = 0;  // burst: edits handed in
+    std::uint32_t count = 0;  // burst: edits submitted
     SplitMix64 random{0};     // burst
-    WorldPos centre;          // burst: the player at its start
+    WorldPos centre;          // burst: the player at its start; walk: the destination
   };
 
   Progress run(const script::Move& c);
@@ -67,7 +69,7 @@ class ScriptRunner {
 
   void run_commands();
   void fail(const std::string& what);
-  /// A command that cannot run ends the script.
+  /// Records a failure and ends the script.
   Progress give_up(const std::string& what);
   Progress submit(const EditDescriptor& edit);
   std::optional<WorldPos> resolve(const ScriptPosition& position);
@@ -75,18 +77,18 @@ class ScriptRunner {
   std::optional<Material> resolve_material(const std::string& name);
   std::optional<Mask> resolve_mask(const ScriptMask& mask);
   void start();
-  /// Takes the player along the way of a roam, if there is one.
+  /// Moves the player if a roam is in progress.
   void roam();
-  /// Straight towards `to`. Returns whether it is there.
+  /// Moves the player straight towards `to`. Returns true on arrival.
   bool go(const WorldPos& to, double distance);
 
   const Script& script_;
   ScriptHost& host_;
   std::size_t next_ = 0;
-  std::size_t current_ = 0;  // the command that runs
+  std::size_t current_ = 0;  // index of the command that runs
   bool started_ = false;
   Started state_;
-  std::vector<std::uint32_t> turns_left_;  // of the open repeats, innermost last
+  std::vector<std::uint32_t> repeats_left_;  // rounds left of the open repeats, innermost last
   std::map<std::string, std::shared_ptr<const Clipboard>> clipboards_;
   struct Roaming {
     WorldPos to, back;

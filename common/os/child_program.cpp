@@ -14,7 +14,7 @@
 namespace runstone {
 namespace {
 
-/// What posix_spawn() is told; freed with it.
+/// The settings for posix_spawn(), freed with this object.
 struct SpawnSettings {
   SpawnSettings() {
     ::posix_spawn_file_actions_init(&files);
@@ -27,6 +27,7 @@ struct SpawnSettings {
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
+  /// Gives the child `descriptor`, or /dev/null if it is negative, as its descriptor `as`.
   void give(int descriptor, int as, int mode) {
     if (descriptor >= 0) {
       ::posix_spawn_file_actions_adddup2(&files, descriptor, as);
@@ -54,7 +55,7 @@ Result<pid_t, int> start_program(ChildProgram program) {
   SpawnSettings settings;
   settings.give(program.in, STDIN_FILENO, O_RDONLY);
   settings.give(program.out, STDOUT_FILENO, O_WRONLY);
-  // Libraries of ours may have opened files and sockets without a thought of children.
+  // Libraries may have opened descriptors without FD_CLOEXEC.
   ::posix_spawn_file_actions_addclosefrom_np(&settings.files, STDERR_FILENO + 1);
   if (!program.folder.empty()) {
     ::posix_spawn_file_actions_addchdir_np(&settings.files, program.folder.c_str());

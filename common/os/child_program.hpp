@@ -1,4 +1,4 @@
-// Child programs: how ours start others.
+// Starting child programs.
 #pragma once
 #include <sys/types.h>
 
@@ -10,21 +10,23 @@
 namespace runstone {
 
 struct ChildProgram {
-  std::vector<std::string> words;  // program (looked for on PATH if it has no '/') and arguments
-  int in = -1, out = -1;           // become its standard input and output; -1: nothing, /dev/null
-  std::string folder;              // in which it runs; empty: ours
+  std::vector<std::string> words;  // program, searched on PATH if it has no '/', and arguments
+  int in = -1, out = -1;           // descriptors of its standard input and output; -1: /dev/null
+  std::string folder;              // its working directory; empty: that of this process
 };
 
-/// Which program to start: `wanted` if it is not empty, else what the environment's `variable` names, else the one
-/// called `name` in the folder of the running program.
+/// Returns the path of a program to start: `wanted` if it is not empty, otherwise the value of the
+/// environment variable `variable` if it is set, otherwise `name` in the folder of the running
+/// program.
 std::string sibling_program(const std::string& wanted, const char* variable,
                             const std::string& name);
 
-/// Starts it and returns its process id, or an error number. It has our environment and standard error, no other file or
-/// socket of ours, and no signal is blocked or ignored in it. Whoever started it has to wait for it.
+/// Starts a child and returns its process id, or the errno value of the failure. The child inherits
+/// the environment and standard error, but no other descriptor. No signal is blocked or ignored in
+/// it. The caller must wait for it.
 Result<pid_t, int> start_program(ChildProgram program);
 
-/// "ended with exit code 3" or "was ended by signal 9": of a status that waitpid() gave.
+/// Returns "ended with exit code 3" or "was ended by signal 9". `status` is a result of waitpid().
 std::string how_it_ended(int status);
 
 }  // namespace runstone

@@ -1,23 +1,61 @@
 #include "common/os/host_port.hpp"
 
 #include <charconv>
+#include <optional>
+#include <utility>
 
 namespace runstone {
+namespace {
 
-std::string parse_host_port(const std::string& text, std::string& host, std::uint16_t& port) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return "expected HOST:PORT";
-  unsigned number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [behind, error] = std::from_chars(text.data() + colon + 1, end, number);
-  if (error != std::errc() || behind != end || number == 0 || number > 65535) {
-    return "the port is not a number of 1 to 65535";
+using Parsed = Result<HostPort, std::string>;
+
+Parsed wrong_form() { return Unexpected<std::string>{"expected HOST, HOST:PORT or [V6]:PORT"}; }
+
+/// Returns true if the text, up to a zone such as "%eth0", has only characters of an IPv6 address.
+bool may_be_v6(std::string_view text) {
+  const std::string_view address = text.substr(0, text.find('%'));
+  return !address.empty() &&
+         address.find_first_not_of("0123456789abcdefABCDEF:.") == std::string_view::npos;
+}
+
+/// Requires a nonempty `host`. `port` is the text after the colon, or nullopt without a colon.
+Parsed with_port(std::string_view host, std::optional<std::string_view> port,
+                 std::uint16_t default_port) {
+  HostPort out{std::string(host), default_port};
+  if (!port) return out;
+  const char* const end = port->data() + port->size();
+  const auto [rest, error] = std::from_chars(port->data(), end, out.port);
+  if (error != std::errc() || rest != end || out.port == 0) {
+    return Unexpected<std::string>{"the port is not a number from 1 to 65535"};
   }
-  host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
-    host = host.substr(1, host.size() - 2);
-  port = static_cast<std::uint16_t>(number);
-  return {};
+  return out;
+}
+
+}  // namespace
+
+std::string to_string(const HostPort& address) {
+  const bool is_v6 = address.host.find(':') != std::string::npos;
+  return (is_v6 ? "[" + address.host + "]" : address.host) + ":" + std::to_string(address.port);
+}
+
+Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16_t default_port) {
+  if (text.starts_with('[')) {
+    const std::size_t bracket = text.find(']');
+    if (bracket == std::string_view::npos) return wrong_form();
+    const std::string_view host = text.substr(1, bracket - 1);
+    if (!may_be_v6(host)) return wrong_form();
+    const std::string_view rest = text.substr(bracket + 1);
+    if (rest.empty()) return with_port(host, std::nullopt, default_port);
+    if (rest.front() != ':') return wrong_form();
+    return with_port(host, rest.substr(1), default_port);
+  }
+  const std::size_t colon = text.find(':');
+  const bool has_two_colons = colon != text.rfind(':');
+  if (text.empty() || (has_two_colons ? !may_be_v6(text) : colon == 0)) return wrong_form();
+  if (colon == std::string_view::npos || has_two_colons) {
+    return with_port(text, std::nullopt, default_port);
+  }
+  return with_port(text.substr(0, colon), text.substr(colon + 1), default_port);
 }
 
 }  // namespace runstone

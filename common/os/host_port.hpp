@@ -1,11 +1,27 @@
-// HostPort: where a server is, as command lines say it.
+// HostPort: the address of a server as people type it on a command line.
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
+
+#include "common/core/result.hpp"
 
 namespace runstone {
 
-/// "host:port" or "[v6 address]:port". Returns what is wrong with the text, or nothing and sets both.
-std::string parse_host_port(const std::string& text, std::string& host, std::uint16_t& port);
+struct HostPort {
+  std::string host;  // a name, an IPv4 address, or an IPv6 address without brackets
+  std::uint16_t port = 0;
+  friend bool operator==(const HostPort&, const HostPort&) = default;
+};
+
+/// Returns "HOST:PORT", or "[V6]:PORT" if the host has a colon.
+std::string to_string(const HostPort& address);
+
+/// Reads an address in one of these forms, where V6 is an IPv6 address:
+///   HOST   HOST:PORT   V6   [V6]   [V6]:PORT
+/// An address without a port gets `default_port`. A text with two or more colons and no bracket is
+/// a V6. The host is not resolved or checked any further. Fails with one line of text if the form
+/// is wrong or the port is not a number from 1 to 65535.
+Result<HostPort, std::string> parse_host_port(std::string_view text, std::uint16_t default_port);
 
 }  // namespace runstone

@@ -1,11 +1,12 @@
-// Work that nobody waits for gives way to what somebody does.
+// Low priority for background work.
 #pragma once
 
 namespace runstone {
 
-/// Of the calling thread, and of those that it or a library starts from here on: pictures that nobody watches, terrain
-/// beside edits. Not SCHED_IDLE: on a busy machine that starves for seconds. Where it cannot be had all works as well,
-/// only later.
+/// Lowers the priority of the calling thread, and of threads that it or a library starts
+/// afterwards, to nice 10. It is for off-screen frames and terrain, which must not delay edits.
+/// SCHED_IDLE would be too low: on a busy machine such threads starve for seconds. A failure is
+/// ignored.
 void lower_priority();
 
 }  // namespace runstone

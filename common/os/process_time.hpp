@@ -1,4 +1,4 @@
-// Processor time of this process.
+// The processor time of this process.
 #pragma once
 #include <sys/resource.h>
 
@@ -11,7 +11,7 @@ struct ProcessTime {
   }
 };
 
-/// Of all threads since the process began.
+/// Returns the time of all threads since the start of the process.
 inline ProcessTime process_time() {
   rusage use{};
   ::getrusage(RUSAGE_SELF, &use);

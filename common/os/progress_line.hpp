@@ -1,4 +1,4 @@
-// ProgressLine: how far long work is and how long it will still take, on stderr, for whoever watches.
+// ProgressLine: shows on standard error how far a long task is and how much time is left.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -6,12 +6,15 @@
 
 namespace runstone {
 
-/// "edits read: 512000 of 1000000, 12 s left". `first`: where the work began, for the time left; without that before 1 s.
+/// Returns a text such as "edits read: 512000 of 1000000, 12 s left". `first` is the value of
+/// `done` at the start. The time left is estimated from the progress since `first`, and left out in
+/// the first second.
 std::string progress_text(const std::string& what, std::uint64_t first, std::uint64_t done,
                           std::uint64_t last, double seconds);
 
-/// Silent for the first second. Then, on a terminal, a line that rewrites itself twice a second and goes with the object;
-/// elsewhere, only if `always`, a line every two seconds. One thread.
+/// Shows nothing in the first second. After that, on a terminal, one line is rewritten twice a
+/// second, and the destructor erases it. Elsewhere, a line is printed every two seconds, and only
+/// if `always` is true. One thread.
 class ProgressLine {
  public:
   ProgressLine(std::string what, bool always);

@@ -1,4 +1,5 @@
-// A program's one clock for durations: steady, so that it never goes back; what it counts from means nothing. Any thread.
+// The clock of a program for durations. It never goes back, and its zero has no meaning. Thread:
+// any.
 #pragma once
 #include <chrono>
 #include <cstdint>

@@ -1,10 +1,11 @@
-// SIGINT and SIGTERM ask a program of the client's side to stop.
+// SIGINT and SIGTERM as requests to stop, for the client and the bots.
 #pragma once
 #include <csignal>
 
 namespace runstone {
 
-/// From now on they are only counted. Returns the count; it lives as long as the program.
+/// Installs handlers that only count these signals. Returns the count, which lives as long as the
+/// program.
 const volatile std::sig_atomic_t& count_stop_signals();
 
 }  // namespace runstone

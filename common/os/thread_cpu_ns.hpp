@@ -1,5 +1,5 @@
-// The processor time of the calling thread, in nanoseconds: what a piece of work cost. On a busy machine the clock on
-// the wall would count other programs' turns. A system call, some 0.3 us.
+// The processor time of the calling thread in nanoseconds. On a busy machine the wall clock would
+// include the time of other programs. Cost: a system call, about 0.3 us.
 #pragma once
 #include <time.h>
 

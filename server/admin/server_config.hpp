@@ -15,14 +15,16 @@
 #include "common/materials/material_table.hpp"
 #include "protocol/codec/chunk_codec.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/default_port.hpp"
 #include "server/admin/log_level.hpp"
 
 namespace runstone {
 
 struct ServerConfig {
   // Place.
-  std::string world = "world";          // folder
-  std::string listen = "0.0.0.0:4747";  // HOST:PORT, or [V6]:PORT; port 0 takes a free port
+  std::string world = "world";  // folder
+  // HOST:PORT, or [V6]:PORT; port 0 takes a free port.
+  std::string listen = "0.0.0.0:" + std::to_string(kDefaultPort);
   LogLevel log_level = LogLevel::info;
   // Threads.
   std::uint64_t io_threads = 2;      // 1..64: sockets and the world strand

@@ -1,5 +1,5 @@
-// runstone-replay play as a program: it reads a world folder, and runstone-bot submits the edits
-// to a live server.
+// Plays a world folder into a live server with runstone-replay and runstone-bot, as people run
+// them.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +14,7 @@ using namespace runstone::test;
 
 namespace {
 
-/// The edits of one author. Their order is kept, so any edits serve.
+/// Edits of one author. Their order is kept, so any edits give the same world.
 void make_world(const std::string& folder, std::size_t edits) {
   WorldMeta meta = sample_meta();
   meta.generator = {"flat", 1, 5, ""};
@@ -35,7 +35,7 @@ std::string digest_of(const std::string& folder, const std::string& at) {
   return replay.out.substr(begin, replay.out.find('\n', begin) - begin);
 }
 
-/// While this object exists, child programs make their temporary files in a folder of the test.
+/// Makes programs create their temporary files in a folder of the test.
 class TemporaryFiles {
  public:
   TemporaryFiles() { ::setenv("TMPDIR", folder_.path().c_str(), 1); }
@@ -66,8 +66,7 @@ TEST_CASE("a log played into a server of the same generator gives the same world
   CHECK(digest_of(folder / "live", "150") == digest_of(folder / "old", "150"));
 }
 
-TEST_CASE("a play that fails returns the exit code of its cause and leaves no file",
-          "[bots][play]") {
+TEST_CASE("a play that fails ends with an exit code and leaves no file behind", "[bots][play]") {
   const TempFolder folder;
   make_world(folder / "old", 20);
   const TemporaryFiles files;
@@ -92,7 +91,7 @@ TEST_CASE("a play that fails returns the exit code of its cause and leaves no fi
   const auto killed = into("old", script("kill -9 $$"));
   CHECK(killed.code == 2);
   CHECK(killed.err.find("bot.sh: was ended by signal 9") != std::string::npos);
-  // A stop is passed to the child, and the program cleans up.
+  // The program passes a signal on to the child, and still removes its file.
   CHECK(into("old", script("trap 'exit 5' TERM; kill -TERM $PPID; while :; do sleep 0.05; done"))
             .code == 5);
   CHECK(files.none_left());
@@ -111,6 +110,6 @@ TEST_CASE("a log is not played if no temporary folder can be made", "[bots][play
   };
   CHECK(error_with(folder / "nowhere").find("no folder for temporary files, see TMPDIR: ") !=
         std::string::npos);
-  // A folder in which not even root can make a file.
+  // A folder in which nobody, including root, can create a file.
   CHECK(error_with("/proc").find("/proc: no temporary folder can be made: ") != std::string::npos);
 }

@@ -1,9 +1,9 @@
-// A recorded log, played on a live server on loopback.
+// Plays a recorded log on a live server on loopback.
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <thread>
 
-#include "client/fleet/bot_fleet.hpp"
+#include "client/fleet/behaviour_fleet.hpp"
 #include "client/fleet/play_fleet.hpp"
 #include "client/fleet/recorded_file.hpp"
 #include "server/replay/rlog_file.hpp"
@@ -16,17 +16,17 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
-/// Makes a world in which three builders have built, each on its own site. Returns its digest.
+/// Makes a world that three builders edit, each on a separate site. Returns its digest.
 Digest build_world(const std::string& folder) {
   auto server = start_server(quiet_config(folder), flat_creation());
   BotOptions options;
-  options.port = server->port();
+  options.server.port = server->port();
   options.count = options.sites = 3;
   options.rate = 300;
   options.edits = 150;
   options.seconds = 60;
   options.view_radius = options.view_radius_v = 3;
-  const FleetReport report = BotFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never);
   REQUIRE(report.counts.confirmed == 450);
   const StopReport stopped = server->stop();
   REQUIRE(stopped.is_clean);
@@ -42,7 +42,7 @@ std::string exported(const std::string& folder, const std::string& file) {
 
 PlayReport play(std::uint16_t port, const RecordedLog& log, double speed, double patience = 60) {
   BotOptions options;
-  options.port = port;
+  options.server.port = port;
   options.play = "log";
   options.speed = speed;
   options.load_seconds = patience;
@@ -73,8 +73,7 @@ TEST_CASE("a log played on a fresh server of the same generator gives the same w
   }
 }
 
-TEST_CASE("edits rejected by a rate limit are retried until all of them are applied",
-          "[bots][play]") {
+TEST_CASE("edits refused by a rate limit are offered again until all are applied", "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
@@ -91,14 +90,14 @@ TEST_CASE("edits rejected by a rate limit are retried until all of them are appl
   CHECK(server->stop().digests.seq == 450);
 }
 
-TEST_CASE("a play that is refused in part is not complete and reports the reasons",
+TEST_CASE("a play of which the world refuses edits is not complete and gives the reasons",
           "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
   REQUIRE(log.has_value());
   ServerConfig config = quiet_config(live.path());
-  config.reach_max = 30;  // most of the sites around the spawn are farther away
+  config.reach_max = 30;  // most sites around the spawn are farther away
   auto server = start_server(config, flat_creation());
   const PlayReport report = play(server->port(), *log, 0);
   CHECK(report.failure.empty());
@@ -125,7 +124,7 @@ TEST_CASE("a world with other materials gets no edit", "[bots][play]") {
   CHECK(server->stop().digests.seq == 0);
 }
 
-TEST_CASE("a play that finds no server, or loses it, reports it and ends", "[bots][play]") {
+TEST_CASE("a play that finds no server, or loses it, ends with that reason", "[bots][play]") {
   const TempFolder recorded, live;
   build_world(recorded.path());
   const auto log = read_recorded_file(exported(recorded.path(), recorded / "all.rlog"));
@@ -146,7 +145,7 @@ TEST_CASE("a play that finds no server, or loses it, reports it and ends", "[bot
   CHECK(none.failure.find("cannot connect") != std::string::npos);
 }
 
-TEST_CASE("a file that is missing is named", "[bots][play]") {
+TEST_CASE("the error of a missing file names it", "[bots][play]") {
   const auto log = read_recorded_file("/nowhere/at-all.rlog");
   REQUIRE_FALSE(log.has_value());
   CHECK(log.error().find("/nowhere/at-all.rlog: cannot be read: ") == 0);

@@ -1,5 +1,5 @@
-// The draw child as servers use it: the real client's program, off screen. Where no OpenGL exists the cases
-// say so with WARN and pass. Programs that do not behave are played by shell scripts.
+// The draw child as servers use it, with the real client program, off screen. Where no OpenGL
+// exists the cases WARN and pass. Shell scripts act as faulty programs.
 #include "server/draw/draw_child.hpp"
 
 #include <signal.h>
@@ -46,7 +46,7 @@ std::optional<DrawChild> child_or_warn() {
   return *std::move(child);
 }
 
-/// From high above the corner that four chunks share, north (-z) up, so that +x is on the right.
+/// A camera high above the corner of four chunks. North (-z) is up and +x is on the right.
 DrawCamera above() {
   DrawCamera camera;
   camera.x = 32;
@@ -57,7 +57,7 @@ DrawCamera above() {
   return camera;
 }
 
-/// An executable shell script.
+/// Writes an executable shell script and returns its path.
 std::string script(const TempFolder& folder, const std::string& text) {
   std::string file = folder / "program";
   std::ofstream(file) << "#!/bin/sh\n" << text << "\n";
@@ -78,7 +78,8 @@ bool contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("a draw child shows each chunk where it is, as it is now", "[integration][draw]") {
+TEST_CASE("a draw child draws the newest version of each chunk in its place",
+          "[integration][draw]") {
   auto child = child_or_warn();
   if (!child) return;
   CHECK_FALSE(child->renderer().empty());
@@ -97,7 +98,7 @@ TEST_CASE("a draw child shows each chunk where it is, as it is now", "[integrati
   REQUIRE(one.height == kSize.height);
   CHECK(is_red(one.mean(0.4, 0.4)));
   CHECK(is_green(one.mean(0.6, 0.4)));
-  CHECK(is_sky(one.mean(0.4, 0.6)));  // nothing was sent there
+  CHECK(is_sky(one.mean(0.4, 0.6)));  // no chunk was sent there
   CHECK(is_sky(one.mean(0.05, 0.05)));
 
   REQUIRE(child->chunk({0, {0, 0, 1}}, green));
@@ -112,13 +113,13 @@ TEST_CASE("a draw child shows each chunk where it is, as it is now", "[integrati
   CHECK(contains(child->draw(above(), kSize, "x.png").error(), "has finished"));
 }
 
-TEST_CASE("a draw child takes more than the sockets hold, and other sizes and colours of view",
+TEST_CASE("a draw child accepts more orders than the sockets hold, and other sizes and cameras",
           "[integration][draw]") {
   auto child = child_or_warn();
   if (!child) return;
   const TempFolder folder;
   REQUIRE(child->world(16, red_and_green()));
-  // A run a voxel: 256 chunks are some megabytes.
+  // With a run for each voxel, 256 chunks are some megabytes.
   RunChunk speckled = uniform_chunk(Extent::cube(16), 1);
   for (VoxelIndex i = 0; i < speckled.volume(); i += 2) fill(speckled, i, 1, 2);
   for (int x = 0; x < 16; ++x) {
@@ -128,12 +129,12 @@ TEST_CASE("a draw child takes more than the sockets hold, and other sizes and co
   camera.x = camera.z = 128;
   REQUIRE(child->draw(camera, {320, 200}, folder / "a.png"));
   CHECK(PngFile(folder / "a.png").width == 320);
-  camera.near = 100;  // the ground lies 94 below
+  camera.near = 100;  // the ground is 94 voxels below
   REQUIRE(child->draw(camera, {64, 64}, folder / "b.png"));
   CHECK(is_sky(PngFile(folder / "b.png").mean(0.5, 0.5)));
 }
 
-TEST_CASE("a picture that cannot be drawn is an error by name, and the child goes on",
+TEST_CASE("a picture that cannot be written is an error with its name, and the child goes on",
           "[integration][draw]") {
   auto child = child_or_warn();
   if (!child) return;
@@ -147,7 +148,7 @@ TEST_CASE("a picture that cannot be drawn is an error by name, and the child goe
   CHECK(contains(child->finish().error(), "ended with exit code 1"));  // a picture is missing
 }
 
-TEST_CASE("wrong orders end the child, and its reason is the error", "[integration][draw]") {
+TEST_CASE("wrong orders end the child with its reason as the error", "[integration][draw]") {
   auto child = child_or_warn();
   if (!child) return;
   REQUIRE(child->world(kEdge, red_and_green()));
@@ -158,7 +159,7 @@ TEST_CASE("wrong orders end the child, and its reason is the error", "[integrati
   CHECK_FALSE(child->finish().has_value());
 }
 
-TEST_CASE("a program that is missing is named, with what to do about it", "[integration][draw]") {
+TEST_CASE("the error of a missing program names it and the remedy", "[integration][draw]") {
   const TempFolder folder;
   const std::string error = start_error({folder / "nothing"});
   CHECK(contains(error, folder / "nothing" + ": cannot be started: No such file or directory"));
@@ -167,16 +168,17 @@ TEST_CASE("a program that is missing is named, with what to do about it", "[inte
   CHECK(contains(start_error({folder / "text"}), "Permission denied"));
   std::filesystem::permissions(folder / "text", std::filesystem::perms::owner_all);
   CHECK(contains(start_error({folder / "text"}), "Exec format error"));
-  // The environment names it for all programs.
+  // The environment variable names the program.
   REQUIRE(::setenv("RUNSTONE_CLIENT", (folder / "elsewhere").c_str(), 1) == 0);
   CHECK(contains(start_error({}), folder / "elsewhere"));
   CHECK(contains(start_error({folder / "nothing"}), folder / "nothing"));
   REQUIRE(::unsetenv("RUNSTONE_CLIENT") == 0);
-  CHECK(contains(start_error({}),
-                 "/runstone-client: cannot be started: "));  // beside this test there is none
+  CHECK(contains(
+      start_error({}),
+      "/runstone-client: cannot be started: "));  // there is none in the folder of this test
 }
 
-TEST_CASE("a child that ends, is silent or talks nonsense is an error that says so",
+TEST_CASE("a child that ends, stays silent or answers nonsense is an error with that reason",
           "[integration][draw]") {
   const TempFolder folder;
   using namespace std::chrono_literals;
@@ -187,7 +189,7 @@ TEST_CASE("a child that ends, is silent or talks nonsense is an error that says 
   CHECK(
       contains(start_error({script(folder, "echo error no paint left; exit 2")}), "no paint left"));
   CHECK(contains(start_error({script(folder, "exec sleep 60"), 200ms}), "did nothing for 0 s"));
-  // It draws once, then leaves; then stays, and answers something else.
+  // The first script draws once and ends. The second one stays and gives a wrong answer.
   auto child = DrawChild::start({script(folder, "echo ready 1 X; head -c 20 >/dev/null; exit 5")});
   REQUIRE(child.has_value());
   CHECK(child->renderer() == "X");
@@ -197,7 +199,7 @@ TEST_CASE("a child that ends, is silent or talks nonsense is an error that says 
       {script(folder, "echo ready 1 X; echo 'drawn quads=1 chunks=1 us=1 b.png'; cat >/dev/null")});
   REQUIRE(child.has_value());
   CHECK(contains(child->draw(above(), kSize, "a.png").error(), "not asked"));
-  // One that does not read is given up when the sockets are full.
+  // A child that does not read is given up when the sockets are full.
   child = DrawChild::start({script(folder, "echo ready 1 X; exec sleep 60"), 300ms});
   REQUIRE(child.has_value());
   RunChunk speckled = uniform_chunk(Extent::cube(kEdge), 1);
@@ -208,7 +210,7 @@ TEST_CASE("a child that ends, is silent or talks nonsense is an error that says 
   CHECK(refused);
 }
 
-TEST_CASE("a child that is dropped is gone", "[integration][draw]") {
+TEST_CASE("the destructor ends the child", "[integration][draw]") {
   const TempFolder folder;
   const std::string mark = folder / "pid";
   pid_t pid = 0;
@@ -223,7 +225,7 @@ TEST_CASE("a child that is dropped is gone", "[integration][draw]") {
   CHECK(::kill(pid, 0) != 0);
 }
 
-TEST_CASE("a child has none of our files", "[integration][draw]") {
+TEST_CASE("a child inherits no other descriptor", "[integration][draw]") {
   const TempFolder folder;
   const std::string list = folder / "list";
   std::ofstream held(folder / "held");  // std::ofstream opens without close-on-exec

@@ -1,4 +1,4 @@
-// PngFile: the pixels of a picture that a program wrote.
+// PngFile: the pixels of a PNG file.
 #pragma once
 #include <array>
 #include <catch2/catch.hpp>
@@ -36,7 +36,8 @@ class PngFile {
                pixels + static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
     stbi_image_free(pixels);
   }
-  /// Mean colour of the square of 2 r + 1 pixels around a place, 0 .. 1 from the left and the top.
+  /// Returns the mean colour of a square of 2 r + 1 pixels around a place, whose coordinates are 0
+  /// to 1 from the left and the top.
   std::array<int, 3> mean(double u, double v, int r = 2) const {
     const int x0 = static_cast<int>(u * width), y0 = static_cast<int>(v * height);
     std::array<int, 3> sum{};

@@ -1,5 +1,5 @@
-// runstone-replay timelapse, with the real client's program drawing. Where no OpenGL exists the cases that
-// draw say so with WARN and pass.
+// runstone-replay --timelapse, with the real client's program drawing. Where no OpenGL exists the
+// cases that draw say so with WARN and pass.
 #include <stdlib.h>
 
 #include <algorithm>
@@ -31,8 +31,7 @@ bool no_opengl() {
   return !child.has_value();
 }
 
-/// A flat world where edit i covers the next 8 of 80 voxels along x with red wool, 8 wide and one high, on the
-/// ground.
+/// A flat world. Edit i puts red wool on the next 8 of 80 voxels along x, 8 wide and one high.
 class RedCarpet {
  public:
   explicit RedCarpet(Sequence edits = kEdits) {
@@ -81,7 +80,7 @@ class RedCarpet {
   std::int32_t ground_ = 0;
 };
 
-/// How many of the edits' places are red.
+/// Returns how many of the edits' places are red.
 int red_places(const PngFile& picture) {
   int red = 0;
   for (int i = 0; i < 10; ++i) red += is_red(picture.mean(0.05 + 0.1 * i, 0.5)) ? 1 : 0;
@@ -100,7 +99,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// PATH for one test.
+/// Sets PATH for one test.
 class SearchPath {
  public:
   explicit SearchPath(const std::string& path) : before_(::getenv("PATH")) {
@@ -121,7 +120,7 @@ void write_program(const std::string& file, const std::string& script) {
 
 }  // namespace
 
-TEST_CASE("a timelapse has a frame every so many edits, the first moment and the last among them",
+TEST_CASE("a timelapse has a frame every N edits, and the first and last moment",
           "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet carpet;
@@ -145,7 +144,7 @@ TEST_CASE("a timelapse has a frame every so many edits, the first moment and the
   CHECK(report["edits"] == kEdits);
   CHECK(report["seconds"].get<double>() >= report["draw_seconds"].get<double>());
 
-  // Other moments, in another folder.
+  // A timelapse of other moments, in another folder.
   const std::string part = carpet / "part";
   const ReplayOutcome second = carpet.run_into(
       part, {"--from", "4", "--at", "8", "--every", "3", "--camera", carpet.camera()});
@@ -164,7 +163,7 @@ TEST_CASE("without a path the camera sees all edits, from the first frame on",
   const ReplayOutcome outcome = carpet.run();
   INFO(outcome.err << outcome.out);
   REQUIRE(outcome.code == 0);
-  REQUIRE(carpet.frame_count() == kEdits + 1);  // few edits: a frame each
+  REQUIRE(carpet.frame_count() == kEdits + 1);  // a frame for each of few edits
   CHECK(red_pixels(carpet.frame(1)) == 0);
   std::size_t before = 0;
   for (std::uint64_t number = 2; number <= kEdits + 1; ++number) {
@@ -172,7 +171,7 @@ TEST_CASE("without a path the camera sees all edits, from the first frame on",
     CHECK(red > before);
     before = red;
   }
-  // Ground all around: the picture's lower half is not sky.
+  // Ground is all around: the lower half of the picture is not sky.
   CHECK_FALSE(is_sky(carpet.frame(1).mean(0.5, 0.9)));
   CHECK_FALSE(is_sky(carpet.frame(1).mean(0.1, 0.6)));
 }
@@ -183,20 +182,21 @@ TEST_CASE("a camera follows its path while the world grows", "[integration][draw
   std::ifstream in(carpet.camera());
   std::string share, x, y;
   in >> share >> x >> y;
-  // From beside the carpet's beginning, where nothing ever changes, to above its middle.
+  // The camera moves from beside the start of the carpet, where no edit is made, to above its
+  // middle.
   std::ofstream(carpet.camera()) << "0% 400 " << y << " 400 180 -90\n100% 40 " << y
                                  << " 4 180 -90\n";
   const ReplayOutcome outcome = carpet.run({"--every", "5", "--camera", carpet.camera()});
   INFO(outcome.err << outcome.out);
   REQUIRE(outcome.code == 0);
   CHECK(red_pixels(carpet.frame(1)) == 0);
-  CHECK(is_green(carpet.frame(1).mean(0.5, 0.5)));  // there is ground where the camera is
+  CHECK(is_green(carpet.frame(1).mean(0.5, 0.5)));  // the ground below the camera
   CHECK(red_pixels(carpet.frame(2)) == 0);
   CHECK(is_green(carpet.frame(2).mean(0.5, 0.5)));
   CHECK(red_places(carpet.frame(3)) == 10);
 }
 
-TEST_CASE("a timelapse that cannot be is refused with the reason, before anything is drawn",
+TEST_CASE("an impossible timelapse is refused with the reason before a frame is drawn",
           "[integration][draw]") {
   const RedCarpet carpet;
   const auto refused = [&](std::vector<std::string> more) {
@@ -224,8 +224,7 @@ TEST_CASE("a timelapse that cannot be is refused with the reason, before anythin
                  "holds frames already (frame-000007.png)"));
 }
 
-TEST_CASE("a world without edits has nothing to look at, unless a path says where",
-          "[integration][draw]") {
+TEST_CASE("a timelapse of a world without edits needs a camera path", "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet bare(0);
   CHECK(contains(bare.run().err, "no edit, so there is nothing to look at"));
@@ -236,7 +235,7 @@ TEST_CASE("a world without edits has nothing to look at, unless a path says wher
   CHECK(is_green(bare.frame(1).mean(0.5, 0.5)));
 }
 
-TEST_CASE("ffmpeg joins the frames where it is there, and else the command is told",
+TEST_CASE("ffmpeg joins the frames if it is installed; otherwise its command is printed",
           "[integration][draw]") {
   if (no_opengl()) return;
   const RedCarpet carpet;

@@ -1,4 +1,4 @@
-// Draws off screen. Where no context exists the cases say so with WARN and pass: there is nothing to test.
+// Draws off screen. Where no OpenGL context exists the cases WARN and pass.
 #include "client/render/renderer.hpp"
 
 #include <array>
@@ -27,7 +27,8 @@ MaterialTable red_and_glass() {
 
 void add(QuadLayers& layers, const QuadFields& quad) { layers.quads.push_back(pack(quad)); }
 
-/// All six faces of the box [4, 4 + w) x [4, 5) x [4, 4 + h), as one quad each where the face is w x h.
+/// Returns a mesh with the six faces of the box [4, 4 + w) x [4, 5) x [4, 4 + h). A face of w x h
+/// is one quad.
 ChunkMesh slab() {
   ChunkMesh mesh;
   add(mesh.opaque, {4, 4, 4, 8, 8, Direction::pos_y, kRed});  // u = z, v = x
@@ -137,7 +138,7 @@ TEST_CASE("every direction faces outward: a cube looks closed from all six sides
     const Image image = draw_with(*context, camera, cube);
     CHECK(reddish(pixel(image, 0.5, 0.5)));
     ChunkMesh lacking =
-        cube;  // the oracle broken on purpose: without this face the centre shows through
+        cube;  // the oracle is broken on purpose: without this face the centre shows through
     lacking.opaque.quads.erase(lacking.opaque.quads.begin() + d);
     CHECK_FALSE(reddish(pixel(draw_with(*context, camera, lacking), 0.5, 0.5)));
   }
@@ -173,7 +174,7 @@ TEST_CASE("an empty mesh removes a chunk, and far worlds do not jitter", "[rende
   CHECK_FALSE(reddish(pixel(renderer.read_image(), 0.5, 0.5)));
 }
 
-TEST_CASE("the sky fills a picture without chunks", "[render]") {
+TEST_CASE("the sky fills a frame without chunks", "[render]") {
   const auto context = context_or_warn(&make_osmesa_context);
   if (!context) return;
   Renderer renderer(context->loader());

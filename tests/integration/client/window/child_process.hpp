@@ -1,4 +1,5 @@
-// ChildProcess: one program that a test starts, waits for and, whatever happens, ends: by its process id.
+// ChildProcess: a program that a test starts and waits for. The destructor ends it by its process
+// id.
 #pragma once
 #include <fcntl.h>
 #include <signal.h>
@@ -19,7 +20,7 @@
 
 namespace runstone::test {
 
-/// Where `program` lies on PATH; nothing if it is not installed.
+/// Returns the path of `program` on PATH, or nullopt if it is not installed.
 inline std::optional<std::string> find_program(const std::string& program) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -30,7 +31,7 @@ inline std::optional<std::string> find_program(const std::string& program) {
   return std::nullopt;
 }
 
-/// Asks until `ready` says yes or the time is over; returns what it said last.
+/// Calls `ready` until it returns true or the time is over. Returns its last result.
 template <class Ready>
 bool wait_for(std::chrono::milliseconds longest, const Ready& ready) {
   const auto end = std::chrono::steady_clock::now() + longest;
@@ -43,8 +44,9 @@ bool wait_for(std::chrono::milliseconds longest, const Ready& ready) {
 
 class ChildProcess {
  public:
-  /// `words`: program and arguments; `output`: file for standard output and error; `environment`: NAME=VALUE
-  /// beside ours; `kept`: a descriptor the child inherits under its own number, or -1.
+  /// `words` are the program and its arguments. `output` is the file for standard output and error.
+  /// `environment` has NAME=VALUE pairs to add. `kept` is a descriptor that the child inherits with
+  /// the same number, or -1.
   ChildProcess(std::vector<std::string> words, const std::string& output,
                std::vector<std::string> environment = {}, int kept = -1) {
     std::vector<char*> arguments;
@@ -67,7 +69,7 @@ class ChildProcess {
   }
   ~ChildProcess() {
     if (child_ <= 0) return;
-    ::kill(child_, SIGTERM);  // an X server removes its socket then
+    ::kill(child_, SIGTERM);  // on this signal an X server removes its socket
     if (wait(std::chrono::seconds(10)) || child_ <= 0) return;
     ::kill(child_, SIGKILL);
     ::waitpid(child_, nullptr, 0);
@@ -75,7 +77,8 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// The exit code once it has ended by itself, or nothing after this long or if a signal ended it.
+  /// Waits for the end. Returns the exit code, or nullopt if the time is over or a signal ended the
+  /// program.
   std::optional<int> wait(std::chrono::milliseconds longest) {
     int status = 0;
     if (!wait_for(longest, [&] { return ::waitpid(child_, &status, WNOHANG) == child_; }))

@@ -1,5 +1,5 @@
-// VirtualDisplay: an X server without a screen (Xvfb) on a free display number, a hand for its mouse and keys
-// (xdotool), and what would be seen on it, read from the framebuffer file that Xvfb keeps.
+// VirtualDisplay: an X server without a screen (Xvfb) on a free display number. xdotool controls
+// its mouse and keys. Pixels are read from the framebuffer file of Xvfb.
 #pragma once
 #include <fcntl.h>
 #include <unistd.h>
@@ -35,7 +35,8 @@ struct Grab {
   friend bool operator==(const Grab&, const Grab&) = default;
 };
 
-/// The share of pixels that differ by more than `step` in some colour. Requires equal sizes.
+/// Returns the share of pixels that differ by more than `step` in some colour. Requires equal
+/// sizes.
 inline double changed_share(const Grab& a, const Grab& b, int step = 12) {
   REQUIRE(a.pixels.size() == b.pixels.size());
   std::size_t changed = 0;
@@ -50,7 +51,7 @@ inline double changed_share(const Grab& a, const Grab& b, int step = 12) {
 
 class VirtualDisplay {
  public:
-  /// `folder` is for the framebuffer and logs. Requires both programs to be installed.
+  /// `folder` is for the framebuffer and logs. Requires that both programs are installed.
   VirtualDisplay(const std::string& folder, int width, int height)
       : folder_(folder), xdotool_(find_program("xdotool").value()) {
     int ends[2];
@@ -63,36 +64,37 @@ class VirtualDisplay {
         folder + "/xvfb.log", std::vector<std::string>{}, ends[1]);
     ::close(ends[1]);
     std::string number;
-    // It writes its number when it is ready, or closes the pipe when it fails.
+    // Xvfb writes its display number when it is ready, and closes the pipe when it fails.
     for (char c = 0; ::read(ends[0], &c, 1) == 1 && c != '\n';) number.push_back(c);
     ::close(ends[0]);
     REQUIRE_FALSE(number.empty());
     name_ = ":" + number;
   }
 
-  /// DISPLAY=..., and the driver that needs no GPU.
+  /// Returns DISPLAY=... and the setting for a driver without a GPU.
   std::vector<std::string> environment() const {
     return {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"};
   }
 
-  /// Runs xdotool; whether it succeeded.
+  /// Runs xdotool. Returns true if it succeeded.
   bool hand(std::vector<std::string> words) {
     words.insert(words.begin(), xdotool_);
     ChildProcess process(std::move(words), folder_ + "/xdotool.log", environment());
     return process.wait(std::chrono::seconds(20)) == 0;
   }
 
-  /// Ends the X server, whoever has windows on it.
+  /// Ends the X server, also if programs have windows on it.
   void end() { server_.reset(); }
 
-  /// The pixels [x, x + width) x [y, y + height) as they are now: a picture that is just being drawn may be
-  /// half old, half new. Requires that they lie on the display.
+  /// Returns the pixels [x, x + width) x [y, y + height). During a draw they may be partly old and
+  /// partly new. Requires that they are on the display.
   Grab grab(int x, int y, int width, int height) const {
     std::ifstream file(folder_ + "/Xvfb_screen0", std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     constexpr std::size_t kHeaderBytes = 100;
-    REQUIRE(bytes.size() >= kHeaderBytes);  // mapped by Xvfb, whole before it says its number
-    // XWD: big-endian words; header size, ..., 12: bytes per line, ..., 19: colours, each of 12 bytes.
+    REQUIRE(bytes.size() >= kHeaderBytes);  // Xvfb maps the whole file before it writes its number
+    // XWD: big-endian words; header size, ..., 12: bytes per line, ..., 19: colours, each of 12
+    // bytes.
     const auto word = [&bytes](std::size_t i) {
       std::size_t value = 0;
       for (std::size_t b = 0; b < 4; ++b)

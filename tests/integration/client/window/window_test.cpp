@@ -1,5 +1,5 @@
-// The client as people meet it: a window on an X server, a mouse and a keyboard; the real programs. What is
-// seen is read from the display itself, what happened from another client's commits.
+// The real client program with a window on an X server, a mouse and a keyboard. The test reads
+// pixels from the display, and edits from the commits that another client receives.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
@@ -30,7 +30,7 @@ constexpr double kChanged =
     0.5;  // of the middle; a picked voxel's outline and the cross hair are less
 constexpr std::chrono::seconds kLong{60};  // for a step on a machine that has much else to do
 
-/// Programs the test cannot do without and this machine lacks.
+/// Returns the required programs that this machine lacks.
 std::string missing_programs() {
   std::string missing;
   for (const char* program : {"Xvfb", "xdotool"}) {
@@ -39,12 +39,13 @@ std::string missing_programs() {
   return missing;
 }
 
-/// The middle of a window of this size at the corner of the display: less than the voxel that is aimed at.
+/// Returns the middle of a window of this size at the corner of the display. It is smaller than the
+/// voxel aimed at.
 Grab centre(const VirtualDisplay& display, int width, int height) {
   return display.grab(width / 2 - 20, height / 2 - 14, 40, 28);
 }
 
-/// The middle once it has stopped changing.
+/// Returns the middle once it has stopped changing.
 Grab settled_centre(const VirtualDisplay& display, int width = kWidth, int height = kHeight) {
   Grab last = centre(display, width, height);
   int same = 0;
@@ -64,7 +65,7 @@ bool shows_ground(const Grab& grab) {
          mean[1] > mean[2] + 10;  // grass: neither black nor sky
 }
 
-/// The edit that the server orders next.
+/// Returns the edit that the server orders next.
 EditDescriptor next_edit(RawClient& watcher) {
   std::optional<EditDescriptor> edit;
   wait_for(kLong, [&] {
@@ -95,7 +96,7 @@ std::string text_of(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("a display that goes away ends the client with the code of a missing one",
+TEST_CASE("a display that goes away ends the client with the exit code of a missing display",
           "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
     WARN("skipped: not installed:" << missing);
@@ -121,21 +122,19 @@ TEST_CASE("a display that goes away ends the client with the code of a missing o
   CHECK(server->stop().is_clean);
 }
 
-TEST_CASE(
-    "in a window a left click digs, a right click places, and it can be resized, pictured and left",
-    "[integration]") {
+TEST_CASE("in a window, clicks dig and place, and resizing, F2 and escape work", "[integration]") {
   if (const std::string missing = missing_programs(); !missing.empty()) {
     WARN("skipped: not installed:" << missing);
     return;
   }
   const TempFolder folder;
   ServerConfig config = quiet_config(folder / "world");
-  config.idle_s = 3'600;  // the watcher says nothing
+  config.idle_s = 3'600;  // the watcher sends nothing
   const auto server = start_server(config, flat_creation());
   RawClient watcher(server->port());
   REQUIRE(watcher.join(1).has_value());
   watcher.send(View{{0, 0, 0}, 2, 2});
-  watcher.send(Move{{{0.5, 60.0, -60.0}, 0, 0}});  // out of the picture
+  watcher.send(Move{{{0.5, 60.0, -60.0}, 0, 0}});  // out of view
 
   VirtualDisplay display(folder / ".", 800, 600);
   const std::string log = folder / "client.log";
@@ -155,7 +154,7 @@ TEST_CASE(
   REQUIRE(has_window);
   REQUIRE(wait_for(kLong, [&] { return text_of(log).find("world open") != std::string::npos; }));
 
-  // The first click takes the mouse; then it looks down at the ground some voxels ahead.
+  // The first click captures the mouse. Then the player looks down at the ground some voxels ahead.
   REQUIRE(display.hand(with_window({"windowfocus", "mousemove", "240", "180", "click", "1"})));
   for (int step = 0; step < 4; ++step)
     REQUIRE(display.hand({"mousemove_relative", "--", "0", "80"}));
@@ -175,12 +174,11 @@ TEST_CASE(
   const EditDescriptor placed = next_edit(watcher);
   CHECK(placed.material == 1);
   REQUIRE(std::holds_alternative<SetVoxel>(placed.shape));
-  CHECK(std::get<SetVoxel>(placed.shape).at ==
-        std::get<SetVoxel>(dug.shape).at);  // back into the hole
+  CHECK(std::get<SetVoxel>(placed.shape).at == std::get<SetVoxel>(dug.shape).at);  // the same voxel
   REQUIRE(wait_for(
       kLong, [&] { return changed_share(hole, centre(display, kWidth, kHeight)) > kChanged; }));
 
-  // A smaller window shows a smaller picture, filled to its edge, and F2 takes one of that size.
+  // A smaller window shows a smaller frame, filled to its edge, and F2 writes one of that size.
   REQUIRE(display.hand(with_window({"windowsize", "320", "240"})));
   REQUIRE(wait_for(kLong, [&] { return shows_ground(display.grab(290, 210, 20, 20)); }));
   static_cast<void>(settled_centre(display, 320, 240));

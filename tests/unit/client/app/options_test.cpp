@@ -26,18 +26,18 @@ int refused(std::vector<const char*> arguments) {
 
 }  // namespace
 
-TEST_CASE("the address is host and port, also in v6 form", "[client_app]") {
-  CHECK(accepted({"--connect", "example.org:4000"}).host == "example.org");
-  CHECK(accepted({"--connect", "example.org:4000"}).port == 4000);
-  CHECK(accepted({"--connect", "[::1]:4000"}).host == "::1");
-  CHECK(refused({"--connect", "example.org"}) == 2);
+TEST_CASE("the address is a host with or without a port, also in IPv6", "[client_app]") {
+  CHECK(accepted({"--connect", "example.org:4000"}).server == HostPort{"example.org", 4000});
+  CHECK(accepted({"--connect", "[::1]:4000"}).server == HostPort{"::1", 4000});
+  CHECK(accepted({"--connect", "localhost"}).server == HostPort{"localhost", 4747});
+  CHECK(accepted({"--connect", "::1"}).server == HostPort{"::1", 4747});
   CHECK(refused({"--connect", "example.org:0"}) == 2);
   CHECK(refused({"--connect", "example.org:65536"}) == 2);
   CHECK(refused({"--connect", ":4000"}) == 2);
   CHECK(refused({}) == 2);
 }
 
-TEST_CASE("a program that draws for others needs no server, and takes none", "[client_app]") {
+TEST_CASE("the mode --draw requires no server and accepts none", "[client_app]") {
   CHECK(accepted({"--draw"}).draw);
   CHECK(accepted({"--draw", "--workers", "3"}).workers == 3);
   CHECK_FALSE(accepted({"--connect", "a:1"}).draw);
@@ -47,7 +47,18 @@ TEST_CASE("a program that draws for others needs no server, and takes none", "[c
   CHECK(refused({"--draw", "--help"}) == 0);
 }
 
-TEST_CASE("a client that somebody watches keeps a cache, the others where they are told to",
+TEST_CASE("a client that lists materials draws nothing and plays no script", "[client_app]") {
+  const ClientOptions options = accepted({"--connect", "a:1", "--materials"});
+  CHECK(options.list_materials);
+  CHECK_FALSE(options.render);
+  CHECK_FALSE(options.cache);
+  CHECK_FALSE(accepted({"--connect", "a:1"}).list_materials);
+  CHECK(refused({"--materials"}) == 2);
+  CHECK(refused({"--connect", "a:1", "--materials", "--report", "x"}) == 2);
+  CHECK(refused({"--draw", "--materials"}) == 2);
+}
+
+TEST_CASE("a client with a window has a cache; other clients have one if an option asks for it",
           "[client_app]") {
   CHECK(accepted({"--connect", "a:1"}).cache);
   CHECK(accepted({"--connect", "a:1"}).cache_mib == 256);
@@ -60,8 +71,8 @@ TEST_CASE("a client that somebody watches keeps a cache, the others where they a
   CHECK(refused({"--connect", "a:1", "--cache-mib", "0"}) == 2);
 }
 
-TEST_CASE("of two equal flags the last one counts", "[client_app]") {
-  CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).host == "b");
+TEST_CASE("of two values of one flag the last one counts", "[client_app]") {
+  CHECK(accepted({"--connect", "a:1", "--connect", "b:2"}).server.host == "b");
 }
 
 TEST_CASE("sizes, views and encodings become numbers", "[client_app]") {

@@ -10,7 +10,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 }
 
-TEST_CASE("a pose carries yaw and pitch in the units of the wire", "[client_app]") {
+TEST_CASE("a pose has yaw and pitch in the units of the protocol", "[client_app]") {
   Player player;
   player.move_to({1, 2, 3});
   player.look(kPi / 2, kPi / 4);
@@ -18,13 +18,14 @@ TEST_CASE("a pose carries yaw and pitch in the units of the wire", "[client_app]
   CHECK(player.pose().yaw == 16384);
   CHECK(player.pose().pitch == 8192);
   CHECK(yaw_of(player.pose()) == Approx(kPi / 2));
-  player.look(-kPi / 2, -kPi);  // wrapped, and kept short of straight down
+  player.look(-kPi / 2, -kPi);  // yaw is wrapped, pitch limited to just less than straight down
   CHECK(player.pose().yaw == 49152);
   CHECK(player.pose().pitch > -16384);
   CHECK(player.pose().pitch < -16000);
 }
 
-TEST_CASE("forward goes where the player looks, right goes to the right of it", "[client_app]") {
+TEST_CASE("forward moves in the direction of sight, and right moves to the right of it",
+          "[client_app]") {
   Player player;
   WindowInput input;
   input.forward = true;
@@ -35,7 +36,7 @@ TEST_CASE("forward goes where the player looks, right goes to the right of it", 
   input = {};
   input.right = true;
   player.steer(input, 1, 10);
-  CHECK(player.eye().x < -1);  // right-handed, y up: to the right of +z lies -x
+  CHECK(player.eye().x < -1);  // in right-handed coordinates with y up, -x is to the right of +z
   player = Player();
   input = {};
   input.look_dx = 100;  // the mouse moves right
@@ -47,7 +48,7 @@ TEST_CASE("forward goes where the player looks, right goes to the right of it", 
   CHECK(player.direction().y > 0);
 }
 
-TEST_CASE("digits and the wheel choose among the materials there are", "[client_app]") {
+TEST_CASE("digits and the wheel select one of the world's materials", "[client_app]") {
   Player player;
   WindowInput input;
   input.digit = 4;
@@ -63,7 +64,7 @@ TEST_CASE("digits and the wheel choose among the materials there are", "[client_
   CHECK(player.held() == 7);
 }
 
-TEST_CASE("the chunk of the eye is found by floor", "[client_app]") {
+TEST_CASE("the chunk of the eye is found by floor division", "[client_app]") {
   Player player;
   player.move_to({-0.5, 15.9, 16});
   CHECK(player.chunk(16) == ChunkCoord{-1, 0, 1});
@@ -82,7 +83,7 @@ TEST_CASE(
   player.move_to({500, 60, 500});
   player.enter(first, {10, 20, 30});  // the server was restarted
   CHECK(player.eye() == WorldPos{500, 60, 500});
-  player.enter(second, {-1, 2, -3});  // another world behind the same port
+  player.enter(second, {-1, 2, -3});  // another world at the same address
   CHECK(player.eye() == WorldPos{-1, 2, -3});
   player.enter(first, {10, 20, 30});
   CHECK(player.eye() == WorldPos{10, 20, 30});

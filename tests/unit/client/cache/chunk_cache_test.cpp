@@ -28,7 +28,7 @@ CachedWorld world_at(Epoch epoch, Sequence durable, Sequence head, std::uint8_t 
 
 ChunkKey key_at(std::int32_t i) { return {0, {i % 16, -3 + i / 256, (i / 16) % 16}}; }
 
-/// The voxels that a chunk has at a version, and no other chunk or version.
+/// Returns voxels that no other chunk or version has.
 ChunkPtr chunk_at(const ChunkKey& key, const Version& version) {
   SplitMix64 rng{mix64(version.seq * 31 + version.epoch) ^
                  static_cast<std::uint64_t>(key.at.x * 7919 + key.at.y * 104729 + key.at.z)};
@@ -58,20 +58,20 @@ std::unique_ptr<ChunkCache> opened(const std::string& folder, std::uint64_t byte
   return *std::move(cache);
 }
 
-/// Whatever was found is what was kept of that key and version.
+/// Checks that each chunk found is the one that was stored with its key and version.
 void require_true(const std::vector<KeyedChunk>& found) {
   for (const auto& [key, chunk] : found) REQUIRE(*chunk == *chunk_at(key, chunk->version));
 }
 
 }  // namespace
 
-TEST_CASE("chunks come back as they were kept, in another run too", "[cache]") {
+TEST_CASE("chunks are found as they were stored, also in another run", "[cache]") {
   const TempFolder folder;
   const CachedWorld world = world_at(3, 90, 100);
   {
     const auto cache = opened(folder.path());
     cache->keep(world, chunks_at(0, 100, {3, 50}));
-    cache->keep(world, chunks_at(10, 10, {3, 60}));  // newer states of some
+    cache->keep(world, chunks_at(10, 10, {3, 60}));  // newer versions of some
     CHECK(cache->counters().kept == 110);
   }
   const auto cache = opened(folder.path());
@@ -86,7 +86,7 @@ TEST_CASE("chunks come back as they were kept, in another run too", "[cache]") {
   CHECK(cache->take_warning().empty());
 }
 
-TEST_CASE("of a server that came back, only common history is found", "[cache]") {
+TEST_CASE("after a restart of the server only common history is found", "[cache]") {
   const TempFolder folder;
   const auto cache = opened(folder.path());
   cache->keep(world_at(1, 100, 110), chunks_at(0, 1, {}));
@@ -96,7 +96,7 @@ TEST_CASE("of a server that came back, only common history is found", "[cache]")
       "a crash: what was not known to be durable is gone, though the log has grown past it again") {
     CHECK(cache->find(world_at(2, 500, 500), keys_of(0, 3)).size() == 2);
     CHECK(cache->counters().not_common == 1);
-    // And it stays gone, when later marks are beyond it.
+    // It is not found later either, when the durable sequence is beyond it.
     CHECK(cache->find(world_at(3, 900, 900), keys_of(0, 3)).size() == 2);
   }
   SECTION("a crash that lost more than was thought durable") {
@@ -115,13 +115,13 @@ TEST_CASE("of a server that came back, only common history is found", "[cache]")
   }
 }
 
-TEST_CASE("the cache keeps its bound, and drops what was longest unused", "[cache]") {
+TEST_CASE("the cache keeps its size bound and evicts the chunks unused for longest", "[cache]") {
   const TempFolder folder;
   const CachedWorld world = world_at(1, 1000, 1000);
   const auto cache = opened(folder.path(), kMiB / 2);
   for (int batch = 0; batch < 20; ++batch) {
     cache->keep(world, chunks_at(batch * 50, 50, {1, 7}));
-    CHECK(cache->find(world, keys_of(0, 10)).size() == 10);  // these are used all the time
+    CHECK(cache->find(world, keys_of(0, 10)).size() == 10);  // used in each round
     CHECK(cache->bytes() <= kMiB / 2);
   }
   CHECK(cache->counters().evicted > 100);
@@ -130,7 +130,7 @@ TEST_CASE("the cache keeps its bound, and drops what was longest unused", "[cach
   CHECK(std::filesystem::file_size(folder / "cache.sqlite") <= kMiB);
 }
 
-TEST_CASE("flipped bits never give a wrong chunk", "[cache]") {
+TEST_CASE("a file with flipped bits never gives a wrong chunk", "[cache]") {
   const TempFolder folder;
   const CachedWorld world = world_at(1, 1000, 1000);
   opened(folder.path())->keep(world, chunks_at(0, 200, {1, 7}));
@@ -154,7 +154,7 @@ TEST_CASE("flipped bits never give a wrong chunk", "[cache]") {
     lost += 200 - found.size();
     corrupt += cache->counters().corrupt;
     set_aside += cache->counters().databases_set_aside;
-    // It goes on, whatever happened.
+    // The cache goes on working.
     cache->keep(world, chunks_at(500, 5, {1, 9}));
     require_true(cache->find(world, keys_of(0, 200)));
   }
@@ -163,7 +163,7 @@ TEST_CASE("flipped bits never give a wrong chunk", "[cache]") {
   CHECK(set_aside > 0);
 }
 
-TEST_CASE("a damaged database is set aside with a warning, and a new one begun", "[cache]") {
+TEST_CASE("a damaged database is set aside with a warning, and a new one is begun", "[cache]") {
   const TempFolder folder;
   std::ofstream(folder / "cache.sqlite") << std::string(10'000, 'x');
   const auto cache = opened(folder.path());
@@ -175,7 +175,7 @@ TEST_CASE("a damaged database is set aside with a warning, and a new one begun",
   CHECK(cache->find(world, keys_of(0, 3)).size() == 3);
 }
 
-TEST_CASE("one process at a time has the cache", "[cache]") {
+TEST_CASE("one process at a time uses the cache", "[cache]") {
   const TempFolder folder;
   auto first = opened(folder.path());
   const auto second = ChunkCache::open(folder.path(), kMiB);
@@ -186,7 +186,7 @@ TEST_CASE("one process at a time has the cache", "[cache]") {
   CHECK_FALSE(ChunkCache::open("/proc/no/such/folder", kMiB).has_value());
 }
 
-TEST_CASE("a client killed while it writes leaves no wrong chunk", "[cache]") {
+TEST_CASE("a client that is killed while it writes leaves no wrong chunk", "[cache]") {
   const TempFolder folder;
   const CachedWorld world = world_at(1, 1'000'000, 1'000'000);
   SplitMix64 rng{Catch::rngSeed()};

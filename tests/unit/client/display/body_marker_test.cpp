@@ -4,7 +4,8 @@
 
 using namespace runstone;
 
-TEST_CASE("another player is a box around the eye, in a colour of their own", "[client_app]") {
+TEST_CASE("another player is a box around the eye, in a colour that depends on the player",
+          "[client_app]") {
   const WorldPos far_away{100, 0, 0};
   const auto ada = body_marker(1, {10, 20, 30}, far_away);
   const auto bob = body_marker(2, {10, 20, 30}, far_away);
@@ -19,11 +20,11 @@ TEST_CASE("another player is a box around the eye, in a colour of their own", "[
   CHECK((ada->r != bob->r || ada->g != bob->g || ada->b != bob->b));
 }
 
-TEST_CASE("who stands in another player does not see the inside of their box", "[client_app]") {
+TEST_CASE("the box of another player is not drawn if the eye is in it", "[client_app]") {
   const WorldPos other{10, 20, 30};
   CHECK_FALSE(body_marker(1, other, other).has_value());            // both at the spawn
-  CHECK_FALSE(body_marker(1, other, {10, 18.5, 30}).has_value());   // in their feet
-  CHECK_FALSE(body_marker(1, other, {10.35, 20, 30}).has_value());  // nearer than a picture begins
+  CHECK_FALSE(body_marker(1, other, {10, 18.5, 30}).has_value());   // in the feet
+  CHECK_FALSE(body_marker(1, other, {10.35, 20, 30}).has_value());  // nearer than the near plane
   CHECK(body_marker(1, other, {11, 20, 30}).has_value());
   CHECK(body_marker(1, other, {10, 21, 30}).has_value());
   CHECK(body_marker(1, other, {10, 20, 28}).has_value());

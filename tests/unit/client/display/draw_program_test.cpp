@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "common/os/exit_code.hpp"
+#include "client/report/exit_code.hpp"
 #include "protocol/codec/draw_answer.hpp"
 #include "protocol/codec/draw_order.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -69,7 +69,7 @@ std::string failure_in(const DrawAnswer& answer) {
 
 }  // namespace
 
-TEST_CASE("the draw program answers each picture once it is on the disk", "[client_app]") {
+TEST_CASE("the draw program answers for each picture once its file is on disk", "[client_app]") {
   Bench bench;
   append_draw_chunk({0, {2, 0, 0}}, uniform_chunk(Extent::cube(16), 1), bench.orders);
   bench.order_picture("a.png");
@@ -94,8 +94,9 @@ TEST_CASE("the draw program answers each picture once it is on the disk", "[clie
   CHECK(outcome.screen == screen);
 }
 
-TEST_CASE("a picture that cannot be written is answered by name, and the next one is drawn",
-          "[client_app]") {
+TEST_CASE(
+    "for a picture that cannot be written the answer names the file, and the next one is drawn",
+    "[client_app]") {
   Bench bench;
   bench.order_picture("no/such/folder/a.png");
   bench.order_picture("b.png");
@@ -107,7 +108,7 @@ TEST_CASE("a picture that cannot be written is answered by name, and the next on
   CHECK(std::filesystem::exists(bench.folder / "b.png"));
 }
 
-TEST_CASE("orders that are wrong or break off end the draw program with the reason",
+TEST_CASE("orders that are wrong or end early end the draw program with the reason",
           "[client_app]") {
   Bench bench;
   const auto begun = std::to_string(bench.orders.size());
@@ -126,7 +127,7 @@ TEST_CASE("orders that are wrong or break off end the draw program with the reas
   }
 }
 
-TEST_CASE("no OpenGL, or a driver that fails, ends the draw program with what the driver says",
+TEST_CASE("a missing OpenGL or a failing driver ends the draw program with the driver's text",
           "[client_app]") {
   Bench bench;
   bench.order_picture("a.png");

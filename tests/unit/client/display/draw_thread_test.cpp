@@ -34,10 +34,10 @@ FrameOrder small_frame() {
   return order;
 }
 
-/// A draw thread over a fake screen, and what it did so far.
+/// A draw thread with a fake screen, and the list of what it did.
 struct Bench {
   Bench() = default;
-  ~Bench() { book.release(); }  // a check that failed leaves no frame held
+  ~Bench() { book.release(); }  // also after a failed check, so that the thread can end
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
@@ -46,7 +46,7 @@ struct Bench {
   std::vector<DrawDone> done;
   DrawThread thread{fake_screen_on(book), DrawPriority::normal, [this] { wake.notify(); }};
 
-  /// Until this many frames are done.
+  /// Waits until this many frames are done.
   void take_frames(std::size_t count) {
     while (frames() < count) {
       wake.wait(std::chrono::seconds(1));
@@ -62,8 +62,9 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("what changes during a frame waits for its end, and only the newest of each chunk",
-          "[client_app]") {
+TEST_CASE(
+    "changes during a frame wait for its end, and only the newest change of each chunk is done",
+    "[client_app]") {
   Bench bench;
   CHECK(bench.thread.screen_name() == "fake");
   bench.book.hold();
@@ -87,7 +88,7 @@ TEST_CASE("what changes during a frame waits for its end, and only the newest of
 }
 
 TEST_CASE(
-    "what is reported comes in the order of the draw thread: uploads, then the frame that shows "
+    "results come in the order of the draw thread: uploads, then the frame that shows "
     "them",
     "[client_app]") {
   Bench bench;
@@ -121,7 +122,7 @@ TEST_CASE("materials reach the screen before the frame that needs them", "[clien
   CHECK(bench.book.lines() == Lines{"materials " + std::to_string(MaterialTable{}.size()), "draw"});
 }
 
-TEST_CASE("a screenshot is written from its frame, and one that cannot be is named",
+TEST_CASE("a screenshot shows its frame, and a file that cannot be written is named",
           "[client_app]") {
   const test::TempFolder folder;
   Bench bench;
@@ -134,25 +135,27 @@ TEST_CASE("a screenshot is written from its frame, and one that cannot be is nam
   CHECK(std::filesystem::file_size(folder / "picture.png") > 0);
 }
 
-TEST_CASE("a screen that cannot be made fails the start with its words", "[client_app]") {
+TEST_CASE("a screen that cannot be made fails the start with the same text", "[client_app]") {
   const auto none = []() -> std::unique_ptr<Screen> { throw std::runtime_error("no OpenGL here"); };
   const auto odd = []() -> std::unique_ptr<Screen> { throw 7; };
   CHECK_THROWS_WITH(DrawThread(none, DrawPriority::normal, nullptr), "no OpenGL here");
   CHECK_THROWS_AS(DrawThread(odd, DrawPriority::normal, nullptr), std::runtime_error);
 }
 
-TEST_CASE("a frame that fails is an error on the main thread, every time it asks", "[client_app]") {
+TEST_CASE("after a frame failed, every take_done() on the main thread throws", "[client_app]") {
   Bench bench;
   bench.book.fail_next();
   bench.thread.draw(small_frame());
   const auto take_until_failed = [&bench] { bench.take_frames(1); };
   CHECK_THROWS_WITH(take_until_failed(), "the cable is out");
-  bench.thread.upload(chunk(1), mesh_of(1, 1));  // still taken, never done
+  bench.thread.upload(chunk(1), mesh_of(1, 1));  // accepted, but never done
   CHECK_THROWS_WITH(bench.thread.take_done(), "the cable is out");
 }
 
-TEST_CASE("ending lets the frame under way end and drops what waits; the screen goes on its thread",
-          "[client_app]") {
+TEST_CASE(
+    "the destructor finishes the current frame, drops queued work and destroys the screen on its "
+    "thread",
+    "[client_app]") {
   FakeScreenBook book;
   {
     DrawThread thread(fake_screen_on(book), DrawPriority::background, nullptr);
@@ -162,7 +165,8 @@ TEST_CASE("ending lets the frame under way end and drops what waits; the screen 
     thread.upload(chunk(1), mesh_of(1, 1));
     const std::jthread later([&book] { book.release(); });
   }
-  // Released before the end was asked for or after: then the upload may have been done.
+  // The frame may be released before the end is requested. In that case the upload may have been
+  // done.
   Lines lines = book.lines();
   std::erase(lines, "upload 1 quads 1");
   CHECK(lines == Lines{"draw", "gone"});

@@ -19,7 +19,7 @@ ChunkKey at(std::int32_t x) { return {0, {x, 0, 0}}; }
 
 RunChunk stone() { return uniform_chunk(Extent::cube(kEdge), 1); }
 
-/// Stone but for the voxel at (x, 5, 5).
+/// Returns a chunk of stone without the voxel at (x, 5, 5).
 RunChunk holed(unsigned x) {
   RunChunk chunk = stone();
   fill(chunk, x + kEdge * (5 + kEdge * 5), 1, kEmpty);
@@ -30,7 +30,7 @@ class Drawn {
  public:
   explicit Drawn(unsigned workers = 0)
       : screen_(book_), world(screen_, kEdge, default_material_table(), workers) {}
-  /// What the screen was told by a picture of now, sorted; without the frame itself.
+  /// Draws, and returns the sorted calls of the screen without the frame itself.
   Lines draw() {
     const std::size_t before = book_.lines().size();
     world.draw(Camera{}, 64, 48);
@@ -53,8 +53,10 @@ class Drawn {
 
 }  // namespace
 
-TEST_CASE("a picture meshes what changed since the last one, with the neighbours that see it",
-          "[client_app]") {
+TEST_CASE(
+    "a picture meshes the chunks that changed since the last one, and the neighbours that touch a "
+    "change",
+    "[client_app]") {
   Drawn drawn;
   CHECK(drawn.draw().empty());
   CHECK(drawn.world.put(at(0), stone()));
@@ -65,26 +67,26 @@ TEST_CASE("a picture meshes what changed since the last one, with the neighbours
   CHECK(drawn.draw().empty());
   drawn.world.put(at(1), holed(7));
   CHECK(drawn.draw() == Lines{"upload 1 quads 11"});
-  drawn.world.put(at(1), holed(0));  // towards chunk 0, which shows a face there now
+  drawn.world.put(at(1), holed(0));  // at the border to chunk 0, which now has a face there
   CHECK(drawn.draw() == Lines{"upload 0 quads 6", "upload 1 quads 10"});
   CHECK(drawn.world.chunk_count() == 2);
 }
 
-TEST_CASE("a chunk that is forgotten leaves its neighbours open", "[client_app]") {
+TEST_CASE("after a chunk is removed its neighbours have faces towards it", "[client_app]") {
   Drawn drawn;
   for (int x = 0; x < 3; ++x) drawn.world.put(at(x), stone());
   drawn.draw();
   drawn.world.forget(at(1));
-  drawn.world.forget(at(7));  // never held
+  drawn.world.forget(at(7));  // never stored
   CHECK(drawn.draw() == Lines{"upload 0 quads 6", "upload 2 quads 6"});
   CHECK(drawn.world.chunk_count() == 2);
-  // One that was to be meshed is not any more.
+  // A removed chunk that waited for a mesh is not meshed.
   drawn.world.put(at(9), stone());
   drawn.world.forget(at(9));
   CHECK(drawn.draw().empty());
 }
 
-TEST_CASE("mesh threads make the same picture", "[client_app]") {
+TEST_CASE("mesh threads upload the same meshes", "[client_app]") {
   Drawn alone, together(3);
   for (int x = 0; x < 200; ++x) {
     alone.world.put(at(x), holed(static_cast<unsigned>(x) % kEdge));

@@ -1,4 +1,4 @@
-// FakeScreen: a screen without OpenGL that writes down what it is told, and draws only when a test lets it.
+// FakeScreen: a screen without OpenGL that records its calls. A test can hold its frames.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace runstone::test {
 
-/// What a test and its screen share. Any thread.
+/// The state that a test and its screen share. Thread: any.
 class FakeScreenBook {
  public:
   void write(std::string line) {
@@ -25,7 +25,7 @@ class FakeScreenBook {
     const std::lock_guard lock(mutex_);
     return lines_;
   }
-  /// From now on a frame that has begun ends only with release().
+  /// After this call a frame ends only with release().
   void hold() {
     const std::lock_guard lock(mutex_);
     held_ = true;
@@ -41,7 +41,7 @@ class FakeScreenBook {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return drawing_; });
   }
-  /// The next frame throws.
+  /// Makes the next frame throw.
   void fail_next() {
     const std::lock_guard lock(mutex_);
     fails_ = true;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int32_t kEdge = 16;
 
-/// One chunk in view, meshed on this thread, drawn on a fake screen off screen.
+/// One chunk in view, meshed on this thread and drawn on a fake screen, as off screen.
 struct Fixture {
   Fixture() {
     replica.set_view({{0, 0, 0}, 0, 0});
@@ -35,11 +35,11 @@ struct Fixture {
   Fixture(const Fixture&) = delete;
   Fixture& operator=(const Fixture&) = delete;
 
-  /// What others did reaches the workers and the draw thread.
+  /// Passes changes to the workers and their meshes to the draw thread.
   void turn() {
     pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
     pipeline.mesh();  // meshes
-    pipeline.mesh();  // hands over
+    pipeline.mesh();  // queues the meshes for upload
   }
   void edit(VoxelPos at) {
     REQUIRE(replica.receive(world.commit({9, 1, ++edits}, {SetVoxel{at}, {}, 1}), {}).has_value());
@@ -86,8 +86,8 @@ TEST_CASE_METHOD(
   order();
   book.wait_until_drawing();
   edit({5, 5, 5});
-  order();  // one is under way: none is added
-  CHECK_FALSE(pipeline.is_settled());
+  order();  // a frame is in progress, so no frame is ordered
+  CHECK_FALSE(pipeline.is_up_to_date());
   book.release();
   take_frames(2);
   CHECK(edits_presented() == 1);
@@ -97,14 +97,14 @@ TEST_CASE_METHOD(
   take_frames(3);
   CHECK(edits_presented() == 2);
   CHECK(pipeline.recorder().open_edits() == 0);
-  CHECK(pipeline.is_settled());
+  CHECK(pipeline.is_up_to_date());
 }
 
 TEST_CASE_METHOD(Fixture, "off screen an edit is drawn at once and anything else after a pause",
                  "[client_app]") {
   pipeline.moved();
   pipeline.draw(0, Camera{}, {8, 4},
-                [] { return std::vector<Marker>{}; });  // long before the pause ends
+                [] { return std::vector<Marker>{}; });  // before the pause ends
   CHECK(pipeline.screenshots_done());
   edit({5, 5, 5});
   pipeline.draw(0, Camera{}, {8, 4}, [] { return std::vector<Marker>{}; });
@@ -114,31 +114,32 @@ TEST_CASE_METHOD(Fixture, "off screen an edit is drawn at once and anything else
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "nothing is settled before a frame has shown it, terrain as little as edits",
+                 "the pipeline is up to date only after a frame has shown all terrain and edits",
                  "[client_app]") {
-  CHECK(pipeline.is_settled());
+  CHECK(pipeline.is_up_to_date());
   replica.set_view({{0, 0, 0}, 1, 0});
   pipeline.view_changed();
   replica.receive(world.snapshot({1, 0, 0}), {});
   pipeline.take(replica.drain_changes(), ClockOffset{}, steady_now_us());
-  CHECK_FALSE(pipeline.is_settled());  // to mesh
+  CHECK_FALSE(pipeline.is_up_to_date());  // not meshed
   for (const ChunkCoord at : {ChunkCoord{-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
     replica.receive(world.snapshot(at), {});
   }
-  for (int job = 0; job < 10; ++job) turn();  // one each: five chunks, the first one perhaps again
+  for (int job = 0; job < 10; ++job)
+    turn();  // one job each; the first of five chunks may be meshed twice
   CHECK(pipeline.recorder().open_edits() == 0);
-  CHECK_FALSE(pipeline.is_settled());  // handed over
+  CHECK_FALSE(pipeline.is_up_to_date());  // queued for upload
   book.hold();
   pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
                 [] { return std::vector<Marker>{}; });
   book.wait_until_drawing();
-  CHECK_FALSE(pipeline.is_settled());  // being drawn
+  CHECK_FALSE(pipeline.is_up_to_date());  // being drawn
   book.release();
   take_frames(2);
-  CHECK(pipeline.is_settled());
+  CHECK(pipeline.is_up_to_date());
 }
 
-TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is", "[client_app]") {
+TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is written", "[client_app]") {
   const test::TempFolder folder;
   pipeline.request_screenshot(folder / "a.png", steady_now_us());
   book.hold();
@@ -160,11 +161,14 @@ TEST_CASE_METHOD(Fixture, "a screenshot is done when its file is", "[client_app]
   pipeline.draw(steady_now_us() + MeshPipeline::kFrameOffScreenUs, Camera{}, {8, 4},
                 [] { return std::vector<Marker>{}; });
   take_frames(4);
-  CHECK_FALSE(pipeline.screenshots_written());  // a frame without pictures says nothing about them
+  CHECK_FALSE(
+      pipeline.screenshots_written());  // a frame without screenshots does not change the result
 }
 
-TEST_CASE_METHOD(Fixture, "catching up waits for what was handed over, whatever comes later",
-                 "[client_app]") {
+TEST_CASE_METHOD(
+    Fixture,
+    "has_caught_up() waits for the meshes queued before its first call and for no later ones",
+    "[client_app]") {
   edit({5, 5, 5});
   CHECK_FALSE(pipeline.has_caught_up());
   book.hold();
@@ -177,21 +181,23 @@ TEST_CASE_METHOD(Fixture, "catching up waits for what was handed over, whatever 
   CHECK(pipeline.has_caught_up());
 }
 
-TEST_CASE_METHOD(Fixture, "the report tells whole meshes from meshes of layers, and what is kept",
+TEST_CASE_METHOD(Fixture,
+                 "the report has whole meshes, meshes of layers, and the size of kept meshes",
                  "[client_app]") {
   const auto counts = [this] {
-    ChunkStats chunks;
-    FrameStats frames;
-    pipeline.report(chunks, frames);
-    CHECK(chunks.mesh_jobs == chunks.whole_ns.count() + chunks.layers_ns.count());
-    return std::array{chunks.whole_ns.count(), chunks.layers_ns.count(), chunks.kept_mesh_bytes};
+    ClientReport report;
+    pipeline.add_to(report);
+    const MeshStats& meshes = report.meshes;
+    CHECK(meshes.jobs == meshes.whole_ns.count() + meshes.layers_ns.count());
+    return std::array{meshes.whole_ns.count(), meshes.layers_ns.count(), meshes.kept_bytes};
   };
   CHECK(counts() == std::array<std::uint64_t, 3>{1, 0, 0});
   edit({5, 5, 5});
   CHECK(counts() == std::array<std::uint64_t, 3>{1, 1, sizeof(ChunkMesh) + 6 * sizeof(Quad)});
 }
 
-TEST_CASE_METHOD(Fixture, "where materials look different all is meshed again", "[client_app]") {
+TEST_CASE_METHOD(Fixture, "when materials change their look, all chunks are meshed again",
+                 "[client_app]") {
   edit({5, 5, 5});
   edit({6, 5, 5});
   const auto quads_uploaded = [this] {

@@ -14,7 +14,7 @@ ParsedBotOptions parse(std::vector<const char*> arguments) {
 
 }  // namespace
 
-TEST_CASE("a recorded log is played at a speed", "[client_app][play]") {
+TEST_CASE("the speed of a play is a number or max", "[client_app][play]") {
   const auto speed = [](std::vector<const char*> more) {
     more.insert(more.begin(), {"--play", "a.rlog"});
     const auto parsed = parse(more);
@@ -33,7 +33,7 @@ TEST_CASE("a recorded log is played at a speed", "[client_app][play]") {
   CHECK(parse({"--speed", "2"}).exit_code == 2);
 }
 
-TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]") {
+TEST_CASE("--play excludes the options of behaviours", "[client_app][play]") {
   for (const char* other :
        {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
     CAPTURE(other);
@@ -45,7 +45,7 @@ TEST_CASE("what a crowd does is not for a play to choose", "[client_app][play]")
   CHECK(parse({"--play", "a.rlog", "--key-dir", "."}).exit_code == 2);
 }
 
-TEST_CASE("a crowd has one behaviour, or several by their shares", "[client_app]") {
+TEST_CASE("a fleet has one behaviour, or several by their shares", "[client_app]") {
   CHECK(parse({}).options->roles == std::vector<BotRole>{BotRole::build});
   CHECK(parse({"--behaviour", "run-away"}).options->roles ==
         std::vector<BotRole>{BotRole::run_away});

@@ -22,7 +22,7 @@ struct Folder : test::TempFolder {
 
 }  // namespace
 
-TEST_CASE_METHOD(Folder, "a missing key is made, private, and read again the same",
+TEST_CASE_METHOD(Folder, "a missing key is created with mode 0600, and read again it is the same",
                  "[client_net]") {
   const KeyPair made = load_or_create_key(file("k"));
   struct stat info{};
@@ -40,10 +40,11 @@ TEST_CASE_METHOD(Folder, "a key file has golden text", "[client_net]") {
   CHECK(load_or_create_key(file("k")).public_key == key_pair_of(seed).public_key);
 }
 
-TEST_CASE_METHOD(Folder, "a key that others may read, or that is none, is refused and kept",
+TEST_CASE_METHOD(Folder,
+                 "a key file that other users may read, or that has no key, is refused and kept",
                  "[client_net]") {
   write("open", std::string(64, 'a') + "\n", 0644);
-  CHECK_THROWS_WITH(load_or_create_key(file("open")), Catch::Contains("others may read"));
+  CHECK_THROWS_WITH(load_or_create_key(file("open")), Catch::Contains("other users may read"));
   write("short", std::string(63, 'a') + "\n");
   CHECK_THROWS_WITH(load_or_create_key(file("short")), Catch::Contains("not a key file"));
   write("odd", std::string(63, 'a') + "g\n");
@@ -54,7 +55,7 @@ TEST_CASE_METHOD(Folder, "a key that others may read, or that is none, is refuse
   CHECK_THROWS_WITH(load_or_create_key(file("missing/k")), Catch::Contains("missing/k"));
 }
 
-TEST_CASE_METHOD(Folder, "pinned servers come back, and a damaged list is named by its line",
+TEST_CASE_METHOD(Folder, "pinned servers are read as written, and an error names the damaged line",
                  "[client_net]") {
   CHECK(load_pinned_servers(file("k")).empty());
   std::map<WorldId, PublicKey> pinned;

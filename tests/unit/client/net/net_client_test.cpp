@@ -13,7 +13,8 @@ using asio::ip::tcp;
 
 namespace {
 
-/// A server that does by hand what one test asks for. Blocking sockets, so the order of things is plain.
+/// A server that each test controls by hand. Its sockets block, so that the order of events is
+/// certain.
 struct Peer {
   Peer() : acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)), socket(io) {}
   std::uint16_t port() const { return acceptor.local_endpoint().port(); }
@@ -27,11 +28,11 @@ struct Peer {
     writer.append(encode_message(message), out);
     asio::write(socket, asio::buffer(out));
   }
-  /// The next message; none when the client has closed.
+  /// Returns the next message, or nullopt if the client has closed the connection.
   std::optional<Message> receive() {
     std::optional<Message> got;
     while (!got) {
-      std::uint8_t byte = 0;  // one by one, so that nothing of the next message is read
+      std::uint8_t byte = 0;  // byte by byte, so that no byte of the next message is read
       std::error_code error;
       if (socket.read_some(asio::buffer(&byte, 1), error) == 0) return std::nullopt;
       const auto fed =
@@ -64,7 +65,7 @@ struct Fixture {
   void start(NetConfig net) {
     client = std::make_unique<NetClient>(std::move(net), [this] { wake.notify(); });
   }
-  /// The next event; fails the test if none comes.
+  /// Returns the next event. Fails the test if none comes.
   NetEvent next() {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (events.empty()) {
@@ -120,7 +121,7 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
   CHECK(first.received_us <= first.unpacked_us);
   CHECK(first.bytes > 0);
 
-  // The edge of welcome decides which snapshots are accepted.
+  // Snapshots are accepted only if they have the chunk edge of Welcome.
   Bytes out;
   Chunk chunk;
   chunk.voxels = uniform_chunk(Extent::cube(16), 3);
@@ -137,7 +138,7 @@ TEST_CASE_METHOD(Fixture, "messages go both ways, whole and in order", "[client_
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a connection that breaks is made again, and the old one's messages are dropped",
+                 "a lost connection is made again, and messages for the old one are dropped",
                  "[client_net]") {
   start(config());
   peer.accept();
@@ -177,7 +178,7 @@ TEST_CASE_METHOD(Fixture, "a snapshot of the wrong size ends the connection", "[
   CHECK_THAT(next_as<NetDisconnected>().why, Catch::Contains("bad bytes"));
 }
 
-TEST_CASE_METHOD(Fixture, "attempts without a server are told and go on", "[client_net]") {
+TEST_CASE_METHOD(Fixture, "each failed attempt is an event, and attempts go on", "[client_net]") {
   NetConfig net = config();
   peer.acceptor.close();
   start(net);
@@ -215,7 +216,7 @@ TEST_CASE_METHOD(Fixture, "stopping sends what is queued and does not connect ag
   CHECK(client->stats().connections == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "while events are not taken reading stops, and nothing is lost",
+TEST_CASE_METHOD(Fixture, "reading stops while events are not taken, and no message is lost",
                  "[client_net]") {
   NetConfig net = config();
   net.events_max = 16;
@@ -228,7 +229,7 @@ TEST_CASE_METHOD(Fixture, "while events are not taken reading stops, and nothing
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   for (NetEvent& event : client->take_events()) events.push_back(std::move(event));
-  // One read may overshoot the bound, by the messages that 64 KiB hold.
+  // One read may exceed the bound by the messages in 64 KiB.
   CHECK(events.size() < 5'000);
   bool in_order = true;
   for (TimeUs i = 0; i < kMessages; ++i) {

@@ -5,17 +5,18 @@
 namespace runstone {
 namespace {
 
-TEST_CASE("what was read is told at once after a pause, then by time or by bytes", "[client_net]") {
+TEST_CASE("the first bytes are acknowledged at once, later ones by time or by bytes",
+          "[client_net]") {
   ReceiveAckScheduler report;
   CHECK_FALSE(report.due(0).has_value());
   CHECK(report.is_due(1, 5'000'000));
-  report.told(1, 5'000'000);
-  CHECK_FALSE(report.due(1).has_value());  // nothing new
+  report.sent(1, 5'000'000);
+  CHECK_FALSE(report.due(1).has_value());  // no new bytes
   CHECK_FALSE(report.is_due(2, 5'000'000 + kReceiveAckEveryUs - 1));
   CHECK(report.is_due(2, 5'000'000 + kReceiveAckEveryUs));
   CHECK(report.is_due(1 + kReceiveAckEveryBytes, 5'000'000 + kReceiveAckUsMin));
-  CHECK_FALSE(
-      report.is_due(1 + kReceiveAckEveryBytes, 5'000'000 + kReceiveAckUsMin - 1));  // no flood
+  CHECK_FALSE(report.is_due(1 + kReceiveAckEveryBytes,
+                            5'000'000 + kReceiveAckUsMin - 1));  // not more often
 }
 
 }  // namespace

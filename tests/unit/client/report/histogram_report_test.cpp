@@ -6,7 +6,7 @@
 using namespace runstone;
 using nlohmann::json;
 
-TEST_CASE("a histogram's report has every duration in a row or among the infinite ones",
+TEST_CASE("the JSON of a histogram has every duration in a row or among the infinite ones",
           "[client_app]") {
   Histogram us;
   for (const std::int64_t value : {-3, 16'383, 16'384, 24'575, 24'576}) us.add(value);
@@ -25,12 +25,13 @@ TEST_CASE("a histogram's report has every duration in a row or among the infinit
   CHECK(json::parse(histogram_json(Histogram{}).dump())["rows"] == json::array());
 }
 
-TEST_CASE("a histogram's picture has a line each row and one of what never came", "[client_app]") {
+TEST_CASE("the bars of a histogram have a line for each row and one for infinite values",
+          "[client_app]") {
   Histogram us;
   for (int i = 0; i < 100; ++i) us.add(2'048);
   us.add(3'072);
   us.add_infinite();
-  CHECK(histogram_picture(us) ==
+  CHECK(histogram_bars(us) ==
         "  below     3.072 ms        100 ##################################################\n"
         "  below     4.096 ms          1 #\n"
         "  never                       1\n");

@@ -18,17 +18,17 @@ ClientReport sample() {
   for (int i = 0; i < 9; ++i) meshed.add(100);
   meshed.add_infinite();
   remote.edits = 10;
-  report.chunks.mesh_jobs = 30;
-  report.chunks.chunks_meshed = 20;
-  for (int i = 0; i < 20; ++i) report.chunks.whole_ns.add(20'000);
-  for (int i = 0; i < 10; ++i) report.chunks.layers_ns.add(5'000);
-  report.chunks.kept_mesh_bytes = 3 << 19;
+  report.meshes.jobs = 30;
+  report.meshes.chunks = 20;
+  for (int i = 0; i < 20; ++i) report.meshes.whole_ns.add(20'000);
+  for (int i = 0; i < 10; ++i) report.meshes.layers_ns.add(5'000);
+  report.meshes.kept_bytes = 3 << 19;
   return report;
 }
 
 }  // namespace
 
-TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
+TEST_CASE("the report is JSON in which an infinite latency is the word inf", "[client_app]") {
   const ClientSession session(SessionConfig{});
   const json out = json::parse(to_json(sample(), session));
   const json& meshed = out["latency_us"]["remote"]["since_submit"]["meshed"];
@@ -50,7 +50,7 @@ TEST_CASE("the report is JSON in which never is the word inf", "[client_app]") {
   CHECK(out["replica"]["drifted"] == 0);
 }
 
-TEST_CASE("the report says when which part of the first view was meshed", "[client_app]") {
+TEST_CASE("the report has the times at which parts of the first view were meshed", "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();
   report.join.near = {203, 190, 12'500, 80'000, std::nullopt};
@@ -62,9 +62,8 @@ TEST_CASE("the report says when which part of the first view was meshed", "[clie
   CHECK(near["all_ms"].is_null());
 }
 
-TEST_CASE(
-    "frames stand in the report with their durations, and in the table of a client that draws",
-    "[client_app]") {
+TEST_CASE("the report has the durations of frames; so has the table of a client that draws",
+          "[client_app]") {
   const ClientSession session(SessionConfig{});
   ClientReport report = sample();
   CHECK(json::parse(to_json(report, session))["frames"]["presented"] == 0);
@@ -77,7 +76,21 @@ TEST_CASE(
   CHECK_THAT(to_table(report, session), Catch::Contains("frames: 3, each 0.25 ms (p50)\n"));
 }
 
-TEST_CASE("the table names what matters on lines of their own", "[client_app]") {
+TEST_CASE("edits that this client refused are counted apart, and are in no percentile",
+          "[client_app]") {
+  const ClientSession session(SessionConfig{});
+  ClientReport report = sample();
+  CHECK(json::parse(to_json(report, session))["latency_us"]["own_refused"] == 0);
+  CHECK_THAT(to_table(report, session), !Catch::Contains("refused"));
+  report.edits_refused = 2;
+  const json latency = json::parse(to_json(report, session))["latency_us"];
+  CHECK(latency["own_refused"] == 2);
+  CHECK(latency["own_confirmed"]["edits"] == 0);
+  CHECK_THAT(to_table(report, session), Catch::Contains("edits refused by this client: 2\n"));
+}
+
+TEST_CASE("the table has chunks, drift and dense expansions on lines of their own",
+          "[client_app]") {
   const ClientSession session(SessionConfig{});
   const std::string table = to_table(sample(), session);
   CHECK_THAT(table, Catch::Contains("meshes per chunk: 1.50 (30 of 20 chunks)\n"));

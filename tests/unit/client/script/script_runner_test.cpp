@@ -12,7 +12,7 @@ using namespace runstone;
 
 namespace {
 
-/// A world of single voxels that answers at once.
+/// A host with a world of single voxels. It answers at once.
 struct FakeHost final : ScriptHost {
   struct Submitted {
     EditDescriptor edit;
@@ -36,11 +36,11 @@ struct FakeHost final : ScriptHost {
   WorldPos eye() const override { return at; }
   void move_to(const WorldPos& eye) override { at = eye; }
   void look(double y, double p) override { yaw = y, pitch = p; }
-  std::optional<Material> material(std::string_view name) const override {
+  Result<Material, std::string> material(std::string_view name) const override {
     if (name == "air" || name == "0") return kEmpty;
     if (name == "stone") return Material{5};
     if (name == "sand") return Material{2};
-    return std::nullopt;
+    return Unexpected<std::string>{"the world has no material \"" + std::string(name) + "\""};
   }
   std::optional<Material> shown_at(VoxelPos pos) const override {
     if (pos.x > 1000) return std::nullopt;
@@ -68,9 +68,10 @@ struct FakeHost final : ScriptHost {
     if (x > 1000) return std::nullopt;
     return 7;
   }
-  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
     edits.push_back({edit, due_us, now_us});
-    return takes;
+    if (!takes) return runstone::fail(ErrorCode::bad_value, "the past cannot be edited");
+    return {};
   }
   bool loaded() const override { return is_loaded; }
   bool durable() const override { return is_durable; }
@@ -139,17 +140,18 @@ TEST_CASE_METHOD(Fixture, "box corners may come in any order and are both includ
         EditDescriptor{FillSphere{{1, 2, 3}, 4}, {MaskKind::only_material, 2}, 0});
 }
 
-TEST_CASE_METHOD(Fixture, "a stroke goes through its places", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a stroke has the points of its command", "[bots]") {
   run("stroke 2 stone 1 2 3 1.5 9.25 -0.5 solid");
   REQUIRE(host.edits.size() == 1);
   CHECK(host.edits[0].edit ==
         EditDescriptor{FillStroke{{{1, 2, 3}, {1, 9, -1}}, 2}, {MaskKind::only_solid, 0}, 5});
-  run("stroke 2 stone 1 2 3 1.5 2 3");  // one voxel twice
+  run("stroke 2 stone 1 2 3 1.5 2 3");  // two places in one voxel
   REQUIRE(runner->failures().size() == 1);
   CHECK(runner->failures()[0].find("stroke repeats a point") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a paste has the copied voxels and the orientation of the command",
+                 "[bots]") {
   run("copy a 5 2 ~ 1 4 3 solid\ncopy b 0 0 0 1 0 0\ncopy a 0 0 0 0 0 0\n"
       "paste b ~ 7 -2 rotate 1 mirror x rotate -1 only:sand\npaste a 1 2 3\n");
   CHECK(runner->failures().empty());
@@ -157,7 +159,7 @@ TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]"
   CHECK(host.copied[0] == VoxelBox{{1, 2, 3}, {6, 5, 31}});
   REQUIRE(host.edits.size() == 2);
   const auto b = *host.copy({{0, 0, 0}, {2, 1, 1}}, false);
-  // A mirror along x between a quarter of a turn and back is one along z.
+  // A quarter turn, a mirror along x and the quarter turn back are a mirror along z.
   CHECK(host.edits[0].edit ==
         EditDescriptor{runstone::Paste{{10, 7, -2}, b, Orientation{}.mirrored(Axis::z)},
                        {MaskKind::only_material, 2},
@@ -167,7 +169,7 @@ TEST_CASE_METHOD(Fixture, "what was copied is pasted as it was turned", "[bots]"
   CHECK((*host.copy({{0, 0, 0}, {2, 1, 1}}, true))->touched() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end the script",
+TEST_CASE_METHOD(Fixture, "a copy that fails and a paste of an unknown clipboard end the script",
                  "[bots]") {
   run("copy a 1001 0 0 1002 0 0\nset 1 2 3 stone");
   REQUIRE(runner->failures().size() == 1);
@@ -178,7 +180,7 @@ TEST_CASE_METHOD(Fixture, "a copy that cannot be made and a paste of nothing end
   CHECK(host.edits.empty());
 }
 
-TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {
+TEST_CASE_METHOD(Fixture, "look takes degrees, and lookat takes a place", "[bots]") {
   run("look 90 -45");
   CHECK(host.yaw == Approx(std::numbers::pi / 2));
   CHECK(host.pitch == Approx(-std::numbers::pi / 4));
@@ -187,7 +189,8 @@ TEST_CASE_METHOD(Fixture, "looking is in degrees or at a place", "[bots]") {
   CHECK(host.pitch == Approx(std::numbers::pi / 4));
 }
 
-TEST_CASE_METHOD(Fixture, "walking takes its time and ends where it should", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a walk takes the time of its speed and ends at its destination",
+                 "[bots]") {
   load("walk 14 20 30 2\nquit");
   runner->step(1'000'000);
   CHECK_FALSE(runner->finished());
@@ -214,7 +217,7 @@ TEST_CASE_METHOD(
   CHECK(host.at == WorldPos{20, 20, 30});
   runner->step(2'300'000);
   CHECK(host.at.x == Approx(17));
-  runner->step(3'500'000);  // one turn at most a step
+  runner->step(3'500'000);  // at most one turning point per step
   CHECK(host.at == WorldPos{10, 20, 30});
   runner->step(4'000'000);
   REQUIRE(host.edits.size() == 4);
@@ -260,7 +263,7 @@ TEST_CASE_METHOD(Fixture, "waiting for seconds and for states blocks until then"
   CHECK(runner->failures().empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a state that does not come fails the script and lets it go on",
+TEST_CASE_METHOD(Fixture, "a state that is not reached is a failure, and the script goes on",
                  "[bots]") {
   load("wait loaded 2\nquit");
   host.is_loaded = false;
@@ -280,7 +283,7 @@ TEST_CASE_METHOD(Fixture, "nothing runs before the world is open", "[bots]") {
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "expectations that fail are named and counted, the script goes on",
+TEST_CASE_METHOD(Fixture, "failed expectations are recorded by line, and the script goes on",
                  "[bots]") {
   host.voxels[{1, 2, 3}] = 5;
   run("expect 1 2 3 stone\nexpect 1 2 4 stone\nexpect 2000 2 3 stone\nset 1 1 1 sand");
@@ -302,7 +305,16 @@ TEST_CASE_METHOD(Fixture, "a command that cannot run ends the script", "[bots]")
   CHECK(runner->failures().size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empty ones too",
+TEST_CASE_METHOD(Fixture, "an edit that the client refuses is a failure with its reason",
+                 "[bots]") {
+  host.takes = false;
+  run("set 1 2 3 stone\nexpect 1 2 3 air");
+  CHECK(runner->finished());
+  CHECK(runner->failures() ==
+        std::vector<std::string>{"s.txt:1: edit refused: the past cannot be edited"});
+}
+
+TEST_CASE_METHOD(Fixture, "a repeat runs its body N times, also when it is nested or empty",
                  "[bots]") {
   run("repeat 3\nset 1 1 1 sand\nrepeat 2\nset 2 2 2 stone\nend\nend\nrepeat 0\nset 9 9 9 "
       "sand\nend\nrepeat "
@@ -312,21 +324,22 @@ TEST_CASE_METHOD(Fixture, "repeats run their body so many times, nested and empt
                       [](const auto& e) { return e.edit.material == 5; }) == 6);
 }
 
-TEST_CASE_METHOD(Fixture, "a long script yields now and then", "[bots]") {
+TEST_CASE_METHOD(Fixture, "a step runs a bounded number of commands", "[bots]") {
   load("repeat 1000\nlook 0 0\nend");
   int turns = 0;
   for (; !runner->finished(); ++turns) runner->step(turns);
   CHECK(turns > 5);
 }
 
-TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", "[bots]") {
+TEST_CASE_METHOD(Fixture, "the edits of a burst are due by its rate, whatever the host does",
+                 "[bots]") {
   load("burst 5 100 3 42 stone");
   runner->step(1'000'000);
   CHECK(host.edits.size() == 1);
   CHECK(runner->due_us() == 1'010'000);
-  host.takes = false;  // refused edits do not hold it up
+  host.takes = false;  // refused edits do not delay the burst
   host.at = {500, 500, 500};
-  runner->step(1'035'000);  // late: three were due meanwhile
+  runner->step(1'035'000);  // late: three edits are due
   REQUIRE(host.edits.size() == 4);
   CHECK(host.edits[1].due_us == 1'010'000);
   CHECK(host.edits[2].due_us == 1'020'000);
@@ -351,7 +364,8 @@ TEST_CASE_METHOD(Fixture, "a burst is due by its rate, whatever the host does", 
   for (std::size_t i = 0; i < 5; ++i) CHECK(host.edits[i].edit == first[i].edit);
 }
 
-TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where nothing is drawn",
+TEST_CASE_METHOD(Fixture,
+                 "a script waits for a screenshot, which fails if the client draws nothing",
                  "[bots]") {
   load("screenshot a.png\nquit");
   host.picture.reset();
@@ -364,12 +378,12 @@ TEST_CASE_METHOD(Fixture, "pictures are waited for, and are a failure where noth
   host.draws = false;
   run("screenshot b.png\ndigests good\ndigests bad");
   CHECK(runner->failures() ==
-        std::vector<std::string>{"s.txt:1: no picture: this client draws nothing",
+        std::vector<std::string>{"s.txt:1: no screenshot: this client draws nothing",
                                  "s.txt:3: bad cannot be written"});
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "a picture that cannot be written fails the script at its line, and it goes on",
+                 "a screenshot that cannot be written is a failure, and the script goes on",
                  "[bots]") {
   load("look 0 0\nscreenshot nosuch/a.png\nset 1 1 1 sand");
   host.picture.reset();
@@ -382,7 +396,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(host.edits.size() == 1);
 }
 
-TEST_CASE("a command waits for its answer, and a refused one is a failure that the script survives",
+TEST_CASE("a command waits for its answer; a refused command is a failure, and the script goes on",
           "[bots]") {
   const auto script = *parse_script(
       "command rollback preview author #3  # all\nset 1 2 3 stone\nundo\nset 1 2 3 sand\n", "t");
@@ -414,7 +428,7 @@ TEST_CASE("a command of too many bytes, or none, is a mistake of the script", "[
   CHECK_FALSE(parse_script("undo 2", "t").has_value());
 }
 
-TEST_CASE("a travel waits until its moment is here, and a refused one ends the script", "[bots]") {
+TEST_CASE("travel waits until the moment is here; a refused travel ends the script", "[bots]") {
   const auto script = *parse_script("travel -2\nset 1 2 3 stone\ntravel 7\nset 1 2 3 sand\n", "t");
   FakeHost host;
   host.is_travelling = true;

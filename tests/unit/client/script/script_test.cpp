@@ -28,7 +28,7 @@ T only(std::string_view line) {
 
 }  // namespace
 
-TEST_CASE("every command is read with its values", "[bots]") {
+TEST_CASE("every command is parsed with its values", "[bots]") {
   using Base = ScriptCoordinate::Base;
   const auto move = only<script::Move>("move 1 ~-2.5 ~");
   CHECK(move.to[0].base == Base::world);
@@ -88,7 +88,7 @@ TEST_CASE("every command is read with its values", "[bots]") {
   only<script::Quit>("quit");
 }
 
-TEST_CASE("empty lines, comments and blanks mean nothing", "[bots]") {
+TEST_CASE("empty lines, comments and blanks have no effect", "[bots]") {
   const Script script = parse("\n  # a comment\n\tdig   # and one behind\r\n\n quit");
   REQUIRE(script.commands.size() == 2);
   CHECK(script.commands[0].line == 3);
@@ -96,7 +96,7 @@ TEST_CASE("empty lines, comments and blanks mean nothing", "[bots]") {
   CHECK(parse("").commands.empty());
 }
 
-TEST_CASE("repeats know their ends", "[bots]") {
+TEST_CASE("a repeat and its end have each other's index", "[bots]") {
   const Script script = parse("repeat 2\n repeat 3\n dig\n end\nend\nquit");
   CHECK(std::get<script::Repeat>(script.commands[0].step).end == 4);
   CHECK(std::get<script::Repeat>(script.commands[1].step).end == 3);
@@ -104,7 +104,7 @@ TEST_CASE("repeats know their ends", "[bots]") {
   CHECK(std::get<script::End>(script.commands[4].step).repeat == 0);
 }
 
-TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
+TEST_CASE("an error names file, line and mistake", "[bots]") {
   CHECK(message_of("dig\nfly 1 2 3") == "s.txt:2: unknown command \"fly\"");
   CHECK(message_of("move 1 2") == "s.txt:1: expected Z");
   CHECK(message_of("move 1 2 x") == "s.txt:1: Z: \"x\" is not a coordinate");
@@ -143,7 +143,7 @@ TEST_CASE("a wrong line is named by file, line and what is wrong", "[bots]") {
   CHECK(message_of(deep) == "s.txt:9: repeat is nested too deeply");
 }
 
-TEST_CASE("travel goes to a sequence, so many seconds back, or to the live world", "[bots]") {
+TEST_CASE("travel takes a sequence, a number of seconds ago, or the live world", "[bots]") {
   const auto script = parse_script("travel 12\ntravel -90.5\ntravel live\n", "t");
   REQUIRE(script.has_value());
   const auto step = [&](std::size_t i) {

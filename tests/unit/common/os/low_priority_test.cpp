@@ -15,7 +15,8 @@ int nice_of_this_thread() { return ::getpriority(PRIO_PROCESS, static_cast<id_t>
 
 }  // namespace
 
-TEST_CASE("a thread of low priority and those it starts give way, and nobody else", "[process]") {
+TEST_CASE("low priority applies to the calling thread and the threads it starts, and to no other",
+          "[process]") {
   const int before = nice_of_this_thread();
   int own = before, started = before;
   std::thread([&] {

@@ -9,7 +9,7 @@ using namespace runstone;
 
 namespace {
 
-/// The limits of this process; put back at the end.
+/// Restores the limits of this process at the end.
 class KeptLimits {
  public:
   KeptLimits() { REQUIRE(::getrlimit(RLIMIT_NOFILE, &before_) == 0); }
@@ -34,8 +34,7 @@ class KeptLimits {
 
 }  // namespace
 
-TEST_CASE("the limit of open files rises as far as needed, or as the hard limit lets it",
-          "[process]") {
+TEST_CASE("the limit of open files rises to the need or to the hard limit", "[process]") {
   const KeptLimits limits;
   REQUIRE(limits.hard() >= 128);
   limits.set_soft(64);

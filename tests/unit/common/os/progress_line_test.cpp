@@ -4,10 +4,11 @@
 
 using namespace runstone;
 
-TEST_CASE("a progress line says how far work is and how long it will take", "[progress]") {
+TEST_CASE("a progress line has the progress and the time left", "[progress]") {
   CHECK(progress_text("edits", 0, 250, 1000, 10) == "edits: 250 of 1000, 30 s left");
   CHECK(progress_text("edits", 200, 250, 1000, 10) == "edits: 250 of 1000, 3 min left");
   CHECK(progress_text("edits", 0, 1000, 1000, 10) == "edits: 1000 of 1000, 0 s left");
-  CHECK(progress_text("edits", 0, 250, 1000, 0.5) == "edits: 250 of 1000");   // too early to tell
-  CHECK(progress_text("edits", 250, 250, 1000, 10) == "edits: 250 of 1000");  // nothing done yet
+  CHECK(progress_text("edits", 0, 250, 1000, 0.5) ==
+        "edits: 250 of 1000");  // no estimate in the first second
+  CHECK(progress_text("edits", 250, 250, 1000, 10) == "edits: 250 of 1000");  // no progress yet
 }

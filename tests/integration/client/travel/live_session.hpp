@@ -1,4 +1,4 @@
-// LinkedSession: a client session over a real connection, driven by the test's own thread.
+// LiveSession: a client session over a real connection, run by the test's thread.
 #pragma once
 #include <asio/io_context.hpp>
 #include <catch2/catch.hpp>
@@ -14,14 +14,14 @@
 
 namespace runstone::test {
 
-class LinkedSession final : private LinkEvents {
+class LiveSession final : private LinkEvents {
  public:
-  LinkedSession(std::uint16_t port, const View& view)
+  LiveSession(std::uint16_t port, const View& view)
       : session_(config(view)), link_(io_, {.host = "127.0.0.1", .port = port}, *this) {
     link_.start();
   }
-  ~LinkedSession() override {
-    leaves_ = true;
+  ~LiveSession() override {
+    is_leaving_ = true;
     link_.stop(0);
     io_.run_for(std::chrono::seconds(1));
   }
@@ -43,14 +43,19 @@ class LinkedSession final : private LinkEvents {
       REQUIRE(steady_now_us() < end_us);
     }
   }
+<<<<<<< HEAD:tests/integration/client/travel/linked_session.hpp
   /// Everything in view is here, and nothing of ours is open.
   void settle() {
+=======
+  /// Waits until all of the view is here and no local edit is left.
+  void catch_up() {
+>>>>>>> h-client:tests/integration/client/travel/live_session.hpp
     until([&] { return session_.loaded() && replica().local_edits().all().empty(); });
   }
   void edit(const EditDescriptor& edit) {
     REQUIRE(session_.submit(edit, steady_now_us(), steady_now_us()).has_value());
   }
-  /// Arrives, or is refused.
+  /// Waits until the moment is here, or the request was refused.
   void travel(const HistoryRequest& travel) {
     REQUIRE(session_.request_history(travel).has_value());
     until([&] { return !session_.loading_history(); });
@@ -79,7 +84,7 @@ class LinkedSession final : private LinkEvents {
                      {received.received_us, received.unpacked_us, now_us});
   }
   void on_disconnected(ConnectionNumber /*connection*/, std::string why) override {
-    if (!leaves_) FAIL_CHECK(why);
+    if (!is_leaving_) FAIL_CHECK(why);
     session_.disconnected();
   }
 
@@ -87,7 +92,7 @@ class LinkedSession final : private LinkEvents {
   ClientSession session_;
   Link link_;
   ConnectionNumber connection_ = 0;
-  bool leaves_ = false;
+  bool is_leaving_ = false;
 };
 
 }  // namespace runstone::test

@@ -1,4 +1,4 @@
-#include "client/fleet/session_link.hpp"
+#include "client/fleet/linked_session.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -59,12 +59,12 @@ Result<bool> LinkedSession<Session>::on_bytes(FrameClass frame_class, ByteView b
 template <class Session>
 void LinkedSession<Session>::on_disconnected(ConnectionNumber /*connection*/, std::string why) {
   connection_ = 0;
-  const bool is_wished = session_.wants_close() && !session_.end();
+  const bool is_expected = session_.wants_close() && !session_.end();
   session_.disconnected();
   last_failure_ = std::move(why);
   if (session_.end() && !session_.end()->text.empty())
     last_failure_ += " (" + session_.end()->text + ")";
-  if (!is_wished) ++losses_[last_failure_];
+  if (!is_expected) ++losses_[last_failure_];
   spdlog::debug("{}: {}", name_, last_failure_);
 }
 

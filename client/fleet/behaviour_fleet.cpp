@@ -1,4 +1,4 @@
-#include "client/fleet/bot_fleet.hpp"
+#include "client/fleet/behaviour_fleet.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -21,8 +21,8 @@
 namespace runstone {
 namespace {
 
-constexpr TimeUs kCheckUs = 10'000;      // between two looks at whether all are done
-constexpr std::size_t kOtherFiles = 64;  // besides a socket for each bot
+constexpr TimeUs kCheckUs = 10'000;      // between two checks whether all bots are done
+constexpr std::size_t kOtherFiles = 64;  // in addition to a socket for each bot
 constexpr std::int64_t kGoodbyeMs = 1'000;
 
 BotConfig config_of(const BotOptions& options, std::size_t index) {
@@ -48,42 +48,44 @@ BotConfig config_of(const BotOptions& options, std::size_t index) {
 
 }  // namespace
 
-struct BotFleet::Parts {
+struct BehaviourFleet::Parts {
   explicit Parts(const BotOptions& fleet_options) : options(fleet_options) {
-    net.host = options.host;
-    net.port = options.port;
-    // Keys are read or drawn before the first bot connects: a file that is missing is told at the start.
+    net.host = options.server.host;
+    net.port = options.server.port;
+    // All keys are read or drawn before the first bot connects, so that a missing file fails at the
+    // start.
     for (std::size_t i = 0; i < options.count; ++i) configs.push_back(config_of(options, i));
   }
 
   void join(TimeUs now_us) {
-    const std::size_t index = members.size();
+    const std::size_t index = bots.size();
     NetConfig link = net;
     const BotConfig& config = configs[index];
-    if (config.role == BotRole::join_storm) link.pause_ms_first = 1;  // it comes back at once
-    members.push_back(make_member(io, link, config, fleet, index < options.replicas));
-    members.back()->bot().start(now_us);
-    turns.add(index, now_us);
+    if (config.role == BotRole::join_storm) link.pause_ms_first = 1;  // it reconnects at once
+    bots.push_back(make_fleet_bot(io, link, config, statistics, index < options.replicas));
+    bots.back()->bot().start(now_us);
+    scheduler.add(index, now_us);
   }
-  /// When the next bot joins; nothing if all have.
+  /// Returns when the next bot joins, or nullopt if all have joined.
   std::optional<TimeUs> join_us() const {
-    if (members.size() == options.count) return std::nullopt;
+    if (bots.size() == options.count) return std::nullopt;
     return began_us +
-           static_cast<TimeUs>(static_cast<double>(members.size()) / options.join_rate * 1e6);
+           static_cast<TimeUs>(static_cast<double>(bots.size()) / options.join_rate * 1e6);
   }
 
+  /// Steps the bots that are due.
   void step(TimeUs now_us) {
-    while (const auto turn = turns.take(now_us)) {
-      FleetBot& member = *members[turn->who];
-      // Read again: the steps before took their time.
+    while (const auto step = scheduler.take(now_us)) {
+      FleetBot& bot = *bots[step->bot];
+      // The clock is read again because the steps before took time.
       const TimeUs at_us = steady_now_us();
-      lag_us.add(at_us - turn->due_us);
-      member.step(at_us);
-      turns.add(turn->who, std::max(member.bot().due_us(at_us), at_us + 1));
+      lag_us.add(at_us - step->due_us);
+      bot.step(at_us);
+      scheduler.add(step->bot, std::max(bot.bot().due_us(at_us), at_us + 1));
     }
   }
 
-  /// Runs the links until then.
+  /// Runs the links until that time.
   void run_links(TimeUs until_us) {
     bool is_time = false;
     timer.expires_at(std::chrono::steady_clock::time_point(std::chrono::microseconds(until_us)));
@@ -91,7 +93,8 @@ struct BotFleet::Parts {
     while (!is_time) io.run_one();
   }
 
-  /// Runs the links and steps every bot when it is due until `done`, the end of `seconds` (false) or so many signals (false).
+  /// Runs the links and steps every bot when it is due. Returns true once all bots have joined and
+  /// `done` holds. Returns false after `seconds`, or once `stop` reaches `signals`.
   bool play_until(const std::function<bool()>& done, double seconds,
                   const volatile std::sig_atomic_t& stop, int signals = 1) {
     const TimeUs end_us = steady_now_us() + static_cast<TimeUs>(seconds * 1e6);
@@ -101,31 +104,30 @@ struct BotFleet::Parts {
       for (auto due = join_us(); due && *due <= now_us; due = join_us()) join(now_us);
       step(now_us);
       if (now_us >= check_us) {
-        if (members.size() == options.count && done()) return true;
+        if (bots.size() == options.count && done()) return true;
         check_us = now_us + kCheckUs;
       }
       if (now_us >= end_us) return false;
       TimeUs until_us = std::min(check_us, end_us);
       if (const auto due = join_us()) until_us = std::min(until_us, *due);
-      if (const auto due = turns.next_us()) until_us = std::min(until_us, *due);
+      if (const auto due = scheduler.next_us()) until_us = std::min(until_us, *due);
       run_links(until_us);
     }
     return false;
   }
   template <class F>
   bool all(F&& holds) const {
-    return std::all_of(members.begin(), members.end(),
-                       [&](const auto& member) { return holds(*member); });
+    return std::all_of(bots.begin(), bots.end(), [&](const auto& bot) { return holds(*bot); });
   }
-  /// What is wrong with the first bot that is not as it should be.
+  /// Returns FleetBot::failure(what) of the first bot for which `holds` is false, or an empty text.
   std::string explain(const std::string& what, const std::function<bool(FleetBot&)>& holds) const {
-    for (const auto& member : members) {
-      if (!holds(*member)) return member->failure(what);
+    for (const auto& bot : bots) {
+      if (!holds(*bot)) return bot->failure(what);
     }
     return {};
   }
 
-  /// Bytes received so far, and the processor's time.
+  /// Bytes received and processor time used since the start.
   struct Meter {
     std::array<std::uint64_t, kFrameClassCount> class_bytes{};
     std::uint64_t frame_bytes = 0;
@@ -134,8 +136,8 @@ struct BotFleet::Parts {
   Meter meter() const {
     Meter now;
     now.process = process_time();
-    for (const auto& member : members) {
-      const NetStats& net_stats = member->stats();
+    for (const auto& bot : bots) {
+      const NetStats& net_stats = bot->stats();
       now.frame_bytes += net_stats.bytes_received.load();
       const Traffic received = net_stats.received.read();
       for (std::size_t i = 0; i < now.class_bytes.size(); ++i) {
@@ -145,9 +147,12 @@ struct BotFleet::Parts {
     return now;
   }
 
+  /// Plays until all edits were made or the duration is over, and adds the measurements to the
+  /// report. Then waits until every edit was answered and is on disk.
+  void play(FleetReport& report, const volatile std::sig_atomic_t& stop);
   /// Blocks for two seconds at most.
   void leave() {
-    for (const auto& member : members) member->leave(kGoodbyeMs);
+    for (const auto& bot : bots) bot->leave(kGoodbyeMs);
     io.restart();
     io.run_for(std::chrono::milliseconds(2 * kGoodbyeMs));
   }
@@ -157,19 +162,43 @@ struct BotFleet::Parts {
   std::vector<BotConfig> configs;
   asio::io_context io{1};
   asio::steady_timer timer{io};
-  FleetStatistics fleet;
-  std::vector<std::unique_ptr<FleetBot>> members;
-  StepScheduler turns;
+  FleetStatistics statistics;
+  std::vector<std::unique_ptr<FleetBot>> bots;
+  StepScheduler scheduler;
   Histogram lag_us;
   TimeUs began_us = 0;  // when the first bot joined
 };
 
-BotFleet::BotFleet(const BotOptions& options) : parts_(std::make_unique<Parts>(options)) {}
-BotFleet::~BotFleet() = default;
+void BehaviourFleet::Parts::play(FleetReport& report, const volatile std::sig_atomic_t& stop) {
+  const auto is_settled = [](FleetBot& bot) { return bot.bot().settled(); };
+  const Meter before = meter();
+  lag_us = {};
+  const TimeUs start_us = steady_now_us();
+  statistics.begin(start_us);
+  for (const auto& bot : bots) bot->bot().begin(start_us);
+  // The bots' next steps were scheduled for pings, which come after their first edits are due.
+  scheduler.bring_forward(start_us);
+  // Ends early when no bot has an edit left to make.
+  play_until([&] { return options.edits && all(is_settled); }, options.seconds, stop);
+  for (const auto& bot : bots) bot->bot().end();
+  report.seconds = static_cast<double>(steady_now_us() - start_us) / 1e6;
+  const Meter after = meter();
+  report.process = after.process - before.process;
+  report.frame_bytes = after.frame_bytes - before.frame_bytes;
+  for (std::size_t i = 0; i < report.class_bytes.size(); ++i) {
+    report.class_bytes[i] = after.class_bytes[i] - before.class_bytes[i];
+  }
+  report.lag_us = lag_us;
+  if (!play_until([&] { return all(is_settled); }, options.load_seconds, stop, 2))
+    report.failure = explain("has edits without an answer", is_settled);
+}
 
-FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
+BehaviourFleet::BehaviourFleet(const BotOptions& options)
+    : parts_(std::make_unique<Parts>(options)) {}
+BehaviourFleet::~BehaviourFleet() = default;
+
+FleetReport BehaviourFleet::run(const volatile std::sig_atomic_t& stop) {
   Parts& fleet = *parts_;
-  const double patience = fleet.options.load_seconds;
   FleetReport report;
   report.bots = fleet.options.count;
   report.replicas = std::min(fleet.options.replicas, fleet.options.count);
@@ -178,46 +207,31 @@ FleetReport BotFleet::run(const volatile std::sig_atomic_t& stop) {
     spdlog::warn("{} bots need {} open files, and the hard limit is {}: see ulimit -Hn",
                  report.bots, files, allowed);
   }
+<<<<<<< HEAD:client/fleet/bot_fleet.cpp
   const auto is_loaded = [](FleetBot& member) { return member.bot().counts().joins != 0; };
   const auto is_settled = [](FleetBot& member) { return member.bot().is_done(); };
   const auto is_refused = [](FleetBot& member) { return member.is_final(); };
+=======
+  const auto is_loaded = [](FleetBot& bot) { return bot.bot().counts().joins != 0; };
+  const auto is_refused = [](FleetBot& bot) { return bot.is_final(); };
+>>>>>>> h-client:client/fleet/behaviour_fleet.cpp
 
   fleet.began_us = steady_now_us();
   const double joining = static_cast<double>(fleet.options.count) / fleet.options.join_rate;
   fleet.play_until([&] { return fleet.all(is_loaded) || fleet.all(is_refused); },
-                   joining + patience, stop);
+                   joining + fleet.options.load_seconds, stop);
   report.failure = fleet.explain("does not see the world around it", is_loaded);
-  if (report.failure.empty() && fleet.members.size() < report.bots)
+  if (report.failure.empty() && fleet.bots.size() < report.bots)
     report.failure = "stopped while joining";
   if (report.failure.empty()) {
     spdlog::info("{} bots see the world", report.bots);
-    const Parts::Meter before = fleet.meter();
-    fleet.lag_us = {};
-    const TimeUs began_us = steady_now_us();
-    fleet.fleet.begin(began_us);
-    for (const auto& member : fleet.members) member->bot().begin(began_us);
-    fleet.turns.hasten(
-        began_us);  // they were to ping next, some time after their first edits are due
-    // Ends early when no bot has an edit left to make.
-    fleet.play_until([&] { return fleet.options.edits && fleet.all(is_settled); },
-                     fleet.options.seconds, stop);
-    for (const auto& member : fleet.members) member->bot().end();
-    report.seconds = static_cast<double>(steady_now_us() - began_us) / 1e6;
-    const Parts::Meter after = fleet.meter();
-    report.process = after.process - before.process;
-    report.frame_bytes = after.frame_bytes - before.frame_bytes;
-    for (std::size_t i = 0; i < report.class_bytes.size(); ++i) {
-      report.class_bytes[i] = after.class_bytes[i] - before.class_bytes[i];
-    }
-    report.lag_us = fleet.lag_us;
-    const bool settled = fleet.play_until([&] { return fleet.all(is_settled); }, patience, stop, 2);
-    if (!settled) report.failure = fleet.explain("has edits without an answer", is_settled);
+    fleet.play(report, stop);
   }
 
-  for (const auto& member : fleet.members) member->add_to(report);
-  report.seen_us = fleet.fleet.seen_us();
-  report.seen_worst_us = fleet.fleet.worst_us();
-  report.unattributed = fleet.fleet.unattributed();
+  for (const auto& bot : fleet.bots) bot->add_to(report);
+  report.seen_us = fleet.statistics.seen_us();
+  report.seen_worst_us = fleet.statistics.worst_us();
+  report.unattributed = fleet.statistics.unattributed();
   fleet.leave();
   return report;
 }

@@ -1,5 +1,6 @@
-// SessionLink: a client session and the link that carries it, for programs that run many on one io_context. Threads:
-// all on the one that runs it.
+// LinkedSession: a client session with the network link that carries its messages, for programs
+// that run many of them on one io_context.
+// Thread: all calls on the thread that runs the io_context.
 #pragma once
 #include <asio/io_context.hpp>
 #include <cstdint>
@@ -12,26 +13,27 @@
 
 namespace runstone {
 
-/// Session: ClientSession or HeadlessSession.
+/// Session is ClientSession or HeadlessSession.
 template <class Session>
 class LinkedSession final : private LinkEvents {
  public:
-  /// Starts connecting. `session` must outlive the link; so must `io`, which must not be run any more when it is
-  /// destroyed.
+  /// Starts connecting. `session` and `io` must outlive this object. `io` must not run any more
+  /// when this object is destroyed.
   LinkedSession(asio::io_context& io, Session& session, const std::string& name,
                 const NetConfig& net);
 
   const NetStats& stats() const { return link_.stats(); }
-  /// Why the last connection ended; empty if none did.
+  /// Returns why the last connection ended, or an empty text if none did.
   const std::string& last_failure() const { return last_failure_; }
-  /// Connections that ended, or did not come up, without the session having wished it: how many, by reason.
+  /// Returns the number of connections that could not be made or ended without the session asking
+  /// for it, by reason.
   const std::map<std::string, std::uint64_t>& losses() const { return losses_; }
-  /// To try again with the same configuration is pointless.
+  /// Returns true if the server refused this session for good.
   bool is_final() const { return session_.end() && session_.end()->final; }
 
-  /// Sends what the session has to say. Call after every change of it.
+  /// Sends the session's queued messages. Call it after every change of the session.
   void flush();
-  /// Says goodbye and ends, in at most `milliseconds` of running the io_context.
+  /// Says goodbye and ends the link after `milliseconds` of running the io_context at most.
   void leave(std::int64_t milliseconds);
 
  private:
@@ -49,7 +51,6 @@ class LinkedSession final : private LinkEvents {
   std::map<std::string, std::uint64_t> losses_;
 };
 
-using SessionLink = LinkedSession<ClientSession>;
 extern template class LinkedSession<ClientSession>;
 extern template class LinkedSession<HeadlessSession>;
 

@@ -1,5 +1,5 @@
 // Fleets of bots against a real server on loopback.
-#include "client/fleet/bot_fleet.hpp"
+#include "client/fleet/behaviour_fleet.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -14,7 +14,11 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 /// A server of a flat world that accepts many sessions. It runs while this object exists.
+=======
+/// A server of a flat world that accepts large fleets.
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
 struct FlatServer {
   TempFolder folder;
   std::unique_ptr<Server> server = [&] {
@@ -26,7 +30,7 @@ struct FlatServer {
 
 BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
   BotOptions options;
-  options.port = server.port();
+  options.server.port = server.port();
   options.count = options.sites = count;
   options.roles = {role};
   options.rate = 200;
@@ -38,10 +42,15 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
 
 }  // namespace
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("builders submit all their edits, get all of them confirmed, and find them intact",
           "[bots]") {
+=======
+TEST_CASE("builders submit all edits, and each is confirmed and stays in the world", "[bots]") {
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
-  const FleetReport report = BotFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
+  const FleetReport report =
+      BehaviourFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
   INFO(report.failure);
   CHECK(report.failure.empty());
   CHECK(report.counts.due == 500);
@@ -55,8 +64,13 @@ TEST_CASE("builders submit all their edits, get all of them confirmed, and find 
                                    std::pair(report.traffic.sent, report.bytes_sent)}) {
     std::uint64_t sum = 0;
     for (const KindTraffic& kind : way) sum += kind.bytes + kind.frames * kFrameHeaderBytes;
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
     CHECK(sum <= bytes + 64 * 1024);  // transferred, but not counted yet
     CHECK(bytes <= sum + 64 * 1024);  // a message in flight
+=======
+    CHECK(sum <= bytes + 64 * 1024);  // bytes that are not counted yet
+    CHECK(bytes <= sum + 64 * 1024);  // a message in transit
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   }
   CHECK(report.standing.held > 400);
   CHECK(report.standing.intact == report.standing.held);
@@ -64,6 +78,7 @@ TEST_CASE("builders submit all their edits, get all of them confirmed, and find 
   CHECK(flat.server->stop().digests.seq == 500);
 }
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("edits that are due soon after the start are submitted when due, not with the next ping",
           "[bots]") {
   const TempFolder folder;
@@ -74,37 +89,58 @@ TEST_CASE("edits that are due soon after the start are submitted when due, not w
   options.rate = 4;
   options.seconds = 0.4;  // the first edits are due within a quarter of a second
   const FleetReport report = BotFleet(options).run(never);
+=======
+TEST_CASE("edits due soon after the start are made on time, not with the next ping", "[bots]") {
+  const TempFolder folder;
+  auto server = start_server(quiet_config(folder.path()), flat_creation());
+  BotOptions options = options_for(*server, BotRole::build, 4);
+  options.replicas = 0;   // a bot with a replica is stepped more often
+  options.join_rate = 8;  // so that the first bots have nothing to do but ping
+  options.rate = 4;
+  options.seconds = 0.4;  // the first edits are due within a quarter of a second
+  const FleetReport report = BehaviourFleet(options).run(never);
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.failure.empty());
   CHECK(report.counts.due >= 4);
 }
 
-TEST_CASE("brushes and griefers edit; idlers and walkers do not", "[bots]") {
+TEST_CASE("bots with the behaviours brush and griefer edit; those with idle and walk do not",
+          "[bots]") {
   const FlatServer flat;
   for (const BotRole role : {BotRole::brush, BotRole::grief}) {
-    const FleetReport report = BotFleet(options_for(*flat.server, role, 2)).run(never);
+    const FleetReport report = BehaviourFleet(options_for(*flat.server, role, 2)).run(never);
     CHECK(report.failure.empty());
     CHECK(report.counts.confirmed > 50);
     CHECK(report.counts.confirmed == report.counts.submitted);
   }
   BotOptions options = options_for(*flat.server, BotRole::walk, 2);
   options.seconds = 0.3;
-  const FleetReport report = BotFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never);
   CHECK(report.failure.empty());
   CHECK(report.counts.submitted == 0);
   CHECK(report.counts.not_ready > 0);
 }
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("a fleet that finds no server reports it and ends", "[bots]") {
+=======
+TEST_CASE("a fleet that finds no server ends with that reason", "[bots]") {
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 1);
   flat.server->stop();
   options.load_seconds = 0.5;
-  const FleetReport report = BotFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never);
   CHECK(report.failure.find("bot does not see the world around it: cannot connect") == 0);
   CHECK(report.counts.due == 0);
 }
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("a stop ends a fleet early, after all submitted edits were answered", "[bots]") {
+=======
+TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are still answered",
+          "[bots]") {
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
@@ -113,7 +149,7 @@ TEST_CASE("a stop ends a fleet early, after all submitted edits were answered", 
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
     stop = 1;
   });
-  const FleetReport report = BotFleet(options).run(stop);
+  const FleetReport report = BehaviourFleet(options).run(stop);
   stopper.join();
   CHECK(report.failure.empty());
   CHECK(report.counts.submitted > 20);
@@ -122,7 +158,11 @@ TEST_CASE("a stop ends a fleet early, after all submitted edits were answered", 
   CHECK(report.counts.rejected == 0);
 }
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("bots in one place: every edit is verified by every bot", "[bots]") {
+=======
+TEST_CASE("with all bots in one place, every bot verifies every edit", "[bots]") {
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 50);
   options.sites = 1;
@@ -130,15 +170,20 @@ TEST_CASE("bots in one place: every edit is verified by every bot", "[bots]") {
   options.join_rate = 500;
   options.rate = 10;
   options.edits = 10;
-  const FleetReport report = BotFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never);
   INFO(to_table(report));
   CHECK(report.failure.empty());
   CHECK(report.is_sound());
   CHECK(report.replicas == 5);
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
   CHECK(report.counts.confirm_us.count() == 500);
   // The 45 bots without a replica get each edit once, including its author.
+=======
+  CHECK(report.counts.own_us.count() == 500);
+  // The 45 bots without a replica receive each edit once, also the author.
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.commit_edits == 45 * 500);
   CHECK(report.seen_us.count() >= 45 * 500);
   CHECK(report.seen_us.infinite() == 0);
@@ -149,7 +194,11 @@ TEST_CASE("bots in one place: every edit is verified by every bot", "[bots]") {
   CHECK(report.counts.joins == 50);
 }
 
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
 TEST_CASE("a join storm connects again and again, and runners load new chunks", "[bots]") {
+=======
+TEST_CASE("bots of a join storm join again and again, and run-away bots load new views", "[bots]") {
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::join_storm, 8);
   options.roles = {BotRole::join_storm, BotRole::run_away};
@@ -157,11 +206,15 @@ TEST_CASE("a join storm connects again and again, and runners load new chunks", 
   options.edits = 5;
   options.rate = 20;
   options.view_radius = options.view_radius_v = 1;
-  const FleetReport report = BotFleet(options).run(never);
+  const FleetReport report = BehaviourFleet(options).run(never);
   INFO(to_table(report));
   CHECK(report.failure.empty());
   CHECK(report.is_sound());
   CHECK(report.losses.empty());
+<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
   CHECK(report.counts.joins >= 8 + 4 * 4);  // the last join may be unfinished
+=======
+  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last join may be in progress
+>>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.counts.submitted == 0);
 }

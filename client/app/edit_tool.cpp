@@ -1,0 +1,37 @@
+#include "client/app/edit_tool.hpp"
+
+#include <spdlog/spdlog.h>
+
+namespace runstone {
+
+std::optional<RayHit> EditTool::pick() const {
+  return runstone::pick(session_.replica(), player_.eye(), player_.direction(), kReach);
+}
+
+void EditTool::remove(TimeUs now_us) {
+  if (const auto hit = pick())
+    static_cast<void>(submit({SetVoxel{hit->voxel}, {}, kEmpty}, now_us, now_us));
+}
+
+void EditTool::place(TimeUs now_us) {
+  const auto hit = pick();
+  const auto at = hit ? place_against(*hit) : std::nullopt;
+  if (at) static_cast<void>(submit({SetVoxel{*at}, {}, player_.held()}, now_us, now_us));
+}
+
+Result<void> EditTool::submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) {
+  const auto seq = session_.submit(edit, due_us, now_us);
+  if (seq) {
+    recorder_.submitted(*seq, due_us);
+    return {};
+  }
+  if (session_.replica().local_edits().all().size() >= kLocalEditsMax) {
+    recorder_.not_submitted();
+  } else {
+    ++refused_;
+  }
+  spdlog::warn("edit refused: {}", seq.error().what);
+  return Unexpected<Error>{seq.error()};
+}
+
+}  // namespace runstone

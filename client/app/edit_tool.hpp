@@ -1,0 +1,42 @@
+// EditTool: makes edits of clicks and hands edits of clicks and scripts to the session, and records
+// when each was submitted. One thread.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "client/app/player.hpp"
+#include "client/replica/client_session.hpp"
+#include "client/replica/ray_pick.hpp"
+#include "client/schedule/latency_recorder.hpp"
+#include "common/core/result.hpp"
+#include "common/edits/descriptor/edit_descriptor.hpp"
+
+namespace runstone {
+
+class EditTool {
+ public:
+  /// All three must outlive the tool.
+  EditTool(ClientSession& session, const Player& player, LatencyRecorder& recorder)
+      : session_(session), player_(player), recorder_(recorder) {}
+
+  /// Returns the voxel that the player looks at, or nullopt if there is none within kReach.
+  std::optional<RayHit> pick() const;
+  /// Removes the voxel that the player looks at.
+  void remove(TimeUs now_us);
+  /// Places the player's material against the voxel that the player looks at.
+  void place(TimeUs now_us);
+  /// Submits an edit that was due at `due_us`. Fails if the client does not accept it, and logs the
+  /// reason. If the client had no room for it, the edit counts as infinitely late. Any other
+  /// refusal, such as that of an edit while the view shows the past, counts in refused() only.
+  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us);
+
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  ClientSession& session_;
+  const Player& player_;
+  LatencyRecorder& recorder_;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace runstone

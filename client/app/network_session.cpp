@@ -1,0 +1,190 @@
+#include "client/app/network_session.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+#include <variant>
+
+#include "client/net/key_file.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+namespace {
+
+/// Returns null if the options want no cache or if it cannot be opened, which is logged.
+std::unique_ptr<CacheThread> make_cache(const ClientOptions& options,
+                                        const std::function<void()>& wake) {
+  if (!options.cache) return nullptr;
+  const std::string folder = options.cache_dir.empty() ? default_cache_folder() : options.cache_dir;
+  if (folder.empty()) {
+    spdlog::warn("no chunk cache: neither XDG_CACHE_HOME nor HOME names a folder");
+    return nullptr;
+  }
+  auto cache = ChunkCache::open(folder, options.cache_mib << 20);
+  if (!cache) {
+    spdlog::warn("{}; this client runs without a cache", cache.error());
+    return nullptr;
+  }
+  if (const std::string warning = (*cache)->take_warning(); !warning.empty())
+    spdlog::warn("{}", warning);
+  return std::make_unique<CacheThread>(*std::move(cache), wake);
+}
+
+SessionConfig session_config(const ClientOptions& options, bool has_cache) {
+  SessionConfig config;
+  config.has_cache = has_cache;
+  config.keys = options.key_file.empty() ? random_key() : load_or_create_key(options.key_file);
+  if (!options.key_file.empty()) config.pinned = load_pinned_servers(options.key_file);
+  config.name = options.name;
+  config.instance = random_instance();
+  config.encodings = options.encodings;
+  config.view = {{}, options.view_radius, options.view_radius_v};
+  return config;
+}
+
+}  // namespace
+
+NetworkSession::NetworkSession(const ClientOptions& options, std::function<void()> wake)
+    : options_(options),
+      wake_(std::move(wake)),
+      cache_(make_cache(options_, wake_)),
+      session_(session_config(options_, cache_ != nullptr)),
+      pins_saved_(session_.pinned().size()) {}
+
+NetworkSession::~NetworkSession() = default;
+
+void NetworkSession::start(TimeUs now_us) {
+  lost_us_ = now_us;
+  NetConfig net;
+  net.host = options_.server.host;
+  net.port = options_.server.port;
+  net_ = std::make_unique<NetClient>(std::move(net), wake_);
+}
+
+void NetworkSession::receive() {
+  if (events_.empty()) {
+    for (NetEvent& event : net_->take_events()) events_.push_back(std::move(event));
+  }
+  for (const TimeUs until_us = steady_now_us() + kReceiveUsMax;
+       !events_.empty() && steady_now_us() < until_us;) {
+    NetEvent event = std::move(events_.front());
+    events_.pop_front();
+    if (const auto* connected = std::get_if<NetConnected>(&event)) on_connected(*connected);
+    if (const auto* gone = std::get_if<NetDisconnected>(&event)) on_disconnected(*gone);
+    if (auto* received = std::get_if<NetReceived>(&event)) on_received(*received);
+  }
+}
+
+void NetworkSession::on_connected(const NetConnected& event) {
+  connection_ = event.connection;
+  session_.connected(random_nonce(), steady_now_us());
+  flush();
+}
+
+void NetworkSession::on_received(NetReceived& event) {
+  if (event.connection != connection_) return;
+  if (const auto* snapshot = std::get_if<ChunkSnapshot>(&event.message)) {
+    ++snapshots_.count;
+    snapshots_.wire_bytes += event.bytes;
+    snapshots_.raw_bytes += raw_bytes(snapshot->chunk.voxels);
+    snapshots_.runs.add(static_cast<std::int64_t>(snapshot->chunk.voxels.runs.size()));
+    snapshots_.unpack_ns.add(event.unpack_ns);
+  }
+  session_.receive(std::move(event.message),
+                   {event.received_us, event.unpacked_us, steady_now_us()});
+  if (session_.connect_count() != connects_handled_) on_world_opened();
+}
+
+void NetworkSession::on_disconnected(const NetDisconnected& event) {
+  if (event.connection != 0 && event.connection != connection_) return;
+  connection_ = 0;
+  step_cache(steady_now_us());
+  keep_chunks(SIZE_MAX);
+  session_.disconnected();
+  last_failure_ = event.why;
+  if (session_.end() && !session_.end()->text.empty())
+    last_failure_ += " (" + session_.end()->text + ")";
+  if (!lost_us_) {
+    lost_us_ = steady_now_us();
+    spdlog::warn("connection lost: {}", last_failure_);
+  } else {
+    spdlog::debug("no connection: {}", last_failure_);
+  }
+}
+
+void NetworkSession::on_world_opened() {
+  connects_handled_ = session_.connect_count();
+  world_opened_ = true;
+  lost_us_.reset();
+  const Welcome& welcome = *session_.welcome();
+  spdlog::info("world open author={} epoch={} head={} durable={} edge={}", session_.author(),
+               welcome.epoch, welcome.head, welcome.durable, welcome.chunk_edge);
+  if (!options_.key_file.empty() && session_.pinned().size() != pins_saved_) {
+    save_pinned_servers(options_.key_file, session_.pinned());
+    pins_saved_ = session_.pinned().size();
+  }
+}
+
+bool NetworkSession::take_world_opened() { return std::exchange(world_opened_, false); }
+
+void NetworkSession::flush() {
+  for (const Message& message : session_.take_outgoing())
+    net_->send(connection_, encode_message(message));
+  if (session_.wants_close() && connection_ != 0) net_->close(connection_);
+}
+
+void NetworkSession::step_cache(TimeUs now_us) {
+  if (!cache_) return;
+  for (auto& found : cache_->take_answers()) session_.answer(std::move(found), now_us);
+  while (auto question = session_.take_question()) cache_->ask(*std::move(question));
+  if (now_us - kept_us_ >= kKeepUs) {
+    kept_us_ = now_us;
+    keep_chunks(cache_->room());
+  }
+  if (const std::string warning = cache_->take_warning(); !warning.empty())
+    spdlog::warn("{}", warning);
+}
+
+void NetworkSession::keep_chunks(std::size_t count_max) {
+  if (!cache_) return;
+  if (const auto world = session_.cached_world())
+    cache_->keep(*world, session_.replica().take_unkept(count_max));
+}
+
+void NetworkSession::finish() {
+  step_cache(steady_now_us());
+  keep_chunks(SIZE_MAX);
+  if (cache_) cache_->stop();
+  session_.close(GoodbyeReason::closing, "");
+  flush();
+  net_->stop(kGoodbyeMs);
+}
+
+std::optional<std::string> NetworkSession::refusal() const {
+  const auto& end = session_.end();
+  if (!end || !end->final) return std::nullopt;
+  return end->text;
+}
+
+std::optional<std::string> NetworkSession::timeout(TimeUs now_us) const {
+  if (!lost_us_ || static_cast<double>(now_us - *lost_us_) <= options_.reconnect_seconds * 1e6)
+    return std::nullopt;
+  return fmt::format("no server at {}: {}", to_string(options_.server), last_failure_);
+}
+
+void NetworkSession::add_to(ClientReport& report) const {
+  report.snapshots = snapshots_;
+  const NetStats& net = net_->stats();
+  report.net.bytes_received = net.bytes_received;
+  report.net.bytes_sent = net.bytes_sent;
+  const Traffic received = net.received.read();
+  report.net.control_bytes = of_class(received, FrameClass::control).bytes;
+  report.net.edit_bytes = of_class(received, FrameClass::edits).bytes;
+  report.net.chunk_bytes = of_class(received, FrameClass::chunks).bytes;
+  for (const KindTraffic& kind : received) report.net.messages_received += kind.messages;
+  report.net.connections = net.connections;
+  if (cache_) report.cache = cache_->counters();
+}
+
+}  // namespace runstone

@@ -1,0 +1,89 @@
+// NetworkSession: the session of runstone-client with the threads that serve it: the network
+// thread, which carries its messages, and the cache thread, which keeps chunks on disk between
+// runs.
+// Thread: the main thread only. No call waits for a peer or for the disk, except finish().
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/app/options.hpp"
+#include "client/cache/cache_thread.hpp"
+#include "client/net/net_client.hpp"
+#include "client/replica/client_session.hpp"
+#include "client/report/report.hpp"
+
+namespace runstone {
+
+class NetworkSession {
+ public:
+  /// `wake` is called from the other threads when there is something to handle. Throws
+  /// std::runtime_error if the key file cannot be read or made. A cache that cannot be opened is a
+  /// warning in the log.
+  NetworkSession(const ClientOptions& options, std::function<void()> wake);
+  ~NetworkSession();
+  NetworkSession(const NetworkSession&) = delete;
+  NetworkSession& operator=(const NetworkSession&) = delete;
+
+  ClientSession& session() { return session_; }
+  const ClientSession& session() const { return session_; }
+
+  /// Starts the network thread, which connects until finish() and connects again after each loss.
+  /// Call once.
+  void start(TimeUs now_us);
+  /// Handles what the network thread received, for kReceiveUsMax at most.
+  void receive();
+  /// Returns true if receive() left events for the next call.
+  bool has_events() const { return !events_.empty(); }
+  /// Returns true if a world was opened, for the first time or again, since the last call.
+  bool take_world_opened();
+  /// Queues the session's outgoing messages on the network thread.
+  void flush();
+  /// Passes lookups and their results between session and cache, and hands the cache the chunks to
+  /// keep, at most every kKeepUs.
+  void step_cache(TimeUs now_us);
+  /// Writes the last chunks to the cache, says goodbye and stops both threads. Waits for the disk,
+  /// and for the network at most kGoodbyeMs.
+  void finish();
+
+  bool is_connected() const { return !lost_us_.has_value(); }
+  /// Returns the server's reason if it refused this client for good, otherwise nullopt.
+  std::optional<std::string> refusal() const;
+  /// Returns a line of text if no world has been open for the option --reconnect-seconds, otherwise
+  /// nullopt.
+  std::optional<std::string> timeout(TimeUs now_us) const;
+  /// Adds the counts of network, snapshots and cache.
+  void add_to(ClientReport& report) const;
+
+  static constexpr TimeUs kReceiveUsMax =
+      1'000;                                    // a call; local edits, meshes and frames come next
+  static constexpr TimeUs kKeepUs = 2'000'000;  // between two batches for the cache
+  static constexpr std::int64_t kGoodbyeMs = 1'000;
+
+ private:
+  void on_connected(const NetConnected& event);
+  void on_received(NetReceived& event);
+  void on_disconnected(const NetDisconnected& event);
+  void on_world_opened();
+  void keep_chunks(std::size_t count_max);
+
+  const ClientOptions options_;
+  const std::function<void()> wake_;
+  std::unique_ptr<CacheThread> cache_;  // null without a cache
+  ClientSession session_;
+  std::size_t pins_saved_ = 0;
+  SnapshotStats snapshots_;
+  std::deque<NetEvent> events_;      // taken from the network thread, not handled yet
+  ConnectionNumber connection_ = 0;  // 0: none
+  std::uint64_t connects_handled_ = 0;
+  bool world_opened_ = false;          // until take_world_opened()
+  std::optional<TimeUs> lost_us_ = 0;  // when the last world was lost; nullopt while one is open
+  std::string last_failure_;           // why the last attempt to connect failed
+  TimeUs kept_us_ = 0;                 // when the cache last got a batch
+  std::unique_ptr<NetClient> net_;     // last: its thread calls wake_
+};
+
+}  // namespace runstone

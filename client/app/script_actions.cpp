@@ -1,0 +1,94 @@
+#include "client/app/script_actions.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "client/replica/surface.hpp"
+#include "common/materials/material_lookup.hpp"
+#include "common/os/steady_clock.hpp"
+
+namespace runstone {
+
+ScriptActions::ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline,
+                             EditTool& tool, const ViewFollower& view,
+                             std::string screenshot_folder)
+    : session_(session),
+      player_(player),
+      pipeline_(pipeline),
+      tool_(tool),
+      view_(view),
+      screenshot_folder_(std::move(screenshot_folder)) {}
+
+void ScriptActions::move_to(const WorldPos& eye) {
+  player_.move_to(eye);
+  pipeline_.moved();
+}
+
+void ScriptActions::look(double yaw, double pitch) {
+  player_.look(yaw, pitch);
+  pipeline_.moved();
+}
+
+Result<Material, std::string> ScriptActions::material(std::string_view name) const {
+  const MaterialTable& materials = pipeline_.materials();
+  std::size_t id = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), id);
+  if (error == std::errc{} && end == name.data() + name.size() && id < materials.size())
+    return static_cast<Material>(id);
+  return find_material(materials, name);
+}
+
+std::optional<std::int32_t> ScriptActions::surface(std::int32_t x, std::int32_t z) const {
+  return surface_of(session_.replica(), x, z);
+}
+
+bool ScriptActions::loaded() const {
+  if (!view_.is_complete()) return false;
+  const auto since_us = view_.complete_since_us();
+  return pipeline_.is_up_to_date() || (since_us && steady_now_us() - *since_us >= kMeshWaitUsMax);
+}
+
+bool ScriptActions::synced(std::uint64_t mark) const {
+  // Two pongs: the first one may answer a ping that was sent before the mark.
+  return view_.is_complete() && session_.pongs() >= mark + 2 &&
+         session_.replica().local_edits().unanswered().empty();
+}
+
+void ScriptActions::travel(const HistoryRequest& request) {
+  static_cast<void>(session_.travel(request));
+}
+
+std::string ScriptActions::command(const std::string& text) {
+  const auto given = session_.command(text);
+  return given ? std::string() : given.error().what;
+}
+
+bool ScriptActions::show_answer() {
+  for (const std::string& line : session_.command_lines()) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  return session_.command_ok();
+}
+
+TimeUs ScriptActions::utc_now_us() const {
+  const auto utc = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(utc).count();
+}
+
+bool ScriptActions::screenshot(const std::string& file) {
+  if (!pipeline_.draws()) return false;
+  pipeline_.request_screenshot((std::filesystem::path(screenshot_folder_) / file).string(),
+                               steady_now_us());
+  return true;
+}
+
+std::optional<bool> ScriptActions::screenshot_written() const {
+  if (!pipeline_.screenshots_done()) return std::nullopt;
+  return pipeline_.screenshots_written();
+}
+
+}  // namespace runstone

@@ -1,0 +1,69 @@
+// ScriptActions: what a script does to this client. One thread.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "client/app/edit_tool.hpp"
+#include "client/app/player.hpp"
+#include "client/app/view_follower.hpp"
+#include "client/display/mesh_pipeline.hpp"
+#include "client/replica/client_session.hpp"
+#include "client/replica/copy_box.hpp"
+#include "client/report/report.hpp"
+#include "client/script/script_host.hpp"
+
+namespace runstone {
+
+class ScriptActions final : public ScriptHost {
+ public:
+  /// All but `screenshot_folder` must outlive this object.
+  ScriptActions(ClientSession& session, Player& player, MeshPipeline& pipeline, EditTool& tool,
+                const ViewFollower& view, std::string screenshot_folder);
+
+  bool ready() const override { return session_.connect_count() != 0; }
+  WorldPos eye() const override { return player_.eye(); }
+  void move_to(const WorldPos& eye) override;
+  void look(double yaw, double pitch) override;
+  Result<Material, std::string> material(std::string_view name) const override;
+  std::optional<Material> shown_at(VoxelPos at) const override {
+    return session_.replica().shown_at(at);
+  }
+  Result<std::shared_ptr<const Clipboard>> copy(const VoxelBox& box, bool solid) const override {
+    return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
+  }
+  std::optional<RayHit> pick() const override { return tool_.pick(); }
+  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
+  Result<void> submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override {
+    return tool_.submit(edit, due_us, now_us);
+  }
+  bool loaded() const override;
+  bool durable() const override { return session_.replica().local_edits().all().empty(); }
+  std::uint64_t sync_mark() const override { return session_.pongs(); }
+  bool synced(std::uint64_t mark) const override;
+  void travel(const HistoryRequest& request) override;
+  bool travelling() const override { return session_.travelling(); }
+  std::string travel_refusal() const override { return session_.travel_refusal(); }
+  std::string command(const std::string& text) override;
+  bool commanding() const override { return session_.commanding(); }
+  bool show_answer() override;
+  TimeUs utc_now_us() const override;
+  bool screenshot(const std::string& file) override;
+  std::optional<bool> screenshot_written() const override;
+  bool digests(const std::string& file) override { return write_digests(file, session_); }
+
+  /// With everything in view here, loaded() waits this long for a moment without unfinished meshes.
+  /// Where others edit all the time there may be no such moment.
+  static constexpr TimeUs kMeshWaitUsMax = 10'000'000;
+
+ private:
+  ClientSession& session_;
+  Player& player_;
+  MeshPipeline& pipeline_;
+  EditTool& tool_;
+  const ViewFollower& view_;
+  const std::string screenshot_folder_;
+};
+
+}  // namespace runstone

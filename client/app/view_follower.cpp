@@ -1,0 +1,34 @@
+#include "client/app/view_follower.hpp"
+
+namespace runstone {
+
+bool ViewFollower::follow(TimeUs now_us) {
+  session_.set_pose(player_.pose());
+  if (!session_.replica().opened()) return false;
+  View view = session_.view();
+  view.centre = player_.chunk(session_.replica().chunk_edge());
+  view.yaw = player_.pose().yaw;
+  view.pitch = player_.pose().pitch;
+  view.cone = kSightCone;
+  if (!pace_.step(session_.view(), view, now_us)) return false;
+  const bool moves = !session_.view().same_chunks(view);
+  view.radius_h = radius_h_;
+  view.radius_v = radius_v_;
+  session_.set_view(view);
+  return moves;
+}
+
+bool ViewFollower::has_followed() const {
+  return session_.replica().opened() &&
+         session_.view().centre == player_.chunk(session_.replica().chunk_edge());
+}
+
+void ViewFollower::update_completeness(TimeUs now_us) {
+  if (!is_complete()) {
+    complete_since_us_.reset();
+  } else if (!complete_since_us_) {
+    complete_since_us_ = now_us;
+  }
+}
+
+}  // namespace runstone

@@ -1,0 +1,40 @@
+// ViewFollower: keeps the session's view around the player and knows whether all of it has arrived.
+// One thread.
+#pragma once
+#include <optional>
+
+#include "client/app/player.hpp"
+#include "client/replica/client_session.hpp"
+#include "client/schedule/view_pace.hpp"
+
+namespace runstone {
+
+class ViewFollower {
+ public:
+  /// Radii in chunks. Session and player must outlive the follower.
+  ViewFollower(ClientSession& session, const Player& player, std::uint8_t radius_h,
+               std::uint8_t radius_v)
+      : session_(session), player_(player), radius_h_(radius_h), radius_v_(radius_v) {}
+
+  /// Gives the session the player's pose and, if ViewPace allows it, a view around the player.
+  /// Returns true if the view covers other chunks than before.
+  bool follow(TimeUs now_us);
+  /// Returns true if the view is centred on the player's chunk.
+  bool has_followed() const;
+  /// Returns true if the view is centred on the player's chunk and all of its chunks are here.
+  bool is_complete() const { return has_followed() && session_.loaded(); }
+  /// Updates complete_since_us(). Call it once per turn of the main loop.
+  void update_completeness(TimeUs now_us);
+  /// Returns the time since when is_complete() held at each update, or nullopt if it did not hold
+  /// at the last.
+  std::optional<TimeUs> complete_since_us() const { return complete_since_us_; }
+
+ private:
+  ClientSession& session_;
+  const Player& player_;
+  const std::uint8_t radius_h_, radius_v_;
+  ViewPace pace_;
+  std::optional<TimeUs> complete_since_us_;
+};
+
+}  // namespace runstone

@@ -1,0 +1,106 @@
+#include "client/app/edit_tool.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/test_keys.hpp"
+
+using namespace runstone;
+using runstone::test::keys;
+
+namespace {
+
+constexpr TimeUs kNow = 1'000'000;
+constexpr EditPath kPaths[] = {EditPath::own_predicted, EditPath::own_confirmed};
+
+SessionConfig config() {
+  SessionConfig out;
+  out.keys = keys(1);
+  out.instance = 42;
+  out.view = {{0, 0, 0}, 1, 1};
+  return out;
+}
+
+template <class T>
+T sent(ClientSession& session) {
+  for (const Message& message : session.take_outgoing()) {
+    if (const auto* wanted = std::get_if<T>(&message)) return *wanted;
+  }
+  FAIL("the session did not send the expected message");
+  return {};
+}
+
+/// A session in an open world whose server answers no edit.
+struct Fixture {
+  Fixture() {
+    session.connected({5}, kNow);
+    const Hello hello = sent<Hello>(session);
+    const KeyPair server = keys(9);
+    Welcome welcome;
+    welcome.world_id = {1, 2, 3};
+    welcome.chunk_edge = 16;
+    welcome.materials = default_material_table();
+    welcome.server_key = server.public_key;
+    welcome.challenge = {7};
+    welcome.view_radius_max = 8;
+    welcome.edit_volume_max = 1000;
+    welcome.signature = sign(server, server_transcript(hello, welcome));
+    receive(welcome);
+    receive(SessionAccepted{6, 0});
+    REQUIRE(session.is_open());
+  }
+  void receive(Message message) { session.receive(std::move(message), {kNow, kNow, kNow}); }
+  Result<void> submit(VoxelPos at) { return tool.submit({SetVoxel{at}, {}, 1}, kNow, kNow); }
+  std::uint64_t infinite(EditPath path) const {
+    return recorder.report()[path]
+        .since_submit[static_cast<std::size_t>(LatencyStage::applied)]
+        .infinite();
+  }
+
+  ClientSession session{config()};
+  Player player;
+  LatencyRecorder recorder;
+  EditTool tool{session, player, recorder};
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted until it is answered",
+                 "[client_app]") {
+  REQUIRE(submit({1, 2, 3}).has_value());
+  CHECK(tool.refused() == 0);
+  CHECK(session.replica().local_edits().all().size() == 1);
+  recorder.take(session.replica().drain_changes(), session.clock(), kNow);
+  CHECK(infinite(EditPath::own_confirmed) == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is in no percentile",
+                 "[client_app]") {
+  REQUIRE(session.travel({}).has_value());
+  HistoryState past;
+  past.past = true;
+  receive(past);
+  REQUIRE(session.replica().past());
+  const auto refused = submit({1, 2, 3});
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(std::string(refused.error().what) == "the past cannot be edited");
+  CHECK(tool.refused() == 1);
+  for (const EditPath path : kPaths) {
+    CHECK(recorder.report()[path].edits == 0);
+    CHECK(infinite(path) == 0);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "an edit that finds no room is infinitely late", "[client_app]") {
+  for (std::size_t i = 0; i < kLocalEditsMax; ++i)
+    REQUIRE(session.submit({SetVoxel{{1, 2, 3}}, {}, 1}, kNow, kNow).has_value());
+  REQUIRE_FALSE(submit({1, 2, 3}).has_value());
+  CHECK(tool.refused() == 0);
+  for (const EditPath path : kPaths) CHECK(infinite(path) == 1);
+}
+
+TEST_CASE_METHOD(Fixture, "a click at nothing makes no edit", "[client_app]") {
+  tool.remove(kNow);
+  tool.place(kNow);
+  CHECK(tool.refused() == 0);
+  CHECK(session.replica().local_edits().all().empty());
+}
