@@ -207,14 +207,8 @@ FleetReport BehaviourFleet::run(const volatile std::sig_atomic_t& stop) {
     spdlog::warn("{} bots need {} open files, and the hard limit is {}: see ulimit -Hn",
                  report.bots, files, allowed);
   }
-<<<<<<< HEAD:client/fleet/bot_fleet.cpp
-  const auto is_loaded = [](FleetBot& member) { return member.bot().counts().joins != 0; };
-  const auto is_settled = [](FleetBot& member) { return member.bot().is_done(); };
-  const auto is_refused = [](FleetBot& member) { return member.is_final(); };
-=======
   const auto is_loaded = [](FleetBot& bot) { return bot.bot().counts().joins != 0; };
   const auto is_refused = [](FleetBot& bot) { return bot.is_final(); };
->>>>>>> h-client:client/fleet/behaviour_fleet.cpp
 
   fleet.began_us = steady_now_us();
   const double joining = static_cast<double>(fleet.options.count) / fleet.options.join_rate;

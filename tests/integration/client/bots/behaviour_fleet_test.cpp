@@ -14,11 +14,7 @@ namespace {
 
 volatile std::sig_atomic_t never = 0;
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-/// A server of a flat world that accepts many sessions. It runs while this object exists.
-=======
 /// A server of a flat world that accepts large fleets.
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
 struct FlatServer {
   TempFolder folder;
   std::unique_ptr<Server> server = [&] {
@@ -42,12 +38,7 @@ BotOptions options_for(const Server& server, BotRole role, std::size_t count) {
 
 }  // namespace
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("builders submit all their edits, get all of them confirmed, and find them intact",
-          "[bots]") {
-=======
 TEST_CASE("builders submit all edits, and each is confirmed and stays in the world", "[bots]") {
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   const FleetReport report =
       BehaviourFleet(options_for(*flat.server, BotRole::build, 5)).run(never);
@@ -64,13 +55,8 @@ TEST_CASE("builders submit all edits, and each is confirmed and stays in the wor
                                    std::pair(report.traffic.sent, report.bytes_sent)}) {
     std::uint64_t sum = 0;
     for (const KindTraffic& kind : way) sum += kind.bytes + kind.frames * kFrameHeaderBytes;
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-    CHECK(sum <= bytes + 64 * 1024);  // transferred, but not counted yet
-    CHECK(bytes <= sum + 64 * 1024);  // a message in flight
-=======
     CHECK(sum <= bytes + 64 * 1024);  // bytes that are not counted yet
     CHECK(bytes <= sum + 64 * 1024);  // a message in transit
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   }
   CHECK(report.standing.held > 400);
   CHECK(report.standing.intact == report.standing.held);
@@ -78,18 +64,6 @@ TEST_CASE("builders submit all edits, and each is confirmed and stays in the wor
   CHECK(flat.server->stop().digests.seq == 500);
 }
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("edits that are due soon after the start are submitted when due, not with the next ping",
-          "[bots]") {
-  const TempFolder folder;
-  auto server = start_server(quiet_config(folder.path()), flat_creation());
-  BotOptions options = options_for(*server, BotRole::build, 4);
-  options.replicas = 0;   // bots with a replica are stepped more often
-  options.join_rate = 8;  // then the first bots only ping
-  options.rate = 4;
-  options.seconds = 0.4;  // the first edits are due within a quarter of a second
-  const FleetReport report = BotFleet(options).run(never);
-=======
 TEST_CASE("edits due soon after the start are made on time, not with the next ping", "[bots]") {
   const TempFolder folder;
   auto server = start_server(quiet_config(folder.path()), flat_creation());
@@ -99,7 +73,6 @@ TEST_CASE("edits due soon after the start are made on time, not with the next pi
   options.rate = 4;
   options.seconds = 0.4;  // the first edits are due within a quarter of a second
   const FleetReport report = BehaviourFleet(options).run(never);
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.failure.empty());
   CHECK(report.counts.due >= 4);
 }
@@ -121,11 +94,7 @@ TEST_CASE("bots with the behaviours brush and griefer edit; those with idle and 
   CHECK(report.counts.not_ready > 0);
 }
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("a fleet that finds no server reports it and ends", "[bots]") {
-=======
 TEST_CASE("a fleet that finds no server ends with that reason", "[bots]") {
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 1);
   flat.server->stop();
@@ -135,12 +104,8 @@ TEST_CASE("a fleet that finds no server ends with that reason", "[bots]") {
   CHECK(report.counts.due == 0);
 }
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("a stop ends a fleet early, after all submitted edits were answered", "[bots]") {
-=======
 TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are still answered",
           "[bots]") {
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 2);
   options.edits.reset();
@@ -158,11 +123,7 @@ TEST_CASE("a signal ends the edits of a fleet early, and submitted edits are sti
   CHECK(report.counts.rejected == 0);
 }
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("bots in one place: every edit is verified by every bot", "[bots]") {
-=======
 TEST_CASE("with all bots in one place, every bot verifies every edit", "[bots]") {
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::build, 50);
   options.sites = 1;
@@ -177,13 +138,8 @@ TEST_CASE("with all bots in one place, every bot verifies every edit", "[bots]")
   CHECK(report.replicas == 5);
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-  CHECK(report.counts.confirm_us.count() == 500);
-  // The 45 bots without a replica get each edit once, including its author.
-=======
   CHECK(report.counts.own_us.count() == 500);
   // The 45 bots without a replica receive each edit once, also the author.
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.commit_edits == 45 * 500);
   CHECK(report.seen_us.count() >= 45 * 500);
   CHECK(report.seen_us.infinite() == 0);
@@ -194,11 +150,7 @@ TEST_CASE("with all bots in one place, every bot verifies every edit", "[bots]")
   CHECK(report.counts.joins == 50);
 }
 
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-TEST_CASE("a join storm connects again and again, and runners load new chunks", "[bots]") {
-=======
 TEST_CASE("bots of a join storm join again and again, and run-away bots load new views", "[bots]") {
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   const FlatServer flat;
   BotOptions options = options_for(*flat.server, BotRole::join_storm, 8);
   options.roles = {BotRole::join_storm, BotRole::run_away};
@@ -211,10 +163,6 @@ TEST_CASE("bots of a join storm join again and again, and run-away bots load new
   CHECK(report.failure.empty());
   CHECK(report.is_sound());
   CHECK(report.losses.empty());
-<<<<<<< HEAD:tests/integration/client/bots/bot_fleet_test.cpp
-  CHECK(report.counts.joins >= 8 + 4 * 4);  // the last join may be unfinished
-=======
   CHECK(report.counts.joins >= 8 + 4 * 4);  // the last join may be in progress
->>>>>>> h-client:tests/integration/client/bots/behaviour_fleet_test.cpp
   CHECK(report.counts.submitted == 0);
 }
