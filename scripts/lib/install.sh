@@ -16,12 +16,14 @@ install_packages() {
   DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build PRESET [TARGET...]: configures once, builds.
+# build PRESET [TARGET...]: configures once, then builds. In a terminal Ninja shows its progress line; in a log it prints
+# errors only.
 build() {
-  local preset=$1
+  local preset=$1 quiet=--quiet
   shift
+  [ -t 1 ] && quiet=
   [ -f "$root/build/$preset/build.ninja" ] || (cd "$root" && cmake --preset "$preset" >/dev/null)
-  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} -- --quiet)
+  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} -- $quiet)
 }
 
 # Runs the rest of the line and prints how long it took.
