@@ -339,7 +339,7 @@ void ServerCore::command(SessionId session, AuthorId author, const PublicKey& ke
   if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // Ports do not call back in: the answer may come at once.
   asio::post(strand_, [this, session, caller, text] {
-    const auto reply = [this, session](const DeskAnswer& answer) {
+    const auto reply = [this, session](const CommandAnswer& answer) {
       world_->answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
     };
     commands_->run(caller, text, now(), reply);
