@@ -1,5 +1,5 @@
-// compact_by_hand: what a compaction leaves on disk: a newer base, a log that begins behind it, and the head
-// of what is gone.
+// compact_by_hand: what a compaction leaves on disk: a newer base, a log that begins behind it, and
+// the head of what is gone.
 #pragma once
 #include <catch2/catch.hpp>
 #include <string>
@@ -12,7 +12,8 @@
 
 namespace runstone::test {
 
-/// Takes edits 1 .. head.version.seq out of the log of a closed world and makes `chunks` base chunks.
+/// Takes edits 1 .. head.version.seq out of the log of a closed world and makes `chunks` base
+/// chunks.
 inline void compact_by_hand(const std::string& file, const LogEnd& head,
                             const std::vector<std::pair<ChunkKey, ChunkPtr>>& chunks) {
   auto database = sql::Database::open(file, sql::Database::Mode::write, "");
