@@ -1,5 +1,5 @@
-// CacheDatabase: the database of the chunk cache. The first failure sticks: after it, every call fails and does nothing. A
-// caller may therefore write a whole batch and call ok() once.
+// CacheDatabase: the database of the chunk cache. The first failure sticks: after it, every call
+// fails and does nothing. A caller may therefore write a whole batch and call ok() once.
 // Threads: one.
 #pragma once
 #include <cstdint>

@@ -15,8 +15,8 @@ Result<FileLock, FileLockError> FileLock::take(const std::string& file) {
   };
   FileLock lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (lock.descriptor_ < 0) return failure(false);
-  // A lock of flock() belongs to the open file, one of fcntl() to the process: only the former refuses a
-  // second lock of this process.
+  // A lock of flock() belongs to the open file, one of fcntl() to the process: only the former
+  // refuses a second lock of this process.
   if (::flock(lock.descriptor_, LOCK_EX | LOCK_NB) != 0) return failure(errno == EWOULDBLOCK);
   return lock;
 }

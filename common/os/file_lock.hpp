@@ -1,6 +1,7 @@
-// FileLock: an advisory lock on a file. At most one process writes a folder: the process that holds the lock of a file in
-// it. The lock belongs to the open file, so the end of the process releases it, however it ends. Locks on other files, such
-// as those of a database in the same folder, are not affected.
+// FileLock: an advisory lock on a file. At most one process writes a folder: the process that holds
+// the lock of a file in it. The lock belongs to the open file, so the end of the process releases
+// it, however it ends. Locks on other files, such as those of a database in the same folder, are
+// not affected.
 #pragma once
 #include <string>
 #include <utility>
@@ -17,8 +18,8 @@ struct FileLockError {
 
 class FileLock {
  public:
-  /// Takes the lock without waiting. Makes the file if it does not exist. Fails if another lock holds it, in this process
-  /// too, or if the file cannot be written.
+  /// Takes the lock without waiting. Makes the file if it does not exist. Fails if another lock
+  /// holds it, in this process too, or if the file cannot be written.
   static Result<FileLock, FileLockError> take(const std::string& file);
 
   /// Makes an object that holds no lock.
@@ -28,7 +29,8 @@ class FileLock {
     std::swap(descriptor_, other.descriptor_);
     return *this;
   }
-  /// Releases the lock. The file stays: if it were removed, two processes could lock two files of the same name.
+  /// Releases the lock. The file stays: if it were removed, two processes could lock two files of
+  /// the same name.
   ~FileLock();
 
  private:

@@ -1,5 +1,7 @@
-// sql::Database: a connection to one SQLite file. This folder is the only one that calls the SQLite C API.
-// Threads: one thread at a time owns a Database and all of its statements. SQLite's own mutex is off.
+// sql::Database: a connection to one SQLite file. This folder is the only one that calls the SQLite
+// C API.
+// Threads: one thread at a time owns a Database and all of its statements. SQLite's own mutex is
+// off.
 #pragma once
 #include <array>
 #include <cstdint>

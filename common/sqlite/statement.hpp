@@ -33,7 +33,8 @@ class Statement {
   Result<bool> step();
   /// Steps to the end and resets. It is for statements without rows.
   Result<void> run();
-  /// Makes the statement ready to be stepped again. Bound values stay; views of columns become invalid.
+  /// Makes the statement ready to be stepped again. Bound values stay; views of columns become
+  /// invalid.
   void rewind();
   /// Makes the statement ready to be bound and stepped again. Views of columns become invalid.
   void reset();

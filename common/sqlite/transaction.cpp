@@ -9,8 +9,8 @@ Result<Transaction> Transaction::begin(Database& database) {
 }
 
 Transaction::~Transaction() {
-  // A COMMIT that failed may have rolled back already. This ROLLBACK then fails, and nothing is left
-  // to undo.
+  // A COMMIT that failed may have rolled back already. This ROLLBACK then fails, and nothing is
+  // left to undo.
   if (database_ != nullptr) static_cast<void>(database_->run("ROLLBACK").has_value());
 }
 

@@ -69,7 +69,7 @@ void Console::take(std::string_view bytes) {
 }
 
 void Console::run(const std::string& line) {
-  handler_(line, [self = shared_from_this()](const DeskAnswer& answer) {
+  handler_(line, [self = shared_from_this()](const CommandAnswer& answer) {
     asio::post(self->loop_, [self, text = answer.text] { self->out_ << text << std::endl; });
   });
 }

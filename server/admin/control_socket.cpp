@@ -59,14 +59,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
               const std::string line = self->in_.substr(0, bytes - 1);
               self->in_.erase(0, bytes);
               self->is_busy_ = true;
-              self->handler_(line, [self](const DeskAnswer& answer) {
+              self->handler_(line, [self](const CommandAnswer& answer) {
                 asio::post(self->strand_, [self, answer] { self->answer(answer); });
               });
             }));
   }
 
  private:
-  void answer(const DeskAnswer& answer) {
+  void answer(const CommandAnswer& answer) {
     std::string out;
     for (std::size_t at = 0; at <= answer.text.size();) {
       const std::size_t end = std::min(answer.text.find('\n', at), answer.text.size());

@@ -5,9 +5,10 @@
 
 namespace runstone {
 
-/// The base row of the chunk, else what the generator makes, in its cheapest axis order, at version (0, 0) or at that of
-/// the compaction which completed it. Requires lod 0 and a chunk inside the world. Blocks on the disk; an error names
-/// file, table and row.
+/// Returns the chunk of the base, or the generator's chunk if the base has none, in its cheapest
+/// axis order. Its version is (0, 0), or that of the last edit that a compaction put into it.
+/// Requires lod 0 and a chunk inside the world. Fails if the row is damaged; the error names file,
+/// table and row. Blocks on the disk.
 StoreResult<Chunk> base_chunk(ChunkReader& reader, const Generator& generator, const ChunkKey& key);
 
 }  // namespace runstone

@@ -8,8 +8,7 @@ namespace runstone {
 
 namespace {
 
-constexpr std::size_t kSliceChunks =
-    32;  // saved in one transaction: edits do not wait long behind it
+constexpr std::size_t kSliceChunks = 32;  // in one transaction; small, because edits wait for it
 constexpr Sequence kProgressEdits = 1024;
 
 }  // namespace
@@ -58,7 +57,7 @@ StoreResult<void> KeyframeMaker::make_due(const Save& save, const Progress& prog
     edits_ = 0;
     touched_.clear();
     if (!made) {
-      read_.reset();  // from the newest keyframe again, should there be a next call
+      read_.reset();  // the next call begins at the newest keyframe again
       return made;
     }
   }

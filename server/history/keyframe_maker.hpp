@@ -1,5 +1,6 @@
-// KeyframeMaker: finds where keyframes are due and makes them from what the log says; it needs no live world. Who owns the
-// writing store saves them. One thread, which alone uses the reader.
+// KeyframeMaker: finds the places in the log where keyframes are due, and makes these keyframes
+// from the log. It needs no live world. The owner of the store that is open for writing saves them.
+// Threads: one, which alone uses the reader.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -14,44 +15,48 @@
 
 namespace runstone {
 
-/// A keyframe is due with the first edit that makes both true: a moment then lies near one, and what keyframes hold is at
-/// most a chunk for so many edits. The place depends on the log alone.
+/// A keyframe is due at the first edit for which both conditions hold. The first bounds the edits
+/// between a moment and the keyframe before it. The second bounds the size of keyframes: at most
+/// one chunk for so many edits. The place depends on the log alone.
 struct KeyframePolicy {
-  std::uint64_t edits_min = 32'768;    // since the keyframe before; 0: none is ever due
-  std::uint64_t edits_per_chunk = 16;  // edits since then for each chunk that they touched
+  std::uint64_t edits_min = 32'768;  // since the keyframe before; 0: none is ever due
+  std::uint64_t edits_per_chunk =
+      16;  // at least; since the keyframe before, for each touched chunk
 };
 
 class KeyframeMaker {
  public:
   using Chunks = std::vector<std::pair<ChunkKey, ChunkPtr>>;
-  /// As Store::save_keyframe(); returns when it is done.
+  /// Saves as WorldSink::save_keyframe(), and returns when it is done.
   using Save = std::function<StoreResult<void>(Chunks, const std::optional<Keyframe>&)>;
   using Progress = WorldAt::Progress;
 
-  /// Both must outlive the maker.
+  /// Reader and generator must outlive the maker.
   KeyframeMaker(WorldReader& reader, const Generator& generator, const KeyframePolicy& policy)
       : reader_(reader), generator_(generator), policy_(policy) {}
 
-  /// Goes on through the log, from the newest keyframe to the log's present end, and makes those that are due. May be called
-  /// again when the log has grown: it then reads only what is new. `progress` is called every 1,024 edits read and after
-  /// each chunk made. After an error it may be called again too: what was saved stays, and is not made twice.
+  /// Reads the log from the newest keyframe to its end, and makes the keyframes that are due. It
+  /// may be called again when the log has grown: it then reads only the new edits. It may also be
+  /// called again after an error: keyframes that were saved are not made twice. `progress` is
+  /// called after every 1,024 edits and after each chunk.
   StoreResult<void> make_due(const Save& save, const Progress& progress = {});
-  /// Makes one at the end of this edit, whether due or not. Requires that there is none.
+  /// Makes a keyframe after this edit, due or not. Requires that there is none.
   StoreResult<void> make_at(Sequence at, const Save& save, const Progress& progress = {});
 
-  /// Made by this object.
+  /// Returns the number of keyframes that this object has made.
   std::uint64_t made() const { return made_; }
 
  private:
-  /// Reads on to the next place where one is due; 0 if the log ends before.
+  /// Reads up to the next edit at which a keyframe is due, and returns its sequence, or 0 if there
+  /// is none.
   StoreResult<Sequence> next_due(const Progress& progress);
 
   WorldReader& reader_;
   const Generator& generator_;
   const KeyframePolicy policy_;
-  std::optional<Sequence> read_;  // up to here; nothing before the first call
-  std::uint64_t edits_ = 0;       // since the newest keyframe
-  std::set<ChunkCoord> touched_;  // by them
+  std::optional<Sequence> read_;  // the last edit that was read; nullopt before the first call
+  std::uint64_t edits_ = 0;       // read since the newest keyframe
+  std::set<ChunkCoord> touched_;  // by these edits
   std::uint64_t made_ = 0;
 };
 

@@ -7,14 +7,15 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kEditOverheadBytes = 8;  // its sequence and its length, about
+constexpr std::size_t kEditOverheadBytes = 8;  // about: of the edit's sequence and length
 
-/// Whether the log has an edit of this very version that touches the chunk: then what a client has there is its state.
+/// Returns true if the log has an edit of exactly this version that touches the chunk. A client's
+/// copy of that version then is a state of this chunk.
 StoreResult<bool> is_in_log(LogReader& store, const Version& version, const VoxelBox& box) {
   const auto range = store.log_range();
   if (!range) return Unexpected<StoreError>{range.error()};
-  if (version.seq == 0)
-    return range->first == 1;  // the base, and none of its edits was compacted away
+  // Version 0 is the base, as long as no edit was compacted into it.
+  if (version.seq == 0) return range->first == 1;
   if (version.seq < range->first || version.seq > range->last.version.seq) return false;
   bool is_here = false;
   const auto read = store.read_log(version.seq, version.seq, [&](const EditRecord& record) {

@@ -1,5 +1,5 @@
-// Missing edits: what leads from an earlier version of a chunk to its newest, read from the log, for a client that kept
-// the earlier one. Blocks on the disk.
+// Missing edits: the edits that lead from an earlier version of a chunk to its newest, read from
+// the log. They bring the copy that a client kept up to date. All functions block on the disk.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -9,14 +9,19 @@
 
 namespace runstone {
 
-/// Edits that a copy may be behind, anywhere in the world; a copy that is further behind gets a snapshot.
+/// The number of edits of the whole world that a copy may be behind. A copy that is further behind
+/// gets a snapshot.
 inline constexpr Sequence kUpdateStretchMax = 1'000'000;
-/// Edits looked at, that come near the chunk, before a snapshot is thought cheaper.
+/// The number of edits near the chunk that are read before a snapshot counts as cheaper.
 inline constexpr std::size_t kUpdateLooksMax = 4'096;
 
-/// The edits that lead from version `from` of the chunk to `chunk`. Nothing if a snapshot serves better: they take more
-/// than `bytes_max` bytes, they are too many to look for, or `from` is no version of this chunk in this log (of a lost
-/// epoch, or compacted away). Requires from.seq < chunk.version.seq, which is durable.
+/// Returns the edits that lead from version `from` of the chunk to `chunk`. Requires that from.seq
+/// < chunk.version.seq, and that the latter is durable. Returns nullopt if a snapshot is the better
+/// answer:
+///   - the edits take more than `bytes_max` bytes;
+///   - there are more edits than the two bounds above allow;
+///   - `from` is no version of this chunk in this log: its epoch was lost, or it was compacted
+///     away.
 StoreResult<std::optional<ChunkEdits>> missing_edits(LogReader& store, const ChunkKey& key,
                                                      const Chunk& chunk, const Version& from,
                                                      std::size_t bytes_max);

@@ -8,7 +8,8 @@
 namespace runstone {
 namespace {
 
-/// When the edit was ordered, 0 before the first one. A moment that was opened has its edit, or is the log's head.
+/// Returns version and time of an edit, which are 0 before the first one. Requires that the log
+/// holds the edit, or that it is the log's head. Both are true of a moment that could be opened.
 StoreResult<LogEnd> edit_at(LogReader& reader, Sequence seq) {
   auto end = reader.log_head();
   if (!end || end->version.seq == seq) return end;
@@ -32,11 +33,11 @@ StoreResult<std::shared_ptr<Moments::Kept>> Moments::find(Sequence at) {
       kept_.splice(kept_.begin(), kept_, found);
     } else {
       kept_.emplace_front(at, std::make_shared<Kept>());
-      if (kept_.size() > kept_max_) kept_.pop_back();  // whoever still uses it holds it
+      if (kept_.size() > kept_max_) kept_.pop_back();  // its users share ownership
     }
     moment = kept_.front().second;
   }
-  // Whoever comes second waits here until the first one has opened it.
+  // If two threads want the moment, the second one waits here until the first one has opened it.
   const std::lock_guard lock(moment->mutex);
   if (moment->world != nullptr) return moment;
   const auto failed = [&](const StoreError& error) {

@@ -1,6 +1,7 @@
-// Moments: the worlds of the past that somebody looks at, ready to make chunks. Each has a reader of its own; a few are
-// kept, the ones used last, since those who scrub come back. Any thread; a moment makes one chunk at a time. Blocks on
-// the disk.
+// Moments: a cache of past worlds, ready to make chunks of them. It keeps the worlds that were used
+// last, because users who move through time come back to them. Each has a reader of its own. It
+// blocks on the disk.
+// Threads: any. A world makes one chunk at a time.
 #pragma once
 #include <cstdint>
 #include <list>
@@ -14,19 +15,21 @@ namespace runstone {
 
 class Moments {
  public:
-  /// Edits that opening a moment may have to read and keep; with keyframes there are some 32,768.
+  /// The number of edits that opening a moment may have to read and keep. With keyframes there are
+  /// about 32,768.
   static constexpr Sequence kEditsMax = 1'000'000;
 
-  /// `generator` must outlive the object. Keeps `kept_max` moments, at least 1.
+  /// `generator` must outlive the object. Keeps up to `kept_max` moments. Requires kept_max >= 1.
   Moments(std::string folder, const Generator& generator, std::size_t kept_max = 4)
       : folder_(std::move(folder)), generator_(generator), kept_max_(kept_max) {}
 
-  /// The moment after the edit with this sequence. Fails as WorldAt::open() does, and
-  /// (bad_request) if more than kEditsMax edits lie between it and the stored moment before.
+  /// Opens the moment after the edit with this sequence, and returns its end. Fails as
+  /// WorldAt::open(), and (bad_request) if more than kEditsMax edits lie between the moment and the
+  /// stored moment before it.
   StoreResult<LogEnd> open(Sequence at);
-  /// The moment after the last edit at or before this time (UTC).
+  /// Opens the moment after the last edit at or before this time (UTC).
   StoreResult<LogEnd> open_at_time(TimeUs utc_us);
-  /// The chunk as it stood after edit `at`; the moment is opened anew if it is no longer kept.
+  /// Returns the chunk as it was after edit `at`. Opens the moment again if it is no longer kept.
   StoreResult<Chunk> chunk(Sequence at, const ChunkKey& key);
 
  private:
@@ -36,7 +39,7 @@ class Moments {
     std::unique_ptr<WorldAt> world;  // null until it is open
     LogEnd end;
   };
-  /// Opened, if it has not been.
+  /// Returns the moment. Opens it if it is not open.
   StoreResult<std::shared_ptr<Kept>> find(Sequence at);
   void forget(Sequence at);
 

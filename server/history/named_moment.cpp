@@ -49,7 +49,8 @@ StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment) 
                   ", before seq=" + std::to_string(*sequence));
   }
   const auto* before_end = std::get_if<BeforeEnd>(&moment);
-  // No overflow: durations are short, and a damaged time is not earlier than the beginning of time.
+  // A damaged time may be near the earliest value, so the subtraction is checked. earliest + us
+  // cannot overflow, since us >= 0.
   const TimeUs last = range->last.time_us;
   TimeUs us = before_end != nullptr ? 0 : std::get_if<AtTime>(&moment)->us;
   if (before_end != nullptr) {

@@ -1,4 +1,4 @@
-// NamedMoment: a place in the log as people write it.
+// NamedMoment: a place in the log as users write it.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,18 +15,20 @@ struct AtTime {
   friend bool operator==(const AtTime&, const AtTime&) = default;
 };
 struct BeforeEnd {
-  TimeUs us = 0;  // before the time of the log's last edit, >= 0
+  TimeUs us = 0;  // from there to the log's last edit; >= 0
   friend bool operator==(const BeforeEnd&, const BeforeEnd&) = default;
 };
-/// After this edit; after the last one that was not later than a time.
+/// The moment after an edit, named by its sequence, or after the last edit that is not later than a
+/// time.
 using NamedMoment = std::variant<Sequence, AtTime, BeforeEnd>;
 
-/// "9120", a time in UTC such as "2026-11-21T23:05:00Z" or, behind a minus, a duration such as "-2h30m" (both as
-/// common/core/utc_text.hpp reads them). The error says what is wrong with the text.
+/// Parses a sequence ("9120"), a time in UTC ("2026-11-21T23:05:00Z"), or a minus and a duration
+/// ("-2h30m"). common/core/utc_text.hpp defines times and durations. The error is one line of text.
 Result<NamedMoment, std::string> parse_moment(std::string_view text);
 
-/// The sequence that a moment means in this world: that of the last edit not later, so 0 before the first edit. Fails (bad_request) if
-/// it lies before what was compacted, or behind the end of the log where it was named by its sequence.
+/// Returns the sequence of a moment in this world: that of the last edit that is not later, or 0
+/// before the first edit. Fails (bad_request) if the moment was compacted away, or if it is a
+/// sequence after the end of the log.
 StoreResult<Sequence> sequence_of(LogReader& reader, const NamedMoment& moment);
 
 }  // namespace runstone

@@ -1,9 +1,10 @@
-// WorldAt: the world as it was at a sequence. Opening one reads the edits behind the newest keyframe before it, not the
-// chunks: a chunk is made when it is asked for, from what is stored of it there and the edits that touched it since, with
-// the same apply_stack() as the server's.
-// Memory: every edit read, once; for each chunk ever edited what is stored of it, without voxels, and the list of its edits.
-// No chunk is kept. Threads: one, which alone uses the reader. A server may write the world meanwhile; a compaction that goes
-// beyond the moment is noticed and reported.
+// WorldAt: the world as it was at a sequence. open() reads the edits after the newest keyframe
+// before it, and no chunks. A chunk is made on request: from its stored form at the keyframe and
+// the edits that touched it since, with the same apply_stack() as the server's.
+// Memory: every edit read, once; for each chunk ever edited its stored form without voxels, and the
+// list of its edits. No chunk is kept.
+// Threads: one, which alone uses the reader. A server may write the world meanwhile. A compaction
+// beyond the moment is detected and reported.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -20,42 +21,46 @@ namespace runstone {
 
 class WorldAt {
  public:
-  /// Called now and then with the sequence read and the one to be reached. False ends the work with Kind::cancelled.
+  /// Is called from time to time with the sequence that was read and the last one to be read. If it
+  /// returns false, the work fails with Kind::cancelled.
   using Progress = std::function<bool(Sequence, Sequence)>;
 
-  /// Both must outlive the object. `at` 0 is the world before the first edit. Fails (bad_request) if `at` lies before what
-  /// the log can still tell, naming where it begins, or behind its end, naming that.
+  /// Opens the world after edit `at`; 0 means before the first edit. Reader and generator must
+  /// outlive the object. Fails (bad_request) if `at` was compacted away or lies after the end of
+  /// the log. The error names the beginning or the end.
   static StoreResult<WorldAt> open(WorldReader& reader, const Generator& generator, Sequence at,
                                    const Progress& progress = {});
 
   Sequence at() const { return end_.version.seq; }
-  /// Version and time of the last edit at or before `at`; all 0 before the first.
+  /// Returns version and time of the last edit at or before at(). They are 0 before the first edit.
   const LogEnd& end() const { return end_; }
 
-  /// The chunk as it stood at `at`, in its cheapest axis order, with its digest. Its version is the last edit at or before
-  /// `at` that touched it, (0, 0) if none did. Requires lod 0 and a chunk inside the world. O(its edits * its runs / 64).
+  /// Returns the chunk as it was, in its cheapest axis order, with its digest. Its version is that
+  /// of the last edit at or before at() that touched it, or (0, 0) if none did. Requires lod 0 and
+  /// a chunk inside the world. Cost: O(edits of the chunk * its runs / 64).
   StoreResult<Chunk> chunk(const ChunkKey& key);
-  /// The version that chunk() would carry, without making it.
+  /// Returns the version that chunk() would have, without making the chunk.
   Version version(const ChunkKey& key) const;
-  /// All chunks that edits touched up to `at`, ascending.
+  /// Returns all chunks that edits touched up to at(), ascending.
   std::vector<ChunkKey> edited() const;
 
-  /// Goes on to a later sequence and reads only the edits between. Fails as open() does, also (bad_request) for an
-  /// earlier one; the object then stays where it was.
+  /// Moves to a later sequence. Reads only the edits between. Fails as open(), and (bad_request)
+  /// for an earlier sequence. After a failure the object is unchanged.
   StoreResult<void> advance(Sequence at, const Progress& progress = {});
 
-  /// The moment whose chunks are stored: no edit up to there was read. Its sequence is 0 in a world without keyframes.
+  /// Returns the sequence of the stored moment that open() began with. It is 0 in a world without
+  /// keyframes.
   Sequence stored_at() const { return stored_at_; }
-  /// Chunks that edits touched since the stored moment, ascending.
+  /// Returns the chunks that edits touched since the stored moment, ascending.
   std::vector<ChunkKey> touched() const;
-  /// What a keyframe at `at` says of the chunks that were not.
+  /// Returns the part of a keyframe at at() that covers the other chunks: those not in touched().
   Keyframe untouched() const;
 
  private:
-  /// What is known of a chunk that edits touched.
+  /// A chunk that edits touched.
   struct Edited {
-    std::optional<StoredChunk> stored;  // else its base was never edited before
-    std::vector<std::uint32_t> edits;   // touched it since, as indices of edits_
+    std::optional<StoredChunk> stored;  // nullopt: it has only its base, at version (0, 0)
+    std::vector<std::uint32_t> edits;   // that touched it since, as indices of edits_
   };
 
   WorldAt(WorldReader& reader, const Generator& generator)

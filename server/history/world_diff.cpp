@@ -21,7 +21,7 @@ struct Written {
   AuthorId author = 0;
 };
 
-/// The edits between the moments, and which of them touched each chunk.
+/// The edits between the moments, and for each chunk the indices of those that touched it.
 struct Between {
   std::vector<Written> edits;
   std::map<ChunkCoord, std::vector<std::uint32_t>> chunks;
@@ -50,7 +50,7 @@ StoreResult<Between> read_between(WorldReader& reader, Sequence from, Sequence t
   return between;
 }
 
-/// Follows one chunk and who wrote it.
+/// Applies edits to one chunk and records their authors.
 class ChunkDiff {
  public:
   ChunkDiff(RunChunk before, VoxelPos origin)
@@ -59,7 +59,7 @@ class ChunkDiff {
         origin_(origin),
         writers_(uniform_chunk(now_.extent, 0, now_.order)) {}
 
-  /// False if more authors wrote the chunk than a chunk can tell apart.
+  /// Returns false if the chunk has more authors than there are materials.
   bool add(const Written& written, ApplyScratch& scratch, ApplyResult& result) {
     apply_stack(now_, digest_, origin_, {&written.edit, 1}, scratch, result);
     const std::span<const Change> changes = changes_of(scratch, result);
@@ -74,7 +74,7 @@ class ChunkDiff {
     return true;
   }
 
-  /// Counts into `by_author`; returns the sum.
+  /// Adds the voxels that differ to the counts of their authors. Returns the sum.
   std::uint64_t count(std::map<AuthorId, std::uint64_t>& by_author) const {
     std::vector<Difference> differences;
     append_differences(now_, before_, differences);
@@ -95,10 +95,10 @@ class ChunkDiff {
   const RunChunk before_;
   RunChunk now_;
   VoxelPos origin_;
-  RunChunk writers_;  // 0: nobody; else 1 + index of authors_
+  RunChunk writers_;  // a voxel is 0 if no edit changed it, else 1 + index of authors_
   std::vector<AuthorId> authors_;
   std::vector<Change> painted_;
-  Digest digest_;  // followed by apply_stack(); nobody asks for it
+  Digest digest_;  // apply_stack() needs one; its value is not used
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
-// WorldDiff: where the world differs between two moments, and who is the author of what is new.
-// How: each chunk that edits between the moments touched is made as it stood at the first one and gets those edits one by
-// one. What each of them really changed is written, stretch by stretch, into a second chunk whose "materials" are authors. In
-// the end the chunk is compared with its first state run by run, and each stretch that differs is looked up among the authors.
+// WorldDiff: the differences of a world between two moments, and the authors of what is new. Each
+// chunk that edits between the moments touched is made as it was at the first moment. Then it gets
+// these edits one by one. Each stretch that an edit really changed is written into a second chunk,
+// whose "materials" are authors. In the end the chunk is compared with its first state run by run,
+// and the second chunk gives the author of each stretch that differs.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -21,18 +22,19 @@ struct WorldDiff {
     std::uint64_t edits = 0, voxels = 0;
     friend bool operator==(const ChunkPart&, const ChunkPart&) = default;
   };
-  std::vector<ChunkPart> chunks;  // that differ: most voxels first, then by key
+  std::vector<ChunkPart> chunks;  // that differ; most voxels first, then by key
   struct AuthorPart {
     AuthorId author = 0;
     std::uint64_t edits = 0;   // made between the moments
     std::uint64_t voxels = 0;  // that differ and were last changed by this author
     friend bool operator==(const AuthorPart&, const AuthorPart&) = default;
   };
-  std::vector<AuthorPart>
-      authors;  // who edited between the moments: most voxels first, then most edits, then by number
+  /// Authors of edits between the moments: most voxels first, then most edits, then by number.
+  std::vector<AuthorPart> authors;
 };
 
-/// Requires from <= to. Errors and `progress` are those of WorldAt::open(). Memory: the edits between the moments. Blocks.
+/// Compares two moments. Requires from <= to. Errors and `progress` are those of WorldAt::open().
+/// Memory: the edits between the moments. Blocks on the disk.
 StoreResult<WorldDiff> diff_world(WorldReader& reader, const Generator& generator, Sequence from,
                                   Sequence to, const WorldAt::Progress& progress = {});
 

@@ -24,8 +24,8 @@ class Importer {
       : file_(std::move(file)), map_(std::move(map)), options_(options), sink_(sink) {}
 
   Result<LuantiImportReport, ImportError> run() {
-    if (const auto trouble = scan()) return error(*trouble);
-    if (const auto trouble = make_table()) return error(*trouble);
+    if (const auto failure = scan()) return error(*failure);
+    if (const auto failure = make_table()) return error(*failure);
     sink_.materials(report_.materials);
     report_.voxels.assign(report_.materials.size(), 0);
     report_.spawn = {(report_.bounds.min.x + report_.bounds.max.x) / 2, report_.bounds.max.y,
@@ -42,7 +42,7 @@ class Importer {
     return {ImportError{file_, std::move(what)}};
   }
 
-  /// First pass: which blocks are sound, which names they use, how far they reach.
+  /// The first pass: finds the sound blocks, the names that they use, and their bounds.
   std::optional<std::string> scan() {
     return map_.each_row([&](std::int64_t pos, ByteView data) {
       const ChunkCoord at = luanti_block_coord(pos);
@@ -72,11 +72,12 @@ class Importer {
   }
 
   std::optional<std::string> make_table() {
-    std::sort(positions_.begin(), positions_.end());  // a foreign map promises no order of its own
+    std::sort(positions_.begin(), positions_.end());  // a damaged map may have another one
     for (auto& [name, id] : ids_) {
       MaterialInfo info = material_of_luanti_node(name, options_.keep_all);
       if (info.visibility == Visibility::empty) continue;
-      // Two foreign names may come out as one of ours only if both were unprintable and their hashes agree.
+      // Two foreign names become the same name only if both are unprintable and their hashes are
+      // equal.
       if (const auto known = report_.materials.find(info.name)) {
         id = *known;
         continue;
@@ -95,15 +96,16 @@ class Importer {
     for (const std::int64_t pos : positions_) {
       out.push_back(chunk_of(origin_of(luanti_block_coord(pos), kLuantiBlockEdge), options_.edge));
     }
-    // The order of the map's own key, so that neighbouring rows are read together.
+    // This is the order of the map's key, so that neighbouring rows are read together.
     std::sort(out.begin(), out.end(),
               [&](const auto& a, const auto& b) { return key(a) < key(b); });
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
 
-  /// A sound block with our materials. Only positions of the first pass come here, in the same read
-  /// transaction, so a row that is gone or no longer decodes means a failing disk.
+  /// Returns a sound block with the materials of the new world, or nullopt if there is none. It
+  /// reads only positions that the first pass found, in the same read transaction. A row that is
+  /// missing or does not decode now means a failing disk.
   std::optional<RunChunk> read_block(ChunkCoord at) {
     const std::int64_t pos = luanti_block_pos(at);
     if (!std::binary_search(positions_.begin(), positions_.end(), pos)) return std::nullopt;
@@ -128,7 +130,7 @@ class Importer {
   bool make_chunk(ChunkCoord at) {
     const auto side = static_cast<std::size_t>(options_.edge / kLuantiBlockEdge);
     std::vector<RunChunk> blocks;
-    blocks.reserve(side * side * side);  // the lookup hands out pointers into it
+    blocks.reserve(side * side * side);  // assemble_chunk() keeps pointers into it
     RunChunk chunk = assemble_chunk(options_.edge, at, [&](ChunkCoord block) -> const RunChunk* {
       auto voxels = read_block(block);
       if (!voxels) return nullptr;
@@ -148,7 +150,8 @@ class Importer {
     for (std::size_t i = 0; i < chunk.runs.size(); ++i) {
       report_.voxels[chunk.runs.material(i)] += chunk.runs.end(i) - chunk.runs.begin(i);
     }
-    // The highest voxel of the middle column: a chunk above another one comes later and replaces its answer.
+    // The spawn is above the highest voxel of the middle column. A chunk above another one comes
+    // later and replaces its value.
     const VoxelBox box = box_of(at, options_.edge);
     const std::int32_t x = report_.spawn.x, z = report_.spawn.z;
     if (!box.contains({x, box.min.y, z})) return;
@@ -162,7 +165,7 @@ class Importer {
   void advance(std::uint64_t blocks) {
     done_ += blocks;
     if (sink_.progress && (blocks == 0 || done_ % kProgressEvery == 0)) {
-      // Both passes read each sound block once; a damaged one is read in the first alone.
+      // Both passes read each sound block once. Only the first one reads a damaged block.
       sink_.progress(done_, 2 * map_.row_count() - report_.damaged.size());
     }
   }
@@ -174,7 +177,7 @@ class Importer {
   LuantiImportReport report_;
   std::vector<std::int64_t> positions_;  // of sound blocks, ascending
   std::map<std::string, Material> ids_;  // world material of every foreign name in use
-  std::vector<Material> to_;             // of the block in hand
+  std::vector<Material> to_;             // of the current block; by its local material
   std::uint64_t done_ = 0;               // block reads
 };
 

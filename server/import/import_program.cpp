@@ -19,7 +19,7 @@ constexpr std::size_t kDamagedListed = 10;
 
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
-/// Collects chunks and writes them as base, a transaction at a time.
+/// Collects chunks and writes them to the base, many in one transaction.
 class BaseWriter {
  public:
   explicit BaseWriter(ImportSink& world) : world_(world) {}
@@ -102,7 +102,7 @@ Result<void, std::string> import_world(const ImportRequest& request, std::ostrea
   if (!survey) return failure(survey.error().message());
 
   const std::string unfinished = request.world + ".importing";
-  fs::remove_all(unfinished, error);  // of an import that was broken off
+  fs::remove_all(unfinished, error);  // of an interrupted import
   if (const auto filled = fill(request, *survey, unfinished); !filled) {
     fs::remove_all(unfinished, error);
     return failure(filled.error());

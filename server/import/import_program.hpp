@@ -1,4 +1,4 @@
-// The import subcommand: a foreign world becomes a new Runstone world.
+// The import subcommand: makes a new Runstone world of a Luanti world.
 #pragma once
 #include <cstdint>
 #include <ostream>
@@ -15,9 +15,11 @@ struct ImportRequest {
   bool keep_all = false;
 };
 
-/// Makes the world beside its place and moves it there when it is complete, so that a broken-off import
-/// leaves no half world. Prints a short report. The error is one line. Reads the source twice: a world pins
-/// its spawn when it is made, and the spawn is known only when everything was read.
+/// Imports a world and prints a short report. The error is one line.
+///   - The world is made in the folder WORLD.importing, which is renamed when it is complete: an
+///     interrupted import leaves no incomplete world.
+///   - The source is read twice: a world pins its spawn when it is created, and the spawn is known
+///     after the first read.
 Result<void, std::string> import_world(const ImportRequest& request, std::ostream& out);
 
 }  // namespace runstone

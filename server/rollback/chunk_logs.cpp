@@ -28,7 +28,7 @@ StoreResult<void> ChunkLogs::read(const ChunkKey& key, Sequence first, Sequence 
   query.last = last;
   bool is_wanted = true;
   const auto done = reader_.query_log(query, [&](const EditRecord& record) {
-    is_wanted = !goes_on_ || goes_on_();
+    is_wanted = !should_continue_ || should_continue_();
     if (is_wanted && touches(record.edit, *query.box)) each(record);
     return is_wanted;
   });

@@ -1,6 +1,7 @@
-// chunk_past: a chunk as it stood at a sequence, for one chunk at a time: the newest stored form that is not
-// younger (snapshot, keyframe, base or generator), and the edits that touched the chunk since, by the log's
-// index of places. Blocks on the disk.
+// chunk_past: a chunk as it was at a sequence. It starts with the newest stored form that is not
+// younger: a snapshot, a chunk of a keyframe, the base or the generator's chunk. It applies the
+// edits that touched the chunk since, which it finds by place in the log's index. It blocks on the
+// disk. WorldAt serves callers that need many chunks of one moment.
 #pragma once
 #include "common/edits/apply/replayed_chunk.hpp"
 #include "common/generate/generator.hpp"
@@ -10,12 +11,13 @@
 
 namespace runstone {
 
-/// The chunk with all edits up to `at` and none later, in its cheapest axis order. The version is that of the last
-/// edit up to `at` that touched it. Fails with what the store says, and (bad_request) if the chunk's base is younger
-/// than `at`: the log before it was compacted. Requires lod 0.
+/// Returns the chunk with all edits up to `at` and none later, in its cheapest axis order. Its
+/// version is that of the last edit up to `at` that touched it. Requires lod 0. Fails as the
+/// reader, and (bad_request) if the chunk's base is younger than `at`: a compaction removed the
+/// edits before it.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, const ChunkKey& key,
                               Sequence at, FollowScratch& scratch);
-/// The same, with the log through `logs`, a view of the same reader.
+/// Does the same, and reads the log through `logs`, which must use the same reader.
 StoreResult<Chunk> chunk_past(WorldReader& reader, const Generator& generator, ChunkLogs& logs,
                               const ChunkKey& key, Sequence at, FollowScratch& scratch);
 

@@ -1,4 +1,4 @@
-// CommandReply: how the desks answer a command.
+// CommandReply: how RollbackService and CommandHandler answer a command.
 #pragma once
 #include <functional>
 #include <string>
@@ -6,15 +6,16 @@
 
 namespace runstone {
 
-/// One answer: text of one or more lines without a final line break. The last one of a request is done.
-struct DeskAnswer {
+/// One answer: one or more lines of text, without a line break at the end. The last answer to a
+/// command has `is_done`.
+struct CommandAnswer {
   std::string text;
   bool is_done = true;
-  bool is_ok = true;  // of the last one
+  bool is_ok = true;  // of the last answer
 };
-using CommandReply = std::function<void(const DeskAnswer&)>;
+using CommandReply = std::function<void(const CommandAnswer&)>;
 
-/// The only answer to what cannot be done.
+/// Sends the only answer to a command that cannot be carried out.
 inline void refuse(const CommandReply& reply, std::string text) {
   reply({std::move(text), true, false});
 }

@@ -1,4 +1,4 @@
-// newest_edits: the last edits of the log that answer a filter. Blocks on the disk.
+// newest_edits: the last edits of the log that match a filter. It blocks on the disk.
 #pragma once
 #include <vector>
 
@@ -6,8 +6,9 @@
 
 namespace runstone {
 
-/// The newest `count_max` edits, ascending. The log is asked in windows from its end, each twice as wide as the one
-/// before, so that a question with many answers reads few of them.
+/// Returns the newest `count_max` edits that match, ascending. The log is read in windows from its
+/// end, each twice as wide as the one before. A filter that matches many edits therefore reads few
+/// of them.
 StoreResult<std::vector<EditRecord>> newest_edits(LogReader& reader, const SelectionFilter& filter,
                                                   std::size_t count_max);
 

@@ -1,140 +1,95 @@
 #include "server/rollback/player_actions.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <utility>
-#include <vector>
+#include <map>
 
 #include "common/core/assert.hpp"
-#include "common/edits/descriptor/edit_geometry.hpp"
-#include "server/rollback/restore_plan.hpp"
 
 namespace runstone {
-namespace {
 
-constexpr Sequence kFirstWindow = 4096;
-constexpr std::size_t kKeptBytesMax = 64ULL << 20;
-
-/// One record of the player, and where it was.
-struct PlayerEdit {
-  PlayerRecord record;
-  TimeUs time_us = 0;
-  std::vector<ChunkCoord> chunks;
-};
-
-/// The author's records up to `end`, ascending, from about the kUndoActionsMax newest actions on.
-StoreResult<std::vector<PlayerEdit>> player_edits(WorldReader& reader, AuthorId author,
-                                                  Sequence end, const GoesOn& goes_on) {
-  // The index is read upward only, so the log is taken in windows from its end, each twice as wide as the one
-  // before; one with too much in it is left for half of it.
-  const std::int32_t edge = reader.meta().chunk_edge;
-  std::vector<PlayerEdit> newest;
-  std::size_t actions = 0, touches = 0;
-  const auto is_enough = [&] {
-    return actions >= kUndoActionsMax || newest.size() >= kPlayerRecordsMax ||
-           touches >= kPlayerTouchesMax;
-  };
-  Sequence width = kFirstWindow;
-  for (Sequence last = end; last > 0 && !is_enough();) {
-    const Sequence first = last > width ? last - width + 1 : 1;
-    LogQuery query;
-    query.author = author;
-    query.first = first;
-    query.last = last;
-    std::vector<PlayerEdit> window;
-    std::size_t window_touches = 0;
-    bool is_wanted = true;
-    const auto is_too_much = [&] {
-      return window.size() > kPlayerRecordsMax || window_touches > kPlayerTouchesMax;
-    };
-    const auto read = reader.query_log(query, [&](const EditRecord& record) {
-      is_wanted = !goes_on || goes_on();
-      if (!is_wanted) return false;
-      window.push_back({{record.version.seq, record.cause, record.subject},
-                        record.time_us,
-                        touched_chunks(record.edit, edge)});
-      window_touches += window.back().chunks.size();
-      return !is_too_much();
-    });
-    if (!read) return Unexpected<StoreError>{read.error()};
-    if (!is_wanted) return cancelled(reader);
-    if (is_too_much() && first < last) {
-      width = (last - first + 1) / 2;
+PlayerActions::PlayerActions(std::span<const PlayerRecord> records) {
+  std::map<Sequence, PlayerAction> by_edit;
+  for (const PlayerRecord& record : records) {
+    if (record.cause == Cause::player) {
+      PlayerAction& action = by_edit[record.seq];
+      action.seq = record.seq;
+      last_action_ = record.seq;
       continue;
     }
-    for (const PlayerEdit& edit : window) actions += edit.record.cause == Cause::player ? 1 : 0;
-    touches += window_touches;
-    std::move(newest.begin(), newest.end(), std::back_inserter(window));
-    newest = std::move(window);
-    last = first - 1;
-    width *= 2;
+    if (record.cause != Cause::undo && record.cause != Cause::redo) continue;
+    const auto found = by_edit.find(record.subject);
+    if (found == by_edit.end()) continue;
+    PlayerAction& action = found->second;
+    action.toggles.push_back(record.seq);
+    if (record.cause == Cause::undo) {
+      action.last_undo.push_back(record.seq);
+    } else {
+      action.last_undo.clear();
+    }
   }
-  return newest;
+  for (auto& [seq, action] : by_edit) actions_.push_back(std::move(action));
 }
 
-/// These edits of the player, by chunk. Only chunks that edits of `core` touch are kept: what is to be changed lies
-/// there, the other edits only say which writers count. Both ascend.
-Selection selection_of(const std::vector<PlayerEdit>& edited, const std::vector<Sequence>& edits,
-                       const std::vector<Sequence>& core, std::int32_t edge) {
-  const auto find = [&](Sequence seq) -> const PlayerEdit& {
-    const auto found =
-        std::lower_bound(edited.begin(), edited.end(), seq,
-                         [](const PlayerEdit& e, Sequence s) { return e.record.seq < s; });
-    RUNSTONE_ASSERT(found != edited.end() && found->record.seq == seq);
-    return *found;
-  };
-  Selection selection;
-  selection.chunk_edge = edge;
-  for (const Sequence seq : core) {
-    for (const ChunkCoord at : find(seq).chunks) selection.chunks[{0, at}];
+std::vector<Sequence> PlayerActions::undoable() const {
+  std::vector<Sequence> out;
+  for (auto action = actions_.rbegin(); action != actions_.rend(); ++action) {
+    if (!action->is_undone()) out.push_back(action->seq);
   }
-  for (const Sequence seq : edits) {
-    const PlayerEdit& edit = find(seq);
-    for (const ChunkCoord at : edit.chunks) {
-      const auto chunk = selection.chunks.find({0, at});
-      if (chunk != selection.chunks.end()) chunk->second.push_back(seq);
-    }
-    if (selection.edits++ == 0) {
-      selection.first = seq;
-      selection.first_us = edit.time_us;
-    }
-    selection.last = seq;
-    selection.last_us = edit.time_us;
-  }
-  return selection;
+  return out;
 }
 
-}  // namespace
-
-StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Generator& generator,
-                                                   AuthorId author, Cause cause, Sequence end,
-                                                   const GoesOn& goes_on) {
-  RUNSTONE_ASSERT(cause == Cause::undo || cause == Cause::redo);
-  const auto edited = player_edits(reader, author, end, goes_on);
-  if (!edited) return Unexpected<StoreError>{edited.error()};
-  std::vector<PlayerRecord> records;
-  records.reserve(edited->size());
-  for (const PlayerEdit& edit : *edited) records.push_back(edit.record);
-  const PlayerActions actions(records);
-  const bool is_undo = cause == Cause::undo;
-  const std::int32_t edge = reader.meta().chunk_edge;
-  std::vector<Sequence> candidates = is_undo ? actions.undoable() : actions.redoable();
-  PlayerActionSearch search;
-  search.has_given_up = candidates.size() > kPassedActionsMax;
-  if (search.has_given_up) candidates.resize(kPassedActionsMax);
-  RestorePlanner planner(reader, generator, goes_on, kKeptBytesMax);
-  for (const Sequence action : candidates) {
-    Selection selection =
-        is_undo ? selection_of(*edited, actions.to_undo(action), actions.undo_core(action), edge)
-                : selection_of(*edited, actions.to_redo(action), actions.redo_core(action), edge);
-    for (const auto& [key, edits] : selection.chunks) {
-      const auto plan = planner.plan(key, edits, std::nullopt, end);
-      if (!plan) return Unexpected<StoreError>{plan.error()};
-      if (plan->voxels > 0)
-        return PlayerActionSearch{PlayerChange{action, std::move(selection)}, false};
-    }
+std::vector<Sequence> PlayerActions::redoable() const {
+  std::vector<const PlayerAction*> undone;
+  for (const PlayerAction& action : actions_) {
+    if (action.is_undone() && action.last_undo.back() > last_action_) undone.push_back(&action);
   }
-  return search;
+  std::sort(undone.begin(), undone.end(), [](const PlayerAction* a, const PlayerAction* b) {
+    return a->last_undo.back() > b->last_undo.back();
+  });
+  std::vector<Sequence> out;
+  out.reserve(undone.size());
+  for (const PlayerAction* action : undone) out.push_back(action->seq);
+  return out;
+}
+
+const PlayerAction& PlayerActions::find(Sequence action) const {
+  const auto found =
+      std::lower_bound(actions_.begin(), actions_.end(), action,
+                       [](const PlayerAction& a, Sequence seq) { return a.seq < seq; });
+  RUNSTONE_ASSERT(found != actions_.end() && found->seq == action);
+  return *found;
+}
+
+void PlayerActions::others(Sequence but, std::vector<Sequence>& out) const {
+  for (const PlayerAction& action : actions_) {
+    if (action.seq == but) continue;
+    if (action.is_undone()) out.push_back(action.seq);
+    out.insert(out.end(), action.toggles.begin(), action.toggles.end());
+  }
+  std::sort(out.begin(), out.end());
+}
+
+std::vector<Sequence> PlayerActions::undo_core(Sequence action) const {
+  const PlayerAction& mine = find(action);
+  std::vector<Sequence> out = {mine.seq};
+  out.insert(out.end(), mine.toggles.begin(), mine.toggles.end());
+  return out;
+}
+
+std::vector<Sequence> PlayerActions::redo_core(Sequence action) const {
+  return find(action).last_undo;
+}
+
+std::vector<Sequence> PlayerActions::to_undo(Sequence action) const {
+  std::vector<Sequence> out = undo_core(action);
+  others(action, out);
+  return out;
+}
+
+std::vector<Sequence> PlayerActions::to_redo(Sequence action) const {
+  std::vector<Sequence> out = redo_core(action);
+  others(action, out);
+  return out;
 }
 
 }  // namespace runstone

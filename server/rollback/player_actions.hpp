@@ -1,39 +1,66 @@
-// own_history: the newest actions of one player, read from the end of the log backwards, and the first of them
-// that undo or redo would change something with. Blocks on the disk.
+// PlayerActions: what one player did, undid and redid. The log is the only state. An *action* is an
+// edit with cause player. A *toggle* is an undo or redo: records of the player with that cause
+// whose subject is the action, one for each chunk. An action is undone if its last toggle is an
+// undo. Undo takes the newest action that is not undone. Redo takes the action that was undone
+// last, unless the player has done a new action since. Both select edits of the player, and
+// common/edits/restore/restore.hpp defines the effect:
+//   - all records of the action itself;
+//   - all records of the player's other actions that are undone, as if these actions had never
+//     been;
+//   - of the player's other actions that stand, only their toggles, which cancel each other out.
+//     Without them, an undo and redo of a later action would hide an earlier one from undo for
+//     ever.
+// Pure: it reads no log and no clock.
 #pragma once
-#include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
-#include "common/generate/generator.hpp"
-#include "server/rollback/own_actions.hpp"
-#include "server/rollback/selection.hpp"
-#include "server/store/world_reader.hpp"
+#include "common/core/ids.hpp"
 
 namespace runstone {
 
-/// How many of a player's actions undo and redo look back at.
-inline constexpr std::size_t kUndoActionsMax = 256;
-
-/// How many of those that have nothing left to change one undo or redo passes by: each may cost a look at all the
-/// chunks that it touched.
-inline constexpr std::size_t kPassedActionsMax = 16;
-/// What is read of the author's log at most: records, and chunks that they touch, all together.
-inline constexpr std::size_t kPlayerRecordsMax = 16'384;
-inline constexpr std::size_t kPlayerTouchesMax = 1'000'000;
-
-struct PlayerChange {
-  Sequence action = 0;  // the edit that is undone or redone
-  Selection selection;
+/// The fields of a record that matter here.
+struct PlayerRecord {
+  Sequence seq = 0;
+  Cause cause = Cause::player;
+  Sequence subject = 0;
 };
-struct PlayerActionSearch {
-  std::optional<PlayerChange> change;
-  bool has_given_up = false;  // kPassedActionsMax were passed by, and there are more
+
+struct PlayerAction {
+  Sequence seq = 0;               // of the edit
+  std::vector<Sequence> toggles;  // ascending
+  std::vector<Sequence>
+      last_undo;  // toggles of the undo in force; empty unless the action is undone
+  bool is_undone() const { return !last_undo.empty(); }
 };
-/// The undo (or redo) that is next: the first of OwnActions::undoable() (redoable()) that changes a voxel, since
-/// what others have built over entirely is passed by. Reads the log up to `end`, which must be durable, and reads it
-/// once for all that it looks at. Fails with what the store says, and with cancelled once `goes_on` says no.
-StoreResult<PlayerActionSearch> next_player_change(WorldReader& reader, const Generator& generator,
-                                                   AuthorId author, Cause cause, Sequence end,
-                                                   const GoesOn& goes_on = {});
+
+class PlayerActions {
+ public:
+  /// Takes the player's records, ascending. Other causes are ignored. The records may begin
+  /// anywhere in the log: a toggle is ignored if its subject is not among them. Such a subject is
+  /// an older action, or a rollback that the player undid as operator.
+  explicit PlayerActions(std::span<const PlayerRecord> records);
+
+  /// Returns the actions that may be undone, newest first.
+  std::vector<Sequence> undoable() const;
+  /// Returns the actions that may be redone. The action that was undone last comes first.
+  std::vector<Sequence> redoable() const;
+
+  /// Returns the edits that undo of an action selects, ascending. Requires an action of undoable().
+  std::vector<Sequence> to_undo(Sequence action) const;
+  /// Returns the edits that redo of an action selects, ascending. Requires an action of redoable().
+  std::vector<Sequence> to_redo(Sequence action) const;
+  /// Return the records of the action itself in to_undo() and to_redo(). All changes lie in the
+  /// chunks that they touch.
+  std::vector<Sequence> undo_core(Sequence action) const;
+  std::vector<Sequence> redo_core(Sequence action) const;
+
+ private:
+  const PlayerAction& find(Sequence action) const;
+  void others(Sequence but, std::vector<Sequence>& out) const;
+  std::vector<PlayerAction> actions_;  // by sequence
+  Sequence last_action_ = 0;
+};
 
 }  // namespace runstone

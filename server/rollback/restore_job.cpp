@@ -11,8 +11,9 @@
 namespace runstone {
 
 std::vector<RestoredChunk> restore_chunks(WorldReader& reader, const Generator& generator,
-                                          const RestoreWork& work, const GoesOn& goes_on) {
-  RestorePlanner planner(reader, generator, goes_on);
+                                          const RestoreWork& work,
+                                          const ShouldContinue& should_continue) {
+  RestorePlanner planner(reader, generator, should_continue);
   std::vector<RestoredChunk> out;
   for (const RestoreWork::Item& item : work.items) {
     RestoredChunk chunk;
@@ -58,14 +59,15 @@ std::optional<RestoreWork> RestoreJob::next_work(const WorldServer& world) {
   RestoreWork work;
   work.selection = order_.selection;
   work.end = world.durable();
-  // Only the durable log can be read: a chunk whose last edit is not in it yet would surely be planned in vain.
+  // Only the durable log can be read. The plan of a chunk whose last edit is not in it would have
+  // an old version.
   for (std::size_t looked = waiting_.size(); looked > 0 && work.items.size() < limits_.work_chunks;
        --looked) {
     const ChunkKey key = waiting_.front();
     waiting_.pop_front();
-    const bool is_settled = world.chunk_version(key).seq <= work.end;
-    if (!is_settled && ++passes_[key] >= kPassesMax) collisions_[key] = kCollisionsMax;
-    if (is_settled || is_careful(key)) {
+    const bool is_durable = world.chunk_version(key).seq <= work.end;
+    if (!is_durable && ++passes_[key] >= kPassesMax) collisions_[key] = kCollisionsMax;
+    if (is_durable || is_careful(key)) {
       work.items.push_back({key, is_careful(key)});
     } else {
       waiting_.push_back(key);
@@ -107,14 +109,14 @@ void RestoreJob::cancel() {
 
 void RestoreJob::step(WorldServer& world, const Clocks& now) {
   if (state_ != State::applying) return;
-  if (!world
-           .accepts_edits()) {  // a worker may still be at it: its answer comes, and finds the job ended
+  // A worker may still plan chunks. Its answer is dropped, because the job has ended.
+  if (!world.accepts_edits()) {
     state_ = State::failed;
     progress_.error = "the server stops, or its log cannot be written any more";
     return;
   }
   if (planned_.empty()) return;
-  world.commit(now);  // from here to order_server_edits() no version moves
+  world.commit(now);  // no version changes from here to order_server_edits()
   std::vector<EditOffer> offers;
   std::vector<RestoredChunk> slice;
   std::uint64_t voxels = 0;
@@ -171,14 +173,14 @@ void RestoreJob::take_written(std::vector<RestoredChunk> slice, std::size_t coun
     chunk->edits.erase(chunk->edits.begin(), end);
     if (begun_.insert(chunk->key).second) ++progress_.chunks_changed;
     if (!chunk->edits.empty()) {
-      chunk->version =
-          world.chunk_version(chunk->key);  // nobody came between: the rest of the plan holds
+      // No other edit came in between, so the rest of the plan fits the new version.
+      chunk->version = world.chunk_version(chunk->key);
       break;
     }
     ++progress_.chunks_done;
     begun_.erase(chunk->key);
   }
-  // Again on the next step, with the versions of then.
+  // The next step compares the versions again.
   for (auto rest = slice.end(); rest != chunk;) planned_.push_front(std::move(*--rest));
 }
 

@@ -53,7 +53,8 @@ class Paster {
     for (const Part& half : halves(tight)) paste(mine, half);
   }
 
-  /// Calls line(base, from, to) for what each difference covers of each line of the part: cells [from, to).
+  /// Calls row(m, s, from, to, restored) for the cells [from, to) of each line of the part that a
+  /// difference covers.
   template <class F>
   void for_each_row(std::span<const Difference> differences, const Part& part, F&& row) const {
     auto d = differences.begin();
@@ -70,7 +71,8 @@ class Paster {
     }
   }
 
-  /// The smallest part inside `part` that holds the differences; an empty one if there are none.
+  /// Returns the smallest part inside `part` that holds the differences. It is empty if there are
+  /// none.
   Part bounds(std::span<const Difference> differences, const Part& part) const {
     Part tight = {part.last, part.first};
     for_each_row(
@@ -116,7 +118,7 @@ class Paster {
     return both;
   }
 
-  /// Along x, y, z.
+  /// Returns the components along x, y, z.
   std::array<std::uint32_t, 3> by_axis(const OrderedPos& p) const {
     std::array<std::uint32_t, 3> out{};
     const auto axes = axes_of(order_);
@@ -162,8 +164,8 @@ std::vector<EditDescriptor> restore_pastes(const RunChunk& now,
 std::vector<EditDescriptor> careful_restore_pastes(const RunChunk& now,
                                                    std::span<const Difference> differences,
                                                    VoxelPos origin) {
-  // Each voxel belongs to one group, and its mask names what that voxel holds before any of these edits, so
-  // the groups do not see each other's work.
+  // Each voxel belongs to one group. The mask of the group names the material of the voxel before
+  // any of these edits, so no group changes the voxels of another.
   std::map<Material, std::vector<Difference>> by_material;
   for (const Difference& d : differences) by_material[d.now].push_back(d);
   std::vector<EditDescriptor> out;

@@ -1,5 +1,5 @@
-// Restore pastes: what differs in a chunk, as edits that write it: pasted clipboards whose other cells are
-// untouched, so that nothing but the differences is written.
+// Restore pastes: edits that write the differences of a chunk. They are pasted clipboards in which
+// all other cells are untouched, so that only the differences are written.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,16 +9,18 @@
 
 namespace runstone {
 
-/// Pastes that turn `now` into `restored` where they differ, in the chunk whose first voxel is `origin`. One, unless
-/// its clipboard would be larger than an edit may be: then the chunk is split along its slowest axis (and a
-/// single layer along the middle one). `now` gives extent and order. O(runs of what is built, per split).
+/// Returns pastes that write the restored material of each difference, in the chunk whose first
+/// voxel is `origin`. It is one paste, unless its clipboard would be larger than an edit may be.
+/// Then the chunk is split along its slowest axis, and a single layer along the middle one. `now`
+/// gives extent and axis order. Cost: O(runs of the clipboards), for each level of splits.
 std::vector<EditDescriptor> restore_pastes(const RunChunk& now,
                                            std::span<const Difference> differences,
                                            VoxelPos origin);
 
-/// The same, one group for each material that differs now, each masked to write only where the voxel still
-/// holds that material. So a voxel that was changed since `now` is left alone by the edit itself, whatever the
-/// chunk's version. More edits, and safe without a look at the chunk.
+/// Does the same with one group of pastes for each material that the differing voxels hold in
+/// `now`. The mask of a group lets it write only where the voxel still holds that material. The
+/// edit itself therefore leaves alone a voxel that was changed since `now`, whatever the chunk's
+/// version is. There are more edits than from restore_pastes().
 std::vector<EditDescriptor> careful_restore_pastes(const RunChunk& now,
                                                    std::span<const Difference> differences,
                                                    VoxelPos origin);

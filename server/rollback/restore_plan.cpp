@@ -10,7 +10,8 @@
 namespace runstone {
 namespace {
 
-/// The differences inside `spans`, which ascend and are disjoint.
+/// Returns the parts of the differences that lie inside `spans`. Requires that the spans ascend and
+/// are disjoint.
 std::vector<Difference> inside(const std::vector<Difference>& all,
                                const std::vector<IndexSpan>& spans) {
   std::vector<Difference> out;
@@ -29,7 +30,7 @@ std::vector<Difference> inside(const std::vector<Difference>& all,
 StoreResult<RestorePlan> RestorePlanner::plan(const ChunkKey& key,
                                               std::span<const Sequence> selected,
                                               const std::optional<VoxelBox>& box, Sequence end) {
-  if (goes_on_ && !goes_on_()) return cancelled(reader_);
+  if (should_continue_ && !should_continue_()) return cancelled(reader_);
   auto before = chunk_past(reader_, generator_, logs_, key, selected.front() - 1, scratch_);
   if (!before) return Unexpected<StoreError>{before.error()};
   const std::int32_t edge = reader_.meta().chunk_edge;

@@ -1,7 +1,6 @@
-// RestorePlan: what has to be written into one chunk so that the selected edits are taken back there
-// (common/edits/restore/restore.hpp says what that means), as it follows from the log up to some sequence. A plan is
-// made on a worker; whoever carries it out later sees by the version whether the chunk is still the one that
-// the plan was made for.
+// RestorePlan: the changes of one chunk that take the selected edits back there, computed from the
+// log up to some sequence. common/edits/restore/restore.hpp defines the effect. A worker makes the
+// plan. The version of the plan tells later whether it still fits the chunk.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -19,36 +18,37 @@ namespace runstone {
 
 struct RestorePlan {
   ChunkKey key;
-  Version version;           // of the chunk, up to the sequence that was asked for
-  std::uint64_t edits = 0;   // selected ones in this chunk
-  Sequence subject = 0;      // the newest of them
+  Version version;           // of the chunk at the sequence `end` of plan()
+  std::uint64_t edits = 0;   // selected edits in this chunk
+  Sequence subject = 0;      // the newest selected edit
   std::uint64_t voxels = 0;  // that change
-  // The chunk now and as it will be, in one axis order. Equal where nothing outside the box may change.
+  // The chunk before and after, in one axis order. Both are equal outside the box of plan().
   RunChunk now, restored;
-  std::vector<Difference> differences;  // between the two
+  std::vector<Difference> differences;  // between `now` and `restored`
 };
 
 class RestorePlanner {
  public:
-  /// All must outlive the planner. One thread, which alone uses the reader.
-  /// `kept_bytes_max`: as in ChunkLogs, for who plans a chunk several times.
-  RestorePlanner(WorldReader& reader, const Generator& generator, GoesOn goes_on = {},
-                 std::size_t kept_bytes_max = 0)
+  /// Reader and generator must outlive the planner. `kept_bytes_max` is that of ChunkLogs: it pays
+  /// for a caller that plans a chunk several times. Threads: one, which alone uses the reader.
+  RestorePlanner(WorldReader& reader, const Generator& generator,
+                 ShouldContinue should_continue = {}, std::size_t kept_bytes_max = 0)
       : reader_(reader),
         generator_(generator),
-        goes_on_(goes_on),
-        logs_(reader, std::move(goes_on), kept_bytes_max) {}
+        should_continue_(should_continue),
+        logs_(reader, std::move(should_continue), kept_bytes_max) {}
 
-  /// `selected`: edits that touch the chunk, ascending, at least one. `box`: voxels outside stay. Reads the log up
-  /// to `end`, which must be durable. Fails with what the store says, and with cancelled. O(edits that touched the chunk since its newest stored form from before the
-  /// first selected one).
+  /// Plans one chunk. `selected` are edits that touch it, ascending, at least one. Voxels outside
+  /// `box` stay. Reads the log up to `end`. Requires that `end` is durable. Fails as the reader,
+  /// and with cancelled. Cost: O(edits that touched the chunk since its newest stored form before
+  /// the first selected edit).
   StoreResult<RestorePlan> plan(const ChunkKey& key, std::span<const Sequence> selected,
                                 const std::optional<VoxelBox>& box, Sequence end);
 
  private:
   WorldReader& reader_;
   const Generator& generator_;
-  GoesOn goes_on_;
+  ShouldContinue should_continue_;
   ChunkLogs logs_;
   FollowScratch scratch_;
 };

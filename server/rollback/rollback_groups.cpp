@@ -11,9 +11,9 @@ StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id) {
   RollbackGroup group;
   bool begins = false;
   const auto first = reader.read_log(id, id, [&](const EditRecord& record) {
-    const bool is_own = record.cause == Cause::rollback || record.cause == Cause::undo ||
-                        record.cause == Cause::redo;
-    begins = is_own && record.op.seq == kGroupBegins;
+    const bool is_server_edit = record.cause == Cause::rollback || record.cause == Cause::undo ||
+                                record.cause == Cause::redo;
+    begins = is_server_edit && record.op.seq == kGroupBegins;
     group.id = id;
     group.op = record.op;
     group.cause = record.cause;

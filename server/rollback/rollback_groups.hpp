@@ -1,6 +1,7 @@
-// RollbackGroups: the rollbacks that the log holds. A rollback, and the undo of one, is a *group*: the edits of one
-// author and client instance with one cause, with client sequences from kGroupBegins. Its id is the sequence of its
-// first edit. A player's own undo and redo are no groups: their client sequences lie above. Blocks on the disk.
+// RollbackGroups: the rollbacks that the log holds. A rollback, and the undo of one, is a *group*:
+// the edits of one author and client instance with one cause, with client sequences from
+// kGroupBegins. Its id is the sequence of its first edit. A player's undo or redo of an action is
+// no group: its client sequences are greater. All functions block on the disk.
 #pragma once
 #include <vector>
 
@@ -17,14 +18,17 @@ struct RollbackGroup {
   Cause cause = Cause::rollback;
   TimeUs time_us = 0;           // of its first edit, UTC
   std::vector<Sequence> edits;  // ascending
-  Sequence taken_back_by =
-      0;  // the newest group with cause undo that answers one of its edits; 0: none
+  /// The newest group with cause undo whose edits have one of these edits as their subject, or 0 if
+  /// there is none.
+  Sequence taken_back_by = 0;
 };
 
-/// The group whose id this is. bad_request if that edit begins none. O(edits with its cause since).
+/// Returns the group with this id. Fails (bad_request) if that edit does not begin a group. Cost:
+/// O(later edits with its cause).
 StoreResult<RollbackGroup> rollback_group(LogReader& reader, Sequence id);
 
-/// The newest `count_max` groups with cause rollback, oldest first. O(edits with cause rollback or undo).
+/// Returns the newest `count_max` groups with cause rollback, oldest first. Cost: O(edits with
+/// cause rollback or undo).
 StoreResult<std::vector<RollbackGroup>> rollback_groups(LogReader& reader, std::size_t count_max);
 
 }  // namespace runstone

@@ -8,7 +8,7 @@
 namespace runstone {
 namespace {
 
-/// Puts records into a selection, in any order.
+/// Adds records to a selection, in any order.
 class Collector {
  public:
   explicit Collector(const LogReader& reader)
@@ -18,7 +18,7 @@ class Collector {
 
   void keep_inside(const std::optional<VoxelBox>& box) { selection_.box = box; }
 
-  /// False: full.
+  /// Returns false if the selection is full.
   bool take(const EditRecord& record) {
     const std::optional<VoxelBox>& box = selection_.box;
     bool is_inside = false;
@@ -28,7 +28,7 @@ class Collector {
       selection_.chunks[{0, at}].push_back(record.version.seq);
       is_inside = true;
     }
-    if (!is_inside) return true;  // its box meets the one asked for, its voxels do not
+    if (!is_inside) return true;  // only the edit's bounding box overlaps `box`
     const bool is_first = selection_.edits++ == 0;
     if (is_first || record.version.seq < selection_.first) {
       selection_.first = record.version.seq;
@@ -74,7 +74,7 @@ std::optional<VoxelBox> Selection::area() const {
 }
 
 StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& filter,
-                                    const GoesOn& goes_on) {
+                                    const ShouldContinue& should_continue) {
   LogQuery query;
   query.from_us = filter.from_us;
   query.until_us = filter.until_us;
@@ -89,7 +89,7 @@ StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& fi
   bool is_wanted = true;
   const auto run = [&]() {
     return reader.query_log(query, [&](const EditRecord& record) {
-      is_wanted = !goes_on || goes_on();
+      is_wanted = !should_continue || should_continue();
       if (is_wanted) has_room = collector.take(record);
       return is_wanted && has_room;
     });
@@ -107,11 +107,11 @@ StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& fi
 }
 
 StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequence>& edits,
-                                    const GoesOn& goes_on) {
+                                    const ShouldContinue& should_continue) {
   Collector collector(reader);
   bool has_room = true;
   for (const Sequence seq : edits) {
-    if (goes_on && !goes_on()) return cancelled(reader);
+    if (should_continue && !should_continue()) return cancelled(reader);
     const auto read = reader.read_log(seq, seq, [&](const EditRecord& record) {
       has_room = has_room && collector.take(record);
       return true;

@@ -1,5 +1,6 @@
-// Selection: the edits that a rollback, an undo or a redo takes back, by chunk. It is made once and then fixed:
-// edits ordered later are never in it, so a job that goes on for a while takes back what it said it would.
+// Selection: the edits that a rollback, an undo or a redo takes back, by chunk. It is made once and
+// does not change: edits ordered later are never in it, so that a long job takes back what its
+// preview showed.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -7,43 +8,47 @@
 #include <optional>
 #include <vector>
 
-#include "server/rollback/goes_on.hpp"
+#include "server/rollback/should_continue.hpp"
 #include "server/store/log_reader.hpp"
 
 namespace runstone {
 
-/// Which edits of the log: whose, when, where and why. What is left open asks for everything.
+/// Conditions on the edits of a selection. A condition that is not set holds for every edit.
 struct SelectionFilter {
-  std::vector<AuthorId> authors;                         // any of them; none named: everybody
+  std::vector<AuthorId> authors;                         // any of them; empty: every author
   TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
   TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
-  /// Voxels outside stay as they are, even those of an edit that reaches into the box.
+  /// Voxels outside the box stay as they are, even those of an edit that reaches into it.
   std::optional<VoxelBox> box;
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };
 
 struct Selection {
-  /// Per chunk that a selected edit touches, and that meets the box: the edits, ascending.
+  /// The selected edits, ascending, for each chunk that they touch and that overlaps the box.
   std::map<ChunkKey, std::vector<Sequence>> chunks;
-  std::optional<VoxelBox> box;  // nothing outside changes
+  std::optional<VoxelBox> box;  // voxels outside do not change
   std::uint64_t edits = 0;
-  Sequence first = 0, last = 0;          // of the selected edits; 0 without one
-  TimeUs first_us = 0, last_us = 0;      // their times, UTC
-  std::optional<VoxelBox> area() const;  // of the chunks, in voxels; nothing without one
+  Sequence first = 0, last = 0;      // of the selected edits; 0 if there are none
+  TimeUs first_us = 0, last_us = 0;  // of these two edits, UTC
   std::int32_t chunk_edge = 32;
+  /// Returns the smallest box around the chunks, cut to `box`, or nullopt if there are no chunks.
+  std::optional<VoxelBox> area() const;
 };
 
-/// Chunks times edits that a selection may hold: bounds its memory (8 bytes each).
+/// The number of pairs of chunk and edit that a selection may hold. It bounds the memory: 8 bytes
+/// for each.
 inline constexpr std::uint64_t kSelectionTouchesMax = 16'000'000;
 
-/// Asks the log. Fails with what the store says, with bad_request if the selection is too large, and with
-/// cancelled once `goes_on` says no. O(edits of the answer * chunks they touch).
+/// Selects the edits of the log that match. Fails as the reader, with bad_request if the selection
+/// is too large, and with cancelled once `should_continue` returns false. Cost: O(matching edits *
+/// chunks that they touch).
 StoreResult<Selection> select_edits(LogReader& reader, const SelectionFilter& filter,
-                                    const GoesOn& goes_on = {});
+                                    const ShouldContinue& should_continue = {});
 
-/// Exactly these edits, ascending; those that the log does not hold are left out. Fails likewise.
+/// Selects exactly these edits. Edits that the log does not hold are left out. Requires that
+/// `edits` ascend. Fails in the same cases.
 StoreResult<Selection> select_edits(LogReader& reader, const std::vector<Sequence>& edits,
-                                    const GoesOn& goes_on = {});
+                                    const ShouldContinue& should_continue = {});
 
 }  // namespace runstone

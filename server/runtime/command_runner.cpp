@@ -49,7 +49,7 @@ void CommandRunner::run(SessionId session, AuthorId author, const PublicKey& key
   if (caller.is_operator) logger("app").info("operator author={} command=\"{}\"", author, text);
   // The handler may answer at once, and WorldServer must not be called from within its own call.
   strand_.post([this, session, caller, text] {
-    const auto reply = [this, session](const DeskAnswer& answer) {
+    const auto reply = [this, session](const CommandAnswer& answer) {
       world_.answer_command(session, lines_of(answer.text), answer.is_done, answer.is_ok);
     };
     handler_.run(caller, text, read_clocks(), reply);

@@ -1,6 +1,6 @@
-// ChunkReader: reading of base chunks and snapshots.
-// A base chunk holds an import, or the edits that a compaction took out of the log. A snapshot holds a chunk as some
-// edit of the log left it, so that a start of the server reads little of the log.
+// ChunkReader: reading of base chunks and snapshots. A base chunk holds an import, or the edits
+// that a compaction took out of the log. A snapshot holds a chunk as some edit of the log left it,
+// so that a start of the server reads little of the log.
 #pragma once
 #include <optional>
 #include <utility>
@@ -28,15 +28,16 @@ class ChunkReader : public virtual WorldInfo {
   virtual StoreResult<bool> has_base() = 0;
   /// Returns a base chunk, or nullopt if there is none.
   virtual StoreResult<std::optional<Chunk>> load_base(const ChunkKey& key) = 0;
-  /// Returns all base chunks, ascending by key. Fails (corrupt) if a row is missing, or if its key or version changed.
+  /// Returns all base chunks, ascending by key. Fails (corrupt) if a row is missing, or if its key
+  /// or version changed.
   virtual StoreResult<std::vector<StoredChunk>> base_chunks() = 0;
 
   /// Returns the snapshot of a chunk, or nullopt if there is none.
   virtual StoreResult<std::optional<Chunk>> load_snapshot(const ChunkKey& key) = 0;
   /// Returns keys and versions of all snapshots, ascending by key. Fails as base_chunks().
   virtual StoreResult<std::vector<std::pair<ChunkKey, Version>>> snapshot_keys() = 0;
-  /// Returns the checkpoint: every edit up to it is contained in a snapshot of each chunk that it touched. It is 0 if
-  /// there is none.
+  /// Returns the checkpoint: every edit up to it is contained in a snapshot of each chunk that it
+  /// touched. It is 0 if there is none.
   virtual StoreResult<Sequence> checkpoint() = 0;
 };
 

@@ -1,4 +1,5 @@
-// ChunkRow: the columns that every table of chunks has, and what makes such a row sound. Internal to store.
+// ChunkRow: the columns that every table of chunks has, and the checks of such a row. Internal to
+// the store.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace runstone {
 
-/// A row as it is stored, not yet trusted.
+/// A row as it is stored, before any check.
 struct ChunkRow {
   ChunkKey key;
   Version version;
@@ -21,19 +22,22 @@ struct ChunkRow {
   ByteView data;  // packed
 };
 
-/// Checksum that belongs to the row; `table` is part of it.
+/// Returns the checksum that the row must have. `table`, the name of its table, is part of it.
 std::int64_t checksum_of(std::string_view table, const ChunkRow& row);
 
-/// The chunk, if checksum, encoding, size and digest are right; else what is wrong.
+/// Returns the chunk of a row. Fails with the cause if checksum, encoding, size or digest are
+/// wrong.
 Result<Chunk, std::string> chunk_of(std::string_view table, const ChunkRow& row,
                                     std::uint16_t chunk_edge);
 
-/// What keeps a chunk from being stored under its digest in a world of this edge; empty if nothing does.
+/// Returns the reason why a chunk cannot be stored in a world of this edge, or an empty string if
+/// it can.
 std::string unfit(const Chunk& chunk, std::uint16_t chunk_edge);
 
 /// Binds lod, x, y, z to parameters 1 to 4.
 void bind_key(sql::Statement& statement, const ChunkKey& key);
-/// Columns from `column` on; damaged numbers are cut here and caught by checksum, fold or digest.
+/// Return values of the columns from `column` on. A damaged number may be cut to its type here.
+/// Checksum, fold or digest then detect the damage.
 ChunkKey key_at(const sql::Statement& row, int column);     // lod, x, y, z
 Version version_at(const sql::Statement& row, int column);  // epoch, seq
 Digest digest_at(const sql::Statement& row, int column);    // digest0, digest1

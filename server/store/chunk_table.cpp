@@ -12,8 +12,8 @@ namespace runstone {
 
 namespace {
 
-/// Takes the columns as they are stored, before they are cut to a key's types, so that no damage can hide in
-/// a cut.
+/// Takes the columns as they are stored, before they are cut to the types of a key: a cut could
+/// hide damage.
 std::uint64_t fold_term(const std::array<std::int64_t, 6>& columns) {
   RowChecksum sum("fold");
   for (const std::int64_t column : columns) sum.integer(column);
@@ -103,8 +103,7 @@ StoreResult<void> ChunkTable::save(const ChunkKey& key, const Chunk& chunk,
     if (*found) stored = version_at(version_, 0);
   }
   if (stored && kind_ == Kind::base && chunk.version == *stored) {
-    return failure(StoreError::Kind::bad_request, key,
-                   "is there already");  // an import named it twice
+    return failure(StoreError::Kind::bad_request, key, "is there already");
   }
   if (stored && chunk.version < *stored) {
     return failure(StoreError::Kind::bad_request, key, "is older than the stored version");

@@ -1,5 +1,6 @@
-// ChunkTable: `base` or `snapshot`, chunks by key. What is read is decoded, validated and its digest
-// recomputed from runs; anything wrong is Kind::corrupt and names table and chunk.
+// ChunkTable: `base` or `snapshot`, chunks by key. Every chunk that is read is decoded and
+// validated, and its digest is computed again from its runs. An error is Kind::corrupt and names
+// table and chunk.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,16 +19,19 @@ class ChunkTable {
   static StoreResult<ChunkTable> open(sql::Database& database, Kind kind);
 
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, std::uint16_t chunk_edge);
-  /// All rows without their voxels, ascending. Fails if their fold is not `expected`.
+  /// Returns all rows without their voxels, ascending by key. Fails (corrupt) if their fold is not
+  /// `expected`.
   StoreResult<std::vector<StoredChunk>> rows(const RowFold& expected);
-  /// Inserts or replaces one row in the caller's transaction and moves the fold with it. Refuses
-  /// (bad_request) a chunk of another edge, one whose digest is not that of its voxels, a version older than
-  /// the stored one, and in `base` also the stored one again.
+  /// Inserts or replaces one row in the caller's transaction, and updates the fold. Fails
+  /// (bad_request) if
+  ///   - the chunk has another edge;
+  ///   - its digest is not that of its voxels;
+  ///   - its version is older than the stored one, or, in `base`, the same.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge,
                          RowFold& fold);
-  /// "base" or "snapshot".
+  /// Returns "base" or "snapshot".
   const std::string& name() const { return table_; }
-  /// Meta key of this table's fold.
+  /// Returns the key in `meta` of this table's fold.
   const std::string& fold_key() const { return fold_key_; }
 
  private:

@@ -1,5 +1,5 @@
-// KeyframeReader: reading of keyframes.
-// A keyframe keeps all chunks of one moment, so that the world of that moment is known without an edit before it.
+// KeyframeReader: reading of keyframes. A keyframe keeps all chunks of one moment, so that the
+// world of that moment is known without an edit before it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -29,17 +29,18 @@ struct StoredMoment {
 
 class KeyframeReader : public virtual WorldInfo {
  public:
-  /// Returns all keyframes, ascending. There are none in a world of format 1 or 2 that is open for reading only.
+  /// Returns all keyframes, ascending.
   virtual StoreResult<std::vector<Keyframe>> keyframes() = 0;
   /// Returns all chunks that keyframes hold, ascending by sequence.
   virtual StoreResult<std::vector<StoredChunk>> keyframe_chunks() = 0;
-  /// Returns the newest stored moment at or before `at`, after a check of its digest. Fails (bad_request) if the log
-  /// begins after `at`.
+  /// Returns the newest stored moment at or before `at`, after a check of its digest. Fails
+  /// (bad_request) if the log begins after `at`.
   virtual StoreResult<StoredMoment> stored_moment(Sequence at) = 0;
   /// Returns a chunk of a stored moment, or nullopt if a compaction has removed it since.
   virtual StoreResult<std::optional<Chunk>> load_stored(const StoredChunk& chunk) = 0;
-  /// Returns the newest form of a chunk that keyframes hold at or before `at`, or nullopt if there is none. The
-  /// keyframe it belongs to may be incomplete: the form is that of its version all the same. Cost: O(log rows).
+  /// Returns the newest form of a chunk that keyframes hold at or before `at`, or nullopt if there
+  /// is none. The keyframe it belongs to may be incomplete: the form is that of its version all the
+  /// same. Cost: O(log rows).
   virtual StoreResult<std::optional<Chunk>> load_kept(const ChunkKey& key, Sequence at) = 0;
 };
 

@@ -193,7 +193,7 @@ StoreResult<void> KeyframeTable::prove(const std::vector<Keyframe>& keyframes,
 std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start,
                                    const std::vector<StoredChunk>& rows) {
   start.insert(start.end(), rows.begin(), rows.end());
-  // Of equal keys the newest comes first, and std::unique keeps the first.
+  // The newest of equal keys comes first, and std::unique keeps the first.
   std::sort(start.begin(), start.end(), [](const StoredChunk& a, const StoredChunk& b) {
     if (a.key != b.key) return a.key < b.key;
     return a.version != b.version ? b.version < a.version : a.is_base < b.is_base;

@@ -1,8 +1,13 @@
-// KeyframeTable: `keyframe` and `keyframe_chunk`. A row of the second holds a chunk as one edit left it and is true by
-// itself. A keyframe says that, of each chunk edited up to its sequence, the newest row up to it (or the base, completed by a
-// compaction) is the chunk as it stood there, and proves it by their number and the digest over them. So rows may be
-// written little by little before their keyframe, and what a keyframe that was never finished left behind does no harm.
-// Belongs to the thread that owns the store.
+// KeyframeTable: the tables `keyframe` and `keyframe_chunk`.
+//   - A row of `keyframe_chunk` holds a chunk as one edit left it. It is valid without its
+//     keyframe.
+//   - A keyframe covers every chunk that was edited up to its sequence. The state of such a chunk
+//     at the keyframe is the newest row up to it, or else the base chunk that a compaction
+//     completed. The keyframe holds the number of these chunks and the digest over them, as a
+//     proof.
+// Rows may therefore be written in several transactions before their keyframe. Rows of a keyframe
+// that was never finished do no harm.
+// Threads: the one that owns the store.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,28 +21,31 @@ namespace runstone {
 
 class KeyframeTable {
  public:
-  /// Requires a world of format 3 or newer.
   static StoreResult<KeyframeTable> open(sql::Database& database);
 
-  /// Ascending, each row verified.
+  /// Returns all keyframes, ascending. Each row is verified.
   StoreResult<std::vector<Keyframe>> all();
-  /// All rows up to a sequence, without their voxels, by sequence and key.
+  /// Returns all rows up to a sequence, without their voxels, by sequence and key.
   StoreResult<std::vector<StoredChunk>> rows(Sequence last);
-  /// Of a chunk, the row at this very sequence, verified; nothing if there is none.
+  /// Returns the row of a chunk at exactly this sequence, verified, or nullopt if there is none.
   StoreResult<std::optional<Chunk>> load(const ChunkKey& key, Sequence seq,
                                          std::uint16_t chunk_edge);
-  /// Of a chunk, the newest row up to a sequence, verified; nothing if there is none. O(log rows).
+  /// Returns the newest row of a chunk up to a sequence, verified, or nullopt if there is none.
+  /// Cost: O(log rows).
   StoreResult<std::optional<Chunk>> newest(const ChunkKey& key, Sequence last,
                                            std::uint16_t chunk_edge);
 
-  /// All three in the caller's transaction. A row that is there already stays; it is damage if it differs.
+  /// Inserts a row in the caller's transaction. A row that exists already stays. Fails (corrupt) if
+  /// it differs.
   StoreResult<void> save(const ChunkKey& key, const Chunk& chunk, std::uint16_t chunk_edge);
+  /// Inserts a keyframe in the caller's transaction.
   StoreResult<void> save(const Keyframe& keyframe);
-  /// Deletes all rows and keyframes up to a sequence.
+  /// Deletes all rows and keyframes up to a sequence, in the caller's transaction.
   StoreResult<void> remove(Sequence last);
 
-  /// Sums up `rows` (ascending by sequence) over `start`, the chunks of the base, and compares each keyframe with what
-  /// it proves. Names the first that is wrong.
+  /// Checks the proof of each keyframe against the chunks of the base (`start`) and `rows`.
+  /// Requires that keyframes and rows ascend by sequence. Fails (corrupt) and names the first
+  /// keyframe whose proof is wrong.
   StoreResult<void> prove(const std::vector<Keyframe>& keyframes,
                           const std::vector<StoredChunk>& start,
                           const std::vector<StoredChunk>& rows) const;
@@ -56,7 +64,8 @@ class KeyframeTable {
   Statements s_;
 };
 
-/// `start` with the newest row of each chunk in its place; both as KeyframeTable::prove() takes them. Ascending by key.
+/// Returns the newest state of each chunk in `start` and `rows`, ascending by key. The arguments
+/// are those of KeyframeTable::prove().
 std::vector<StoredChunk> newest_of(std::vector<StoredChunk> start,
                                    const std::vector<StoredChunk>& rows);
 

@@ -1,4 +1,5 @@
-// LogQuery: a question to the log: whose edits, when, where and why. What is left open asks for everything.
+// LogQuery: conditions on edits of the log: author, time, place and cause. A condition that is not
+// set holds for every edit.
 #pragma once
 #include <limits>
 #include <optional>
@@ -12,7 +13,7 @@ struct LogQuery {
   std::optional<AuthorId> author;
   TimeUs from_us = std::numeric_limits<TimeUs>::min();   // UTC, included
   TimeUs until_us = std::numeric_limits<TimeUs>::max();  // included
-  std::optional<VoxelBox> box;  // edits whose bounding box has a voxel in common with it; not empty
+  std::optional<VoxelBox> box;  // not empty; overlaps the bounding box of the edit
   std::optional<Cause> cause;
   Sequence first = 1, last = kSequenceMax;  // both included
 };

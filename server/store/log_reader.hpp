@@ -31,18 +31,20 @@ class LogReader : public virtual WorldInfo {
 
   /// Returns the extent of the log. All of it is durable.
   virtual StoreResult<LogRange> log_range() = 0;
-  /// Returns the last edit that was compacted away; the log begins after it. It is (0, 0) and 0 if there is none.
+  /// Returns the last edit that was compacted away; the log begins after it. It is (0, 0) and 0 if
+  /// there is none.
   virtual StoreResult<LogEnd> log_head() = 0;
   /// Returns the last sequence ever logged, compacted or not, or 0 if there is none.
   StoreResult<Sequence> last_sequence();
-  /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the sequence before
-  /// the first edit of the log. Fails (bad_request) if all are later and one of them was compacted away.
+  /// Returns the last edit that is not later than a time (UTC). If all edits are later, returns the
+  /// sequence before the first edit of the log. Fails (bad_request) if all are later and one of
+  /// them was compacted away.
   virtual StoreResult<Sequence> sequence_at(TimeUs time_us) = 0;
-  /// Calls `each` for the records first..last (both included) in order, until it returns false. Records outside
-  /// log_range() are left out. Each checksum is verified, and so is that no sequence is missing.
+  /// Calls `each` for the records first..last (both included) in order, until it returns false.
+  /// Records outside log_range() are left out. Each checksum is verified, and so is that no
+  /// sequence is missing.
   virtual StoreResult<void> read_log(Sequence first, Sequence last, const EachRecord& each) = 0;
-  /// Calls `each` for the records that answer the query, in order, until it returns false. Fails (bad_request) if
-  /// the world has format 1 and is open for reading only: that format has no indexes.
+  /// Calls `each` for the records that answer the query, in order, until it returns false.
   virtual StoreResult<void> query_log(const LogQuery& query, const EachRecord& each) = 0;
 };
 

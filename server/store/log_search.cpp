@@ -38,7 +38,8 @@ StoreResult<Sequence> LogSearch::first_at(TimeUs time, Sequence first, Sequence 
 
 StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
                                                 std::optional<AuthorId> author) const {
-  // Named, because the planner has no statistics and the wrong index reads the whole log.
+  // The index is named, because the planner has no statistics, and a wrong index would read the
+  // whole log.
   std::string text = "SELECT seq FROM edit_log";
   const bool by_cause = !author && query.cause && *query.cause != Cause::player;
   text += author     ? " INDEXED BY edit_log_author"
@@ -47,7 +48,7 @@ StoreResult<sql::Statement> LogSearch::matching(const LogQuery& query,
   text += " WHERE log = 0 AND seq BETWEEN ?1 AND ?2";
   if (author) text += " AND author = ?3";
   if (query.cause) text += " AND cause = ?4";
-  if (by_cause) text += " AND cause <> 0";  // what the partial index asks for
+  if (by_cause) text += " AND cause <> 0";  // the condition of the partial index
   if (query.box) {
     text +=
         " AND min_x < ?5 AND max_x > ?6 AND min_y < ?7 AND max_y > ?8 AND min_z < ?9 AND max_z > "
@@ -71,7 +72,7 @@ StoreResult<std::vector<Sequence>> LogSearch::in_segments(const LogQuery& query,
   std::vector<Sequence> found;
   const auto segments = segments_.find(query.box, query.author, first, last);
   if (!segments) return failed(segments.error());
-  // Any author stands for the one that each segment names.
+  // The author of each segment is bound below, so the statement needs a condition on the author.
   auto rows = matching(query, query.author.value_or(0));
   if (!rows) return failed(rows.error());
   for (const LogSegment& segment : *segments) {

@@ -1,6 +1,9 @@
-// LogSearch: answers a LogQuery by the cheapest way there is: time by halving the log (times never fall along
-// it), place by the segments' R*Tree, author and cause by their indexes. Belongs to the thread that owns the
-// store; call within one read transaction.
+// LogSearch: finds the edits that match a LogQuery with the cheapest index:
+//   - time by bisection of the log, since times never fall along it;
+//   - place by the R*Tree of the segments;
+//   - author and cause by their indexes.
+// All calls must be in one read transaction.
+// Threads: the one that owns the store.
 #pragma once
 #include <functional>
 #include <vector>
@@ -17,9 +20,10 @@ class LogSearch {
   LogSearch(sql::Database& database, SegmentTable& segments, const LogRange& range)
       : database_(database), segments_(segments), range_(range) {}
 
-  /// Calls `each` with the sequences of all edits that answer the query, ascending, until it returns false.
+  /// Calls `each` with the sequences of all edits that match, ascending, until it returns false.
   StoreResult<void> run(const LogQuery& query, const std::function<bool(Sequence)>& each);
-  /// The first edit of [first, last + 1] whose time is at least `time`; last + 1 if none is.
+  /// Returns the first edit of first..last whose time is at least `time`, or last + 1 if there is
+  /// none.
   StoreResult<Sequence> first_at(TimeUs time, Sequence first, Sequence last);
 
  private:

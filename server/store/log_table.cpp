@@ -23,7 +23,8 @@ bool in_range(std::int64_t value, std::uint64_t max) {
   return value >= 0 && static_cast<std::uint64_t>(value) <= max;
 }
 
-/// The record of the current row; nothing if a column does not decode or the checksum is wrong.
+/// Returns the record of the current row, or nullopt if a column does not decode or the checksum is
+/// wrong.
 std::optional<EditRecord> record_of(const sql::Statement& row) {
   const std::int64_t seq = row.integer(0);
   const std::int64_t epoch = row.integer(1);
@@ -32,7 +33,8 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
   const std::int64_t cause = row.integer(6);
   const std::int64_t subject = row.integer(7);
   auto edit = decode_descriptor(row.blob(14));
-  // What the record's bytes cannot say is refused here: they are made for the checksum.
+  // The checksum is that of the record's bytes. Numbers that these bytes cannot hold are refused
+  // before it is computed.
   if (!in_range(client_seq, kSequenceMax) ||
       !in_range(subject, static_cast<std::uint64_t>(seq - 1)) ||
       !in_range(epoch, std::numeric_limits<Epoch>::max()) ||
@@ -61,7 +63,8 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
 }  // namespace
 
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
-  // A damaged log id would make its row invisible below; the two ends of the key order show it at once.
+  // The statements below do not see a row with a damaged log id. It would lie at one of the two
+  // ends of the key order.
   const auto strangers = database.integer(
       "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE "
       "log > 0)");
@@ -150,7 +153,7 @@ StoreResult<EditRecord> LogTable::read_one(sql::Statement& reader, Sequence seq)
 StoreResult<void> LogTable::read(const LogRange& range, Sequence first, Sequence last_wanted,
                                  const std::function<bool(const EditRecord&)>& each) {
   const Sequence until = std::min(last_wanted, range.last.version.seq);
-  // A statement of its own: `each` may read the log too.
+  // `each` may read the log too, so this call has a statement for itself.
   auto rows = database_->prepare(kSelect);
   if (!rows) return failed(rows.error());
   Sequence next = std::max(first, range.first);

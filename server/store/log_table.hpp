@@ -1,5 +1,6 @@
-// LogTable: the edit log on disk, one row per edit, keyed by (log, sequence) without gaps. Log 0 is the only
-// one. Where it begins is in `meta`: what lies before was compacted into the base.
+// LogTable: the edit log on disk, one row per edit, keyed by (log, sequence) without gaps. Log 0 is
+// the only one. `meta` holds the place where the log begins: earlier edits were compacted into the
+// base.
 #pragma once
 #include <functional>
 #include <string>
@@ -14,18 +15,18 @@ class LogTable {
   /// The database must outlive the table.
   static StoreResult<LogTable> open(sql::Database& database);
 
-  /// What the log holds, given the end of what was compacted away. Fails (corrupt) if the rows do not begin
-  /// right behind it. Both must be read in one transaction. Reads the disk: O(log n).
+  /// Returns the extent of the log. `head` is the last edit that was compacted away, read in the
+  /// same transaction. Fails (corrupt) if the rows do not begin right after it. Cost: O(log rows).
   StoreResult<LogRange> range(const LogEnd& head);
-  /// In the caller's transaction. The caller has checked that the record continues the log.
+  /// Inserts a record in the caller's transaction. Requires that the record continues the log.
   StoreResult<void> insert(const EditRecord& record);
-  /// As Store::read_log(). May be nested.
+  /// Reads as LogReader::read_log(). `each` may call it too.
   StoreResult<void> read(const LogRange& range, Sequence first, Sequence last,
                          const std::function<bool(const EditRecord&)>& each);
 
-  /// A statement for read_one(), which may be used for many records.
+  /// Returns a statement for read_one(). It may be used for many records.
   StoreResult<sql::Statement> reader();
-  /// Record `seq`, verified as in read().
+  /// Returns record `seq`, verified as in read().
   StoreResult<EditRecord> read_one(sql::Statement& reader, Sequence seq);
 
  private:

@@ -45,7 +45,7 @@ bool LogWriter::save_keyframe(SnapshotChunks chunks, std::optional<Keyframe> key
 bool LogWriter::queue(Job job) {
   {
     const std::lock_guard guard(mutex_);
-    const std::size_t jobs = jobs_.size() + (job_in_hand_ ? 1 : 0);
+    const std::size_t jobs = jobs_.size() + (job_is_running_ ? 1 : 0);
     if (failed_ || stopping_ || jobs >= limits_.jobs_max) return false;
     jobs_.push_back(std::move(job));
   }
@@ -94,20 +94,20 @@ void LogWriter::run() {
       if (!job && !jobs_.empty()) {
         job = std::move(jobs_.front());
         jobs_.pop_front();
-        job_in_hand_ = true;
+        job_is_running_ = true;
       }
-      if (group.room == 0 && !job) return;  // stopping, and nothing is left
+      if (group.room == 0 && !job) return;  // the writer stops, and the queues are empty
     }
     if (const auto written = write(group); !written)
       return fail(written.error(), job ? &*job : nullptr);
-    // After every slice the records that came meanwhile get their turn.
+    // One slice per round: records that were queued meanwhile are written before the next slice.
     if (job) {
       if (const auto written = write_slice(*job); !written) return fail(written.error(), nullptr);
     }
     if (job && job->is_over()) {
       {
         const std::lock_guard guard(mutex_);
-        job_in_hand_ = false;
+        job_is_running_ = false;
       }
       if (!job->done && callbacks_.on_snapshots_saved)
         callbacks_.on_snapshots_saved(std::move(job->chunks), job->checkpoint);

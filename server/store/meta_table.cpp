@@ -30,7 +30,7 @@ Bytes bytes_of(const std::array<std::uint8_t, N>& value) {
   return {value.begin(), value.end()};
 }
 
-/// Reads typed values out of rows and remembers the first key that would not do.
+/// Reads typed values out of rows, and keeps the first key that is missing or wrong.
 class MetaReader {
  public:
   explicit MetaReader(const MetaRows& rows) : rows_(rows) {}

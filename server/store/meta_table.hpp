@@ -1,5 +1,6 @@
-// MetaTable: what the world is (pinned at creation) and the few values that move: epoch, checkpoint, the head
-// of the compacted log and the folds of the chunk tables. Belongs to the thread that owns the store.
+// MetaTable: the values that are pinned when a world is created, and the few that change: epoch,
+// checkpoint, the head of the compacted log and the folds of the chunk tables.
+// Threads: the one that owns the store.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -14,13 +15,14 @@ namespace runstone {
 using MetaValue = std::variant<std::int64_t, std::string, Bytes>;
 using MetaRows = std::map<std::string, MetaValue, std::less<>>;
 
-/// The pinned rows of a world.
+/// Returns the pinned rows of a world.
 MetaRows rows_of(const WorldMeta& meta);
-/// The reverse; the error names the first key that is missing or wrong.
+/// Returns the values in the pinned rows. The error names the first key that is missing or wrong.
 Result<WorldMeta, std::string> meta_of(const MetaRows& rows);
 
-/// Count of rows and a sum of one hash per row, over key and version: kept in `meta` for each chunk table, so
-/// that a row which vanished or changed its key is noticed although every row that is left is sound.
+/// The number of rows of a chunk table, and the sum of a hash of each row's key and version. `meta`
+/// holds one for each table. It detects a row that vanished or changed its key, although every
+/// remaining row is sound.
 struct RowFold {
   std::uint64_t count = 0, sum = 0;
   friend bool operator==(const RowFold&, const RowFold&) = default;
@@ -30,15 +32,16 @@ class MetaTable {
  public:
   static StoreResult<MetaTable> open(sql::Database& database);
 
-  /// All rows, each checksum verified.
+  /// Returns all rows. Each checksum is verified.
   StoreResult<MetaRows> read_all();
-  /// In the caller's transaction, as put_fold().
+  /// Writes a row in the caller's transaction, as do put_fold() and put_log_head().
   StoreResult<void> put(const std::string& key, const MetaValue& value);
-  /// A counter that every world has.
+  /// Returns a counter. Fails (corrupt) if it is missing.
   StoreResult<std::uint64_t> counter(const std::string& key);
   StoreResult<RowFold> fold(const std::string& key);
   StoreResult<void> put_fold(const std::string& key, const RowFold& fold);
-  /// Row `log_head`: version and time of the last edit that compaction took out of the log; zero if none.
+  /// Returns row `log_head`: version and time of the last edit that a compaction removed, all 0 if
+  /// there was none.
   StoreResult<LogEnd> log_head();
   StoreResult<void> put_log_head(const LogEnd& head);
 

@@ -1,5 +1,6 @@
-// PlayerTable: who has an author number (`player`), and how far each of their client processes got
-// (`player_instance`): the marks that make an edit offered twice an edit applied once.
+// PlayerTable: the players with their author numbers (`player`), and the watermark of each of their
+// client instances (`player_instance`). The watermarks make sure that an edit that is offered twice
+// is applied once.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,14 +15,16 @@ class PlayerTable {
  public:
   static StoreResult<PlayerTable> open(sql::Database& database);
 
-  /// Ascending by author, each row verified.
+  /// Returns all players, ascending by author. Each row is verified.
   StoreResult<std::vector<PlayerRow>> players();
-  /// Ascending by author, then instance (as a signed number), each row verified.
+  /// Returns all watermarks, ascending by author, then by instance as a signed number. Each row is
+  /// verified.
   StoreResult<std::vector<HighWater>> high_waters();
 
-  /// A new author, or the new name of a known one. In the caller's transaction, as raise().
+  /// Writes a new author, or the new name of a known one, in the caller's transaction.
   StoreResult<void> put(const PlayerRow& player);
-  /// Moves a mark and its time up; never down. A damaged row is an error and stays as it is.
+  /// Raises a watermark and its time, in the caller's transaction. It never lowers them. Fails
+  /// (corrupt) if the row is damaged, and leaves it as it is.
   StoreResult<void> raise(HighWater mark);
 
  private:

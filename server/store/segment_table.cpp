@@ -8,7 +8,7 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kOpenMax = 1024;  // authors whose segment goes on; bounds memory
+constexpr std::size_t kOpenMax = 1024;  // authors with an open segment; bounds the memory
 
 VoxelBox join(const VoxelBox& a, const VoxelBox& b) {
   return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
@@ -21,6 +21,14 @@ bool is_small(const VoxelBox& box) {
 }
 
 }  // namespace
+
+StoreResult<SegmentTable> SegmentTable::open(sql::Database& database) {
+  auto put = database.prepare(
+      "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, "
+      "last_seq, author) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+  if (!put) return failed(put.error());
+  return SegmentTable(database, *std::move(put));
+}
 
 StoreResult<void> SegmentTable::add(const EditRecord& record) {
   const VoxelBox box = bounding_box(record.edit);
@@ -54,18 +62,9 @@ StoreResult<void> SegmentTable::flush() {
 
 StoreResult<void> SegmentTable::write(Open& open) {
   if (open.is_written) return {};
-  if (!put_) {
-    auto put = database_->prepare(
-        "INSERT OR REPLACE INTO log_box(first_seq, min_x, max_x, min_y, max_y, min_z, max_z, "
-        "last_seq, "
-        "author) "
-        "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
-    if (!put) return failed(put.error());
-    put_ = *std::move(put);
-  }
   const LogSegment& segment = open.segment;
   open.is_written = true;
-  return store_result(put_->bind(1, static_cast<std::int64_t>(segment.first))
+  return store_result(put_.bind(1, static_cast<std::int64_t>(segment.first))
                           .bind(2, std::int64_t{segment.box.min.x})
                           .bind(3, std::int64_t{segment.box.max.x})
                           .bind(4, std::int64_t{segment.box.min.y})

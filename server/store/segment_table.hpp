@@ -1,11 +1,15 @@
-// SegmentTable: where edits are (R*Tree `log_box`). A segment is a stretch of one author's edits, up to
-// kSegmentEditsMax of them and kSegmentSide voxels wide, so that an edit costs a few bytes of index and a search
-// by place reads few rows in vain. Edits that lie far apart share one all the same while it has fewer than
-// kSegmentEditsMin: scattered edits must not cost an entry each. Segments of one author do not overlap in sequence; every edit of the log
-// lies in one. Belongs to the thread that owns the store.
+// SegmentTable: the index of edits by place, an R*Tree (`log_box`). An entry is a segment: a
+// stretch of one author's edits and the box around them.
+//   - A segment has up to kSegmentEditsMax edits and is up to kSegmentSide voxels wide. An edit
+//     then costs a few bytes of index, and a search by place reads few rows in vain.
+//   - A segment with fewer than kSegmentEditsMin edits also takes edits that lie far apart:
+//     scattered edits must not cost an entry each.
+//   - Segments of one author do not overlap in sequence. Every edit of the log lies in one.
+// Threads: the one that owns the store.
 #pragma once
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/edits/descriptor/edit_record.hpp"
@@ -20,26 +24,32 @@ inline constexpr std::int32_t kSegmentSide = 64;
 struct LogSegment {
   Sequence first = 0, last = 0;
   AuthorId author = 0;
-  VoxelBox box;  // holds the bounding boxes of its edits
+  VoxelBox box;  // around the bounding boxes of its edits
 };
 
 class SegmentTable {
  public:
-  explicit SegmentTable(sql::Database& database) : database_(&database) {}
+  /// The database must outlive the table.
+  static StoreResult<SegmentTable> open(sql::Database& database);
 
-  /// Counts a record in. In the caller's transaction, as flush(), without which nothing is promised to be written.
+  /// Adds a record to the segment of its author, in the caller's transaction. flush() must be
+  /// called before the commit.
   StoreResult<void> add(const EditRecord& record);
+  /// Writes the segments that have changed.
   StoreResult<void> flush();
-  /// After a transaction that was not committed: forgets what was not written. The next edit of each author begins
-  /// a segment, as after a start.
+  /// Drops all open segments. Call it after a transaction that was not committed. The next edit of
+  /// each author begins a new segment, as after a start.
   void forget() { open_.clear(); }
 
-  /// Segments that may hold such edits, by their first sequence.
+  /// Returns the segments that may hold edits in the box, of the author, and of first..last, by
+  /// their first sequence.
   StoreResult<std::vector<LogSegment>> find(const std::optional<VoxelBox>& box,
                                             std::optional<AuthorId> author, Sequence first,
                                             Sequence last);
 
  private:
+  SegmentTable(sql::Database& database, sql::Statement put)
+      : database_(&database), put_(std::move(put)) {}
   struct Open {
     LogSegment segment;
     std::uint32_t edits = 0;
@@ -48,8 +58,7 @@ class SegmentTable {
   StoreResult<void> write(Open& open);
 
   sql::Database* database_;
-  std::optional<sql::Statement>
-      put_;  // prepared when first needed: a world of format 1 lacks the table
+  sql::Statement put_;
   std::map<AuthorId, Open> open_;
 };
 

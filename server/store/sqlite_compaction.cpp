@@ -1,4 +1,5 @@
-// The part of SqliteStore that forgets: the beginning of the log, once the base holds what it did.
+// The part of SqliteStore that shortens the log: the base takes the edits in, then they are
+// deleted.
 #include <map>
 #include <memory>
 #include <utility>
@@ -26,7 +27,8 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
   for (const StoredChunk& snapshot : *snapshots) saved_at[snapshot.key] = snapshot.version;
   for (const StoredChunk& stored : moment.chunks) {
     const auto snapshot = saved_at.find(stored.key);
-    // Records up to the new head are no longer there to bring an older snapshot up to date.
+    // An older snapshot could not be brought up to date, since the edits up to the new head are
+    // deleted.
     const bool needs_snapshot = snapshot == saved_at.end() || snapshot->second < stored.version;
     if (stored.is_base && !needs_snapshot) continue;
     const auto chunk = load_stored(stored);
@@ -51,9 +53,7 @@ StoreResult<void> SqliteStore::complete_base(const StoredMoment& moment) {
 
 StoreResult<void> SqliteStore::compact(Sequence keyframe) {
   auto compacted = write([&]() -> StoreResult<void> {
-    const auto table = keyframe_table();
-    if (!table) return failed(table.error());
-    const auto moment = stored_moment(keyframe);  // proved
+    const auto moment = stored_moment(keyframe);  // its digest is checked
     if (!moment) return failed(moment.error());
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
@@ -74,10 +74,10 @@ StoreResult<void> SqliteStore::compact(Sequence keyframe) {
     if (auto gone = delete_up_to("DELETE FROM edit_log WHERE log = 0 AND seq <= ?1", keyframe);
         !gone)
       return gone;
-    // A segment that goes on behind the head stays as it is: its box is larger than need be, nothing else.
+    // A segment that continues after the head stays as it is. Its box may be larger than needed.
     if (auto gone = delete_up_to("DELETE FROM log_box WHERE last_seq <= ?1", keyframe); !gone)
       return gone;
-    return (*table)->remove(keyframe);
+    return keyframes_.remove(keyframe);
   });
   segments_.forget();
   return compacted;

@@ -1,41 +1,24 @@
-// The part of SqliteStore that keeps moments: keyframes, and the base that a compaction completed.
+// The part of SqliteStore that reads and writes stored moments: keyframes, and the base that a
+// compaction completed.
 #include <utility>
 
 #include "common/core/key_text.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
-#include "server/store/world_schema.hpp"
 
 namespace runstone {
 
-StoreResult<KeyframeTable*> SqliteStore::keyframe_table() {
-  if (!keyframes_) {
-    const auto version = database_->integer("PRAGMA user_version");
-    if (!version) return failed(version.error());
-    if (*version < kKeyframeFormat) return nullptr;
-    auto table = KeyframeTable::open(*database_);
-    if (!table) return failed(table.error());
-    keyframes_ = *std::move(table);
-  }
-  return &*keyframes_;
-}
-
-StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() {
-  const auto table = keyframe_table();
-  if (!table) return failed(table.error());
-  return *table == nullptr ? std::vector<Keyframe>() : (*table)->all();
-}
+StoreResult<std::vector<Keyframe>> SqliteStore::keyframes() { return keyframes_.all(); }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::keyframe_chunks() {
-  const auto table = keyframe_table();
-  if (!table) return failed(table.error());
-  return *table == nullptr ? std::vector<StoredChunk>() : (*table)->rows(kSequenceMax);
+  return keyframes_.rows(kSequenceMax);
 }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::base_chunks() { return rows_of(base_); }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::completed(const LogEnd& head) {
-  // An import may have made very many base chunks, of which none has an edit in it yet.
+  // An import may have made very many base chunks. None contains an edit until the first
+  // compaction.
   if (head.version.seq == 0) return std::vector<StoredChunk>();
   auto rows = rows_of(base_);
   if (rows) std::erase_if(*rows, [](const StoredChunk& row) { return row.version == Version{}; });
@@ -54,33 +37,25 @@ StoreResult<StoredMoment> SqliteStore::stored_moment(Sequence at) {
     }
     auto start = completed(*head);
     if (!start) return failed(start.error());
-    const auto table = keyframe_table();
-    if (!table) return failed(table.error());
     auto all = keyframes();
     if (!all) return failed(all.error());
     while (!all->empty() && all->back().at.version.seq > at) all->pop_back();
     if (all->empty()) return StoredMoment{*head, *std::move(start)};
     const Keyframe& newest = all->back();
-    const auto rows = (*table)->rows(newest.at.version.seq);
+    const auto rows = keyframes_.rows(newest.at.version.seq);
     if (!rows) return failed(rows.error());
-    if (auto proved = (*table)->prove({newest}, *start, *rows); !proved)
+    if (auto proved = keyframes_.prove({newest}, *start, *rows); !proved)
       return failed(proved.error());
     return StoredMoment{newest.at, newest_of(*std::move(start), *rows)};
   });
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& chunk) {
-  KeyframeTable* keyframes = nullptr;
-  if (!chunk.is_base) {
-    const auto table = keyframe_table();
-    if (!table) return failed(table.error());
-    if (*table == nullptr) return std::optional<Chunk>();
-    keyframes = *table;
-  }
   auto loaded = chunk.is_base ? load_base(chunk.key)
-                              : keyframes->load(chunk.key, chunk.version.seq, meta_.chunk_edge);
+                              : keyframes_.load(chunk.key, chunk.version.seq, meta_.chunk_edge);
   if (!loaded || !loaded->has_value()) return loaded;
-  if ((*loaded)->version != chunk.version) return std::optional<Chunk>();  // completed anew
+  if ((*loaded)->version != chunk.version)
+    return std::optional<Chunk>();  // a compaction replaced it
   if ((*loaded)->digest == chunk.digest) return loaded;
   return Unexpected<StoreError>{
       {StoreError::Kind::corrupt, file(),
@@ -89,10 +64,7 @@ StoreResult<std::optional<Chunk>> SqliteStore::load_stored(const StoredChunk& ch
 }
 
 StoreResult<std::optional<Chunk>> SqliteStore::load_kept(const ChunkKey& key, Sequence at) {
-  const auto table = keyframe_table();
-  if (!table) return failed(table.error());
-  if (*table == nullptr) return std::optional<Chunk>();
-  return (*table)->newest(key, at, meta_.chunk_edge);
+  return keyframes_.newest(key, at, meta_.chunk_edge);
 }
 
 StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const LogRange& range) {
@@ -116,8 +88,6 @@ StoreResult<void> SqliteStore::check_keyframe(const Keyframe& keyframe, const Lo
 StoreResult<void> SqliteStore::save_keyframe(ChunkSpan chunks,
                                              const std::optional<Keyframe>& keyframe) {
   return write([&]() -> StoreResult<void> {
-    const auto table = keyframe_table();
-    if (!table) return failed(table.error());
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
     const auto range = log_.range(*head);
@@ -126,7 +96,7 @@ StoreResult<void> SqliteStore::save_keyframe(ChunkSpan chunks,
       if (chunk->version <= head->version || chunk->version > range->last.version) {
         return refuse("keyframe_chunk chunk=" + text_of(key), "its version is not within the log");
       }
-      if (auto saved = (*table)->save(key, *chunk, meta_.chunk_edge); !saved) return saved;
+      if (auto saved = keyframes_.save(key, *chunk, meta_.chunk_edge); !saved) return saved;
     }
     if (!keyframe) return {};
     if (auto fits = check_keyframe(*keyframe, *range); !fits) {
@@ -134,12 +104,12 @@ StoreResult<void> SqliteStore::save_keyframe(ChunkSpan chunks,
     }
     const auto start = completed(*head);
     if (!start) return failed(start.error());
-    const auto rows = (*table)->rows(keyframe->at.version.seq);
+    const auto rows = keyframes_.rows(keyframe->at.version.seq);
     if (!rows) return failed(rows.error());
-    if (auto proved = (*table)->prove({*keyframe}, *start, *rows); !proved) {
+    if (auto proved = keyframes_.prove({*keyframe}, *start, *rows); !proved) {
       return refuse(proved.error().where, proved.error().what);
     }
-    return (*table)->save(*keyframe);
+    return keyframes_.save(*keyframe);
   });
 }
 

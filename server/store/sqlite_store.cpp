@@ -13,16 +13,16 @@
 namespace runstone {
 
 SqliteStore::SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-                         MetaTable meta_table, PlayerTable player_table, LogTable log_table,
-                         ChunkTable base, ChunkTable snapshots)
+                         Tables tables)
     : lock_(std::move(lock)),
       database_(std::move(database)),
-      meta_table_(std::move(meta_table)),
-      player_table_(std::move(player_table)),
-      log_(std::move(log_table)),
-      segments_(*database_),
-      base_(std::move(base)),
-      snapshots_(std::move(snapshots)),
+      meta_table_(std::move(tables.meta)),
+      player_table_(std::move(tables.players)),
+      log_(std::move(tables.log)),
+      segments_(std::move(tables.segments)),
+      base_(std::move(tables.base)),
+      snapshots_(std::move(tables.snapshots)),
+      keyframes_(std::move(tables.keyframes)),
       access_(access) {}
 
 Unexpected<StoreError> SqliteStore::refuse(std::string where, std::string what) const {
@@ -214,10 +214,6 @@ StoreResult<void> SqliteStore::read_log(Sequence first, Sequence last, const Eac
 
 StoreResult<void> SqliteStore::query_log(const LogQuery& query, const EachRecord& each) {
   return at_one_moment<void>([&]() -> StoreResult<void> {
-    const auto version = database_->integer("PRAGMA user_version");
-    if (!version) return failed(version.error());
-    if (*version < kIndexedFormat)
-      return refuse("edit_log", "has no indexes until it was opened for writing");
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
     const auto range = log_.range(*head);
@@ -250,32 +246,6 @@ StoreResult<Sequence> SqliteStore::sequence_at(TimeUs time_us) {
     if (!behind) return behind;
     return *behind - 1;
   });
-}
-
-StoreResult<void> SqliteStore::upgrade(std::uint32_t in_file) {
-  const auto version = database_->integer("PRAGMA user_version");
-  if (!version) return failed(version.error());
-  if (*version >= kStoreFormatVersion && in_file >= kStoreFormatVersion) return {};
-  const auto upgraded = write([&]() -> StoreResult<void> {
-    if (*version < kIndexedFormat) {
-      if (auto made = create_indexes(*database_); !made) return made;
-      StoreResult<void> added;
-      auto read = read_log(1, kSequenceMax, [&](const EditRecord& record) {
-        added = segments_.add(record);
-        return added.has_value();
-      });
-      if (!read) return read;
-      if (!added) return added;
-      if (auto flushed = segments_.flush(); !flushed) return flushed;
-    }
-    if (*version < kKeyframeFormat) {
-      if (auto made = create_keyframes(*database_); !made) return made;
-    }
-    return *version < kStoreFormatVersion ? mark_newest(*database_) : StoreResult<void>{};
-  });
-  if (!upgraded) return upgraded;
-  // The mark must stand in the main file, where check_marks() of older programs looks.
-  return store_result(database_->run("PRAGMA wal_checkpoint(TRUNCATE)"));
 }
 
 StoreResult<std::vector<StoredChunk>> SqliteStore::rows_of(ChunkTable& table) {

@@ -1,5 +1,5 @@
-// SqliteStore: a world in one SQLite database (WAL, synchronous FULL). The rules of Store live here; the
-// tables know only their rows. See docs/edit-log.md, "The database".
+// SqliteStore: a world in one SQLite database (WAL, synchronous FULL). It enforces the rules of
+// Store; the tables know only their rows. docs/edit-log.md, "The database", describes the file.
 #pragma once
 #include <memory>
 #include <string>
@@ -18,12 +18,12 @@
 namespace runstone {
 
 struct SqliteOptions {
-  std::string vfs;  // SQLite VFS by name; empty: the default
-  bool sync =
-      true;  // false is for one test only: it shows that the power-loss test notices a missing fsync
+  std::string vfs;  // name of an SQLite VFS; empty: the default one
+  /// False for one test only: it proves that the power-loss test detects a missing fsync.
+  bool sync = true;
 };
 
-/// As create_world() and open_world(), which use the default options.
+/// Do the same as create_world() and open_world(), with options.
 StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folder,
                                                         const WorldMeta& meta,
                                                         const SqliteOptions& options);
@@ -32,11 +32,11 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
 
 class SqliteStore final : public Store {
  public:
-  /// Everything is checked before the object exists: marks, meta rows, log ids. `in_file`: as of check_marks().
+  /// Opens the database. Marks, meta rows and log ids are checked before the object exists.
   static StoreResult<std::unique_ptr<SqliteStore>> open(const std::string& folder,
                                                         StoreAccess access,
-                                                        const SqliteOptions& options, FileLock lock,
-                                                        std::uint32_t in_file);
+                                                        const SqliteOptions& options,
+                                                        FileLock lock);
 
   // WorldInfo
   const WorldMeta& meta() const override { return meta_; }
@@ -92,40 +92,44 @@ class SqliteStore final : public Store {
   Epoch epoch() const override { return epoch_; }
 
  private:
+  /// The tables of an open database.
+  struct Tables {
+    MetaTable meta;
+    PlayerTable players;
+    LogTable log;
+    SegmentTable segments;
+    ChunkTable base, snapshots;
+    KeyframeTable keyframes;
+    static StoreResult<Tables> open(sql::Database& database);
+  };
   SqliteStore(std::unique_ptr<sql::Database> database, FileLock lock, StoreAccess access,
-              MetaTable meta_table, PlayerTable player_table, LogTable log_table, ChunkTable base,
-              ChunkTable snapshots);
-  /// Calls `body` in one transaction and commits. After a commit that failed nobody knows what is on disk, so
-  /// every later write is refused.
+              Tables tables);
+  /// Calls `body` in one transaction and commits. After a failed commit the state of the disk is
+  /// unknown, so every later write is refused.
   StoreResult<void> write(const std::function<StoreResult<void>()>& body);
-  /// Calls `body` while another process's commits stay out of sight: what it reads belongs together.
+  /// Calls `body` in one read transaction: commits of other processes are not visible to it.
   template <class T>
   StoreResult<T> at_one_moment(const std::function<StoreResult<T>()>& body);
   StoreResult<std::vector<StoredChunk>> rows_of(ChunkTable& table);
-  /// Of base chunks, those that a compaction completed; read only if there was one.
+  /// Returns the base chunks that a compaction completed. Reads nothing if there was no compaction.
   StoreResult<std::vector<StoredChunk>> completed(const LogEnd& head);
-  /// Null in a world of an older format.
-  StoreResult<KeyframeTable*> keyframe_table();
   StoreResult<void> complete_base(const StoredMoment& moment);
   StoreResult<void> delete_up_to(const char* text, Sequence last);
   StoreResult<void> check_keyframe(const Keyframe& keyframe, const LogRange& range);
   StoreResult<void> save_chunks(ChunkTable& table, ChunkSpan chunks);
-  /// Also that they are of the epoch of now or, for history, that epochs do not fall.
+  /// Fails (bad_request) if the records do not continue the log. Their epoch must be the current
+  /// one; in a history, epochs must not fall.
   StoreResult<void> check_continues(std::span<const EditRecord> records, bool history);
-  /// In the caller's transaction.
+  /// Inserts players, records and watermarks in the caller's transaction.
   StoreResult<void> insert(std::span<const PlayerRow> players, std::span<const EditRecord> records);
   StoreResult<void> check_chunks(ChunkTable& table);
   StoreResult<void> check_marks_cover_log();
   StoreResult<void> check_segments_cover_log();
   StoreResult<void> check_keyframes();
-  /// A world of an older format gets what it lacks (format 1: indexes, 2: tables of keyframes), in one transaction.
-  /// Makes a world of an older format one of the newest. `in_file`: the format that the main file names, which a crash
-  /// or a reader may have kept from an upgrade that is in the WAL.
-  StoreResult<void> upgrade(std::uint32_t in_file);
   Unexpected<StoreError> refuse(std::string where, std::string what) const;
 
-  // Order matters: statements die before their database, and the database is closed before the lock is let
-  // go.
+  // The order matters: statements are destroyed before their database, and the database is closed
+  // before the lock is released.
   FileLock lock_;
   std::unique_ptr<sql::Database> database_;
   MetaTable meta_table_;
@@ -133,8 +137,7 @@ class SqliteStore final : public Store {
   LogTable log_;
   SegmentTable segments_;
   ChunkTable base_, snapshots_;
-  std::optional<KeyframeTable>
-      keyframes_;  // opened when first needed: older formats lack the tables
+  KeyframeTable keyframes_;
   StoreAccess access_;
   WorldMeta meta_;
   Epoch epoch_ = 0;

@@ -1,5 +1,5 @@
-// Making and opening a world: files, lock, marks and pragmas. What happens with it afterwards is
-// sqlite_store.cpp.
+// Creation and opening of a world: files, lock, marks and pragmas. sqlite_store.cpp has what
+// happens afterwards.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,7 +24,8 @@ Unexpected<StoreError> failure(StoreError::Kind kind, const std::string& file, s
   return {{kind, file, "", std::move(what)}};
 }
 
-/// Takes FOLDER/world.lock, so that at most one process writes the world. `file` names the world in the error.
+/// Takes FOLDER/world.lock, so that at most one process writes the world. `file` names the world in
+/// the error.
 StoreResult<FileLock> take_lock(const std::string& folder, const std::string& file) {
   const std::string path = folder + "/world.lock";
   auto lock = FileLock::take(path);
@@ -35,12 +36,12 @@ StoreResult<FileLock> take_lock(const std::string& folder, const std::string& fi
   return failure(StoreError::Kind::io, path, "cannot be written: " + lock.error().what);
 }
 
-/// The world's secret key is in the file, so nobody but its owner may read it. SQLite gives WAL and shared
-/// memory the mode of the file.
+/// Only the owner may read the file, because it holds the world's secret key. SQLite gives WAL and
+/// shared memory the mode of the file.
 constexpr mode_t kFileMode = 0600;
 constexpr mode_t kFolderMode = 0700;
 
-/// Makes the file, empty, before SQLite would make it for everybody to read.
+/// Makes an empty file for its owner only. SQLite would make one that everybody can read.
 StoreResult<void> make_file(const std::string& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
   if (descriptor < 0) {
@@ -51,8 +52,8 @@ StoreResult<void> make_file(const std::string& file) {
   return {};
 }
 
-/// Makes the folder, for its owner only, unless it is there; its name in the parent folder is on disk before
-/// anything in it is promised to be.
+/// Makes the folder for its owner only, unless it exists. Its name in the parent folder is on disk
+/// on return, before any file in it is reported as durable.
 StoreResult<void> make_folder(const std::string& folder, const std::string& file) {
   std::error_code error;
   auto whole = std::filesystem::absolute(folder, error).lexically_normal();
@@ -73,8 +74,9 @@ StoreResult<void> make_folder(const std::string& folder, const std::string& file
   return {};
 }
 
-/// EXTRA is FULL for WAL; during creation it also syncs the folder after the rollback journal is deleted, so
-/// that a journal can never come back and undo a world that is already in use.
+/// EXTRA is the same as FULL for WAL. During creation it also syncs the folder after the rollback
+/// journal is deleted. The journal then cannot reappear after a crash and undo a world that is
+/// already in use.
 const char* sync_pragma(bool sync) {
   return sync ? "PRAGMA synchronous = EXTRA" : "PRAGMA synchronous = OFF";
 }
@@ -88,14 +90,15 @@ StoreResult<void> set_pragmas(sql::Database& database, StoreAccess access, bool 
   if (*mode != "wal")
     return failure(StoreError::Kind::io, database.file(),
                    "the file system has no shared memory for WAL");
-  // Overwritten rows of the log's tree hold nothing secret, so freed pages need not be zeroed.
+  // Freed pages need not be zeroed: the rows of the log hold no secret.
   return store_result(database.run(
       "PRAGMA secure_delete = OFF; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;"));
 }
 
 StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta, bool sync) {
-  // The schema is committed in rollback mode and WAL comes afterwards: marks and tables then stand in the
-  // main file itself, where check_marks() looks, and a crash before the commit leaves a file without them.
+  // The schema is committed in rollback mode, and WAL is switched on afterwards. Marks and tables
+  // are then in the main file itself, where check_marks() reads them. A crash before the commit
+  // leaves a file without them.
   if (auto set = database.run("PRAGMA journal_mode = DELETE"); !set) return failed(set.error());
   if (auto set = database.run(sync_pragma(sync)); !set) return failed(set.error());
   auto transaction = sql::Transaction::begin(database);
@@ -118,10 +121,29 @@ StoreResult<void> write_new_world(sql::Database& database, const WorldMeta& meta
 
 }  // namespace
 
+StoreResult<SqliteStore::Tables> SqliteStore::Tables::open(sql::Database& database) {
+  auto meta = MetaTable::open(database);
+  if (!meta) return failed(meta.error());
+  auto players = PlayerTable::open(database);
+  if (!players) return failed(players.error());
+  auto log = LogTable::open(database);
+  if (!log) return failed(log.error());
+  auto segments = SegmentTable::open(database);
+  if (!segments) return failed(segments.error());
+  auto base = ChunkTable::open(database, ChunkTable::Kind::base);
+  if (!base) return failed(base.error());
+  auto snapshots = ChunkTable::open(database, ChunkTable::Kind::snapshot);
+  if (!snapshots) return failed(snapshots.error());
+  auto keyframes = KeyframeTable::open(database);
+  if (!keyframes) return failed(keyframes.error());
+  return Tables{*std::move(meta), *std::move(players),   *std::move(log),      *std::move(segments),
+                *std::move(base), *std::move(snapshots), *std::move(keyframes)};
+}
+
 StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& folder,
                                                             StoreAccess access,
                                                             const SqliteOptions& options,
-                                                            FileLock lock, std::uint32_t in_file) {
+                                                            FileLock lock) {
   const std::string file = file_in(folder);
   const auto mode =
       access == StoreAccess::read_only ? sql::Database::Mode::read : sql::Database::Mode::write;
@@ -130,42 +152,31 @@ StoreResult<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::string& f
   auto database = std::make_unique<sql::Database>(*std::move(opened));
   if (const auto set = set_pragmas(*database, access, options.sync); !set)
     return failed(set.error());
-  // The marks may be those of a creation that was cut and has only now been rolled back.
+  // check_marks() may have read the marks of an interrupted creation, which opening the database
+  // has rolled back.
   const auto id = database->integer("PRAGMA application_id");
   if (!id) return failed(id.error());
   if (*id != std::int64_t{kApplicationId}) {
     return failure(StoreError::Kind::not_a_world, file,
                    "its creation was interrupted; delete it and create the world again");
   }
-  auto meta_table = MetaTable::open(*database);
-  if (!meta_table) return failed(meta_table.error());
-  auto players = PlayerTable::open(*database);
-  if (!players) return failed(players.error());
-  auto log = LogTable::open(*database);
-  if (!log) return failed(log.error());
-  auto base = ChunkTable::open(*database, ChunkTable::Kind::base);
-  if (!base) return failed(base.error());
-  auto snapshots = ChunkTable::open(*database, ChunkTable::Kind::snapshot);
-  if (!snapshots) return failed(snapshots.error());
+  auto tables = Tables::open(*database);
+  if (!tables) return failed(tables.error());
 
-  const auto rows = meta_table->read_all();
+  const auto rows = tables->meta.read_all();
   if (!rows) return failed(rows.error());
   auto meta = meta_of(*rows);
   if (!meta) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, file, "meta key=" + meta.error(),
                                    "is missing or has an impossible value"}};
   }
-  const auto epoch = meta_table->counter("epoch");
+  const auto epoch = tables->meta.counter("epoch");
   if (!epoch) return failed(epoch.error());
 
-  std::unique_ptr<SqliteStore> store(new SqliteStore(
-      std::move(database), std::move(lock), access, *std::move(meta_table), *std::move(players),
-      *std::move(log), *std::move(base), *std::move(snapshots)));
+  std::unique_ptr<SqliteStore> store(
+      new SqliteStore(std::move(database), std::move(lock), access, *std::move(tables)));
   store->meta_ = *std::move(meta);
   store->epoch_ = static_cast<Epoch>(*epoch);
-  if (access == StoreAccess::read_write) {
-    if (const auto upgraded = store->upgrade(in_file); !upgraded) return failed(upgraded.error());
-  }
   return store;
 }
 
@@ -183,7 +194,7 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());
   if (*there) return failure(StoreError::Kind::exists, file, "is there already");
-  if (options.vfs.empty()) {  // another VFS keeps its files where it likes
+  if (options.vfs.empty()) {  // the files of another VFS need not be on the disk
     if (const auto made = make_file(file); !made) return failed(made.error());
   }
   {
@@ -193,8 +204,7 @@ StoreResult<std::unique_ptr<Store>> create_sqlite_world(const std::string& folde
       return failed(written.error());
     }
   }
-  auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock),
-                                 kStoreFormatVersion);
+  auto store = SqliteStore::open(folder, StoreAccess::read_write, options, *std::move(lock));
   if (!store) return failed(store.error());
   return std::unique_ptr<Store>(*std::move(store));
 }
@@ -205,15 +215,14 @@ StoreResult<std::unique_ptr<Store>> open_sqlite_world(const std::string& folder,
   const auto there = sql::file_exists(file, options.vfs);
   if (!there) return failed(there.error());
   if (!*there) return failure(StoreError::Kind::not_a_world, file, "is not there");
-  const auto marked = check_marks(file, options.vfs);
-  if (!marked) return failed(marked.error());
+  if (const auto marked = check_marks(file, options.vfs); !marked) return failed(marked.error());
   FileLock lock;
   if (access == StoreAccess::read_write) {
     auto taken = take_lock(folder, file);
     if (!taken) return failed(taken.error());
     lock = *std::move(taken);
   }
-  auto store = SqliteStore::open(folder, access, options, std::move(lock), *marked);
+  auto store = SqliteStore::open(folder, access, options, std::move(lock));
   if (!store) return failed(store.error());
   return std::unique_ptr<Store>(*std::move(store));
 }

@@ -1,17 +1,18 @@
-// Store: a world on disk: base, one edit log, snapshots, keyframes, players, meta. docs/edit-log.md gives the schema.
-// It is the union of small interfaces, one for each use:
-//   - WorldReader reads. It is itself the union of LogReader, ChunkReader, KeyframeReader and PlayerReader;
+// Store: a world on disk: base, one edit log, snapshots, keyframes, players, meta. docs/edit-log.md
+// gives the schema. It is the union of small interfaces, one for each use:
+//   - WorldReader reads. It is itself the union of LogReader, ChunkReader, KeyframeReader and
+//     PlayerReader;
 //   - WorldSink is what the log writer of a running server calls;
 //   - ImportSink fills a new world;
 //   - Maintenance shortens the log of a world that no server runs.
-// SQLite implements it; another database may do so later. Every call blocks on the disk, so the world strand makes none:
-// one writer thread owns a Store, and readers open their own. These rules keep a world safe:
+// SQLite implements it; another database may do so later. Every call blocks on the disk, so the
+// world strand makes none: one writer thread owns a Store, and readers open their own. These rules
+// keep a world safe:
 //   - append() returns after the data is on disk: what it has written is durable;
 //   - a snapshot may only be saved at a version that is durable;
-//   - a row that does not decode, or whose checksum is wrong, is an error that names file, table and row. It is never
-//     overwritten, regenerated or skipped.
+//   - a row that does not decode, or whose checksum is wrong, is an error that names file, table
+//     and row. It is never overwritten, regenerated or skipped.
 #pragma once
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,16 +22,15 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kStoreFormatVersion = 4;
-
 class ImportSink {
  public:
   virtual ~ImportSink() = default;
 
   /// Writes base chunks at version (0, 0). Fails (bad_request) once an edit was logged.
   virtual StoreResult<void> save_base(ChunkSpan chunks) = 0;
-  /// Writes what another copy of this world logged, as WorldSink::append(). Each record keeps its epoch, which may not
-  /// be older than that of the record before it. The world's epoch rises to the newest.
+  /// Writes what another copy of this world logged, as WorldSink::append(). Each record keeps its
+  /// epoch, which may not be older than that of the record before it. The world's epoch rises to
+  /// the newest.
   virtual StoreResult<void> append_history(std::span<const PlayerRow> players,
                                            std::span<const EditRecord> records) = 0;
 };
@@ -39,33 +39,37 @@ class Maintenance {
  public:
   virtual ~Maintenance() = default;
 
-  /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server runs the world.
+  /// Moves all edits up to a keyframe into the base, in one transaction. Requires that no server
+  /// runs the world.
   ///   - The base is completed from the keyframe.
   ///   - The edits, their indexes, the keyframe and those before it are deleted.
   ///   - The head of the log moves, and so does the checkpoint if it lies before the head.
   ///   - A chunk whose snapshot is older than the base gets a snapshot that is not.
   ///   - The watermarks of players stay.
   virtual StoreResult<void> compact(Sequence keyframe) = 0;
-  /// Returns the free space in the database to the file system. Requires disk space for a second copy meanwhile.
+  /// Returns the free space in the database to the file system. Requires disk space for a second
+  /// copy meanwhile.
   virtual StoreResult<void> shrink() = 0;
 };
 
 class Store : public WorldReader, public WorldSink, public ImportSink, public Maintenance {
  public:
-  /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per start.
+  /// Raises the epoch by one and returns it. It is durable on return. A server calls it once per
+  /// start.
   virtual StoreResult<Epoch> raise_epoch() = 0;
   /// Returns the epoch of the last start, or 0 if the world was never started.
   virtual Epoch epoch() const = 0;
 };
 
-/// Creates a world in a folder, which is made if it does not exist, and opens it for writing. Fails if the folder already
-/// holds `world.sqlite`.
+/// Creates a world in a folder, which is made if it does not exist, and opens it for writing. Fails
+/// if the folder already holds `world.sqlite`.
 StoreResult<std::unique_ptr<Store>> create_world(const std::string& folder, const WorldMeta& meta,
                                                  const std::string& vfs = "");
 
 enum class StoreAccess { read_only, read_write };
-/// Opens an existing world. Fails (locked) if another program has it open for writing, and `access` is read_write. `vfs`
-/// is the name of an SQLite VFS, for tests; an empty name means the default one.
+/// Opens an existing world. Fails (locked) if another program has it open for writing, and `access`
+/// is read_write. `vfs` is the name of an SQLite VFS, for tests; an empty name means the default
+/// one.
 StoreResult<std::unique_ptr<Store>> open_world(const std::string& folder, StoreAccess access,
                                                const std::string& vfs = "");
 

@@ -1,4 +1,4 @@
-// Store::check() over SQLite: every row of every table, and what the tables promise each other.
+// SqliteStore::check(): verifies every row of every table, and the relations between the tables.
 #include <map>
 #include <utility>
 
@@ -6,19 +6,18 @@
 #include "common/edits/descriptor/edit_geometry.hpp"
 #include "server/store/sqlite_result.hpp"
 #include "server/store/sqlite_store.hpp"
-#include "server/store/world_schema.hpp"
 
 namespace runstone {
 
 StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
   const auto rows = rows_of(table);
   if (!rows) return failed(rows.error());
-  // Both after the rows: a server that runs meanwhile only moves them on.
+  // Both are read after the rows: a running server only increases them.
   const auto range = log_range();
   if (!range) return failed(range.error());
   const auto head = meta_table_.log_head();
   if (!head) return failed(head.error());
-  // A base that held an edit of the log would have it applied twice.
+  // If a base chunk contained an edit of the log, replay would apply that edit twice.
   const bool is_base = &table == &base_;
   const Version newest = is_base ? head->version : range->last.version;
   for (const auto& [key, version, digest, completed] : *rows) {
@@ -35,7 +34,7 @@ StoreResult<void> SqliteStore::check_chunks(ChunkTable& table) {
 }
 
 StoreResult<void> SqliteStore::check_marks_cover_log() {
-  // Before the marks: a server that runs meanwhile moves both on.
+  // The log is read before the watermarks: a running server increases both.
   const auto last = last_sequence();
   if (!last) return failed(last.error());
   const auto rows = player_table_.high_waters();
@@ -60,10 +59,7 @@ StoreResult<void> SqliteStore::check_marks_cover_log() {
 }
 
 StoreResult<void> SqliteStore::check_segments_cover_log() {
-  const auto version = database_->integer("PRAGMA user_version");
-  if (!version) return failed(version.error());
-  if (*version < kIndexedFormat) return {};
-  // Before the segments: a server that runs meanwhile moves both on.
+  // The range is read before the segments: a running server adds to both.
   const auto range = log_range();
   if (!range) return failed(range.error());
   const auto segments = segments_.find(std::nullopt, std::nullopt, 1, kSequenceMax);
@@ -88,20 +84,17 @@ StoreResult<void> SqliteStore::check_segments_cover_log() {
 }
 
 StoreResult<void> SqliteStore::check_keyframes() {
-  // All at one moment: a server that runs meanwhile adds rows and keyframes.
+  // All reads are at one moment: a running server adds rows and keyframes.
   return at_one_moment<void>([&]() -> StoreResult<void> {
-    const auto table = keyframe_table();
-    if (!table) return failed(table.error());
-    if (*table == nullptr) return {};
     const auto head = meta_table_.log_head();
     if (!head) return failed(head.error());
     const auto range = log_.range(*head);
     if (!range) return failed(range.error());
-    const auto keyframes = (*table)->all();
+    const auto keyframes = keyframes_.all();
     if (!keyframes) return failed(keyframes.error());
     const auto start = completed(*head);
     if (!start) return failed(start.error());
-    const auto rows = (*table)->rows(kSequenceMax);
+    const auto rows = keyframes_.rows(kSequenceMax);
     if (!rows) return failed(rows.error());
     for (const StoredChunk& row : *rows) {
       const auto loaded = load_stored(row);
@@ -114,7 +107,7 @@ StoreResult<void> SqliteStore::check_keyframes() {
              "has a version that is not within the log"}};
       }
     }
-    if (auto proved = (*table)->prove(*keyframes, *start, *rows); !proved) return proved;
+    if (auto proved = keyframes_.prove(*keyframes, *start, *rows); !proved) return proved;
     for (const Keyframe& keyframe : *keyframes) {
       if (auto fits = check_keyframe(keyframe, *range); !fits) return fits;
     }

@@ -1,5 +1,5 @@
-// World folder: opening a world for a server, or making a new one. Every error is one line that names the
-// file. Blocks on the disk: for the start of a program.
+// World folder: opens a world for a server, or creates it. Every error is one line that names the
+// file. All functions block on the disk: they are for the start of a program.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace runstone {
 
-/// What a new world is made of; an existing world has its own and ignores this.
+/// The properties of a new world. An existing world ignores them.
 struct WorldCreation {
   std::string generator = "terrain";
   std::string generator_parameters;  // TOML, empty for the generator's defaults
@@ -25,20 +25,23 @@ struct OpenedWorld {
   std::unique_ptr<Store> store;
   std::unique_ptr<Generator> generator;
   bool is_new = false;
-  bool is_readable_by_others = false;  // the file, and with it the world's secret key
+  bool is_readable_by_others = false;  // the file, which holds the world's secret key
 };
 
-/// Whether the folder holds a world.
+/// Returns true if the folder holds a world.
 bool has_world(const std::string& folder);
-/// Reads a material table; an empty name means the built-in one.
+/// Reads a material table. An empty name means the built-in one.
 Result<MaterialTable, std::string> read_materials(const std::string& file);
-/// New identity: random world id and server key.
+/// Sets a new identity: a random world id and a random server key.
 void draw_identity(WorldMeta& meta);
-/// Opens the world for writing, or makes it first if the folder holds none. Fails on a generator this build
-/// lacks, a world of a newer version, damaged rows, a second server, an unwritable folder.
+/// Opens the world for writing. Creates it first if the folder holds none. Fails if
+///   - this build lacks the generator;
+///   - the world has a newer format, or its rows are damaged;
+///   - another server has the world open;
+///   - the folder cannot be written.
 Result<OpenedWorld, std::string> open_or_create_world(const std::string& folder,
                                                       const WorldCreation& creation);
-/// The generator a world pins.
+/// Returns the generator that a world pins.
 Result<std::unique_ptr<Generator>, std::string> generator_of(const WorldInfo& world);
 
 }  // namespace runstone

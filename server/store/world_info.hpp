@@ -1,4 +1,5 @@
-// WorldInfo: what every reader of a world knows: the values that are pinned when a world is created, and its name.
+// WorldInfo: what every reader of a world knows: the values that are pinned when a world is
+// created, and its name.
 #pragma once
 #include <array>
 #include <cstdint>

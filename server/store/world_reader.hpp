@@ -1,4 +1,5 @@
-// WorldReader: everything that can be read of a world. A function that needs less takes one of the smaller interfaces.
+// WorldReader: everything that can be read of a world. A function that needs less takes one of the
+// smaller interfaces.
 #pragma once
 #include "server/store/chunk_reader.hpp"
 #include "server/store/keyframe_reader.hpp"
@@ -12,7 +13,8 @@ class WorldReader : public LogReader,
                     public KeyframeReader,
                     public PlayerReader {
  public:
-  /// Reads and verifies every row of every table, and runs the database's own check. It is slow: use it for audits.
+  /// Reads and verifies every row of every table, and runs the database's own check. It is slow:
+  /// use it for audits.
   virtual StoreResult<void> check() = 0;
 };
 

@@ -7,15 +7,14 @@
 #include <utility>
 
 #include "server/store/sqlite_result.hpp"
-#include "server/store/store.hpp"
 
 namespace runstone {
 
 namespace {
 
-// Keyed by small composite keys, `edit_log` and `player_instance` live in the key's own tree: a single-voxel
-// edit costs one cell. Chunk rows are long, so they keep a rowid; their blob comes last, so that reading keys
-// and versions never follows its overflow pages.
+// `edit_log` and `player_instance` have small composite keys and no rowid: the rows lie in the tree
+// of the key, and an edit of one voxel costs one cell. Rows of chunks are long, so they have a
+// rowid. Their blob is the last column: keys and versions are read without its overflow pages.
 constexpr const char* kTables = R"sql(
 CREATE TABLE meta(
   key TEXT NOT NULL PRIMARY KEY,
@@ -62,18 +61,18 @@ CREATE TABLE player_instance(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-// Times never fall along the log, so a time is found by halving it, without an index. Nearly every edit is a
-// player's, so the index by cause holds the others.
+// There is no index by time: times never fall along the log, so a time is found by bisection.
+// Nearly every edit has cause player, so the index by cause holds the others only.
 constexpr const char* kIndexes = R"sql(
 CREATE INDEX edit_log_author ON edit_log(author, seq);
 CREATE INDEX edit_log_cause ON edit_log(cause, seq) WHERE cause <> 0;
 CREATE VIRTUAL TABLE log_box USING rtree_i32(
   first_seq, min_x, max_x, min_y, max_y, min_z, max_z, +last_seq INTEGER, +author INTEGER
 );
-PRAGMA user_version=2;
 )sql";
 
-// The index holds all of a row but its voxels: to know which chunks a moment has, no page of voxels is read.
+// The index holds all columns of a row but checksum and voxels: the chunks of a moment are listed
+// without a page of voxels.
 constexpr const char* kKeyframes = R"sql(
 CREATE TABLE keyframe(
   seq INTEGER NOT NULL PRIMARY KEY,
@@ -90,45 +89,29 @@ CREATE TABLE keyframe_chunk(
   PRIMARY KEY(lod, x, y, z, seq)
 ) STRICT;
 CREATE INDEX keyframe_chunk_digest ON keyframe_chunk(seq, lod, x, y, z, epoch, digest0, digest1);
-PRAGMA user_version=3;
 )sql";
-
-constexpr const char* kNewest = "PRAGMA user_version=4;";
-static_assert(kIndexedFormat == 2 && kKeyframeFormat == 3 && kStoreFormatVersion == 4);
 
 }  // namespace
 
 StoreResult<void> create_schema(sql::Database& database) {
-  const std::string mark = "PRAGMA application_id=" + std::to_string(kApplicationId) + ";";
-  if (auto set = database.run(mark.c_str()); !set) return failed(set.error());
-  if (auto made = database.run(kTables); !made) return failed(made.error());
-  if (auto made = create_indexes(database); !made) return made;
-  if (auto made = create_keyframes(database); !made) return made;
-  return mark_newest(database);
+  const std::string marks = "PRAGMA application_id=" + std::to_string(kApplicationId) +
+                            "; PRAGMA user_version=" + std::to_string(kWorldFormat) + ";";
+  for (const char* part : {marks.c_str(), kTables, kIndexes, kKeyframes}) {
+    if (auto made = database.run(part); !made) return failed(made.error());
+  }
+  return {};
 }
 
-StoreResult<void> create_indexes(sql::Database& database) {
-  return store_result(database.run(kIndexes));
-}
-
-StoreResult<void> create_keyframes(sql::Database& database) {
-  return store_result(database.run(kKeyframes));
-}
-
-StoreResult<void> mark_newest(sql::Database& database) {
-  return store_result(database.run(kNewest));
-}
-
-StoreResult<std::uint32_t> check_marks(const std::string& file, const std::string& vfs) {
+StoreResult<void> check_marks(const std::string& file, const std::string& vfs) {
   const auto fail_as = [&](StoreError::Kind kind, std::string what) {
     return Unexpected<StoreError>{{kind, file, "", std::move(what)}};
   };
   auto database = sql::Database::open(file, sql::Database::Mode::header, vfs);
   if (!database)
     return fail_as(StoreError::Kind::not_a_world, "cannot be opened: " + database.error().what);
-  // The bytes themselves, not PRAGMAs: after a crash in the middle of a checkpoint the main file alone is no
-  // sound database (its WAL mends it), but these marks were on disk before the WAL
-  // existed; an upgrade brings its own there, at the next start if a crash or a reader kept it from that.
+  // The bytes are read, and no PRAGMA: after a crash during a checkpoint the main file is no sound
+  // database until its WAL is applied. The marks are in it all the same, because they were written
+  // before the WAL existed.
   const auto header = database->header();
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
   const auto big_endian = [&](std::size_t at) {
@@ -143,14 +126,15 @@ StoreResult<std::uint32_t> check_marks(const std::string& file, const std::strin
     return fail_as(StoreError::Kind::not_a_world, "is not a Runstone world");
   }
   const std::uint32_t version = big_endian(60);
-  if (version > kStoreFormatVersion) {
+  if (version > kWorldFormat) {
     return fail_as(StoreError::Kind::newer_version,
-                   "is of world format " + std::to_string(version) + "; this program knows up to " +
-                       std::to_string(kStoreFormatVersion) + ". Nothing was changed.");
+                   "is of world format " + std::to_string(version) +
+                       "; this program knows format " + std::to_string(kWorldFormat) +
+                       ". Nothing was changed.");
   }
-  if (version < 1)
+  if (version != kWorldFormat)
     return fail_as(StoreError::Kind::corrupt, "names world format " + std::to_string(version));
-  return version;
+  return {};
 }
 
 RowChecksum& RowChecksum::integer(std::int64_t value) {

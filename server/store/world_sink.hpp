@@ -1,4 +1,5 @@
-// WorldSink: what a running server writes: edits, snapshots and keyframes. Each call is one transaction.
+// WorldSink: what a running server writes: edits, snapshots and keyframes. Each call is one
+// transaction.
 #pragma once
 #include <optional>
 #include <span>
@@ -19,19 +20,20 @@ class WorldSink {
  public:
   virtual ~WorldSink() = default;
 
-  /// Writes new players, then records, then the watermarks that the records imply. All of it is durable on return.
-  /// Fails (bad_request) and writes nothing if
+  /// Writes new players, then records, then the watermarks that the records imply. All of it is
+  /// durable on return. Fails (bad_request) and writes nothing if
   ///   - the records do not continue the log without a gap;
   ///   - a record is not of the epoch of this start;
   ///   - the numbers of a record are not valid (validate_numbers()).
   virtual StoreResult<void> append(std::span<const PlayerRow> players,
                                    std::span<const EditRecord> records) = 0;
-  /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Fails (bad_request) if a chunk or the
-  /// checkpoint is ahead of the log.
+  /// Replaces the snapshots of these chunks and, if given, moves the checkpoint. Fails
+  /// (bad_request) if a chunk or the checkpoint is ahead of the log.
   virtual StoreResult<void> save_snapshots(ChunkSpan chunks,
                                            std::optional<Sequence> checkpoint) = 0;
-  /// Adds chunks as edits of the log left them and, if given, the keyframe that they complete. A chunk that is stored
-  /// already stays. Fails (bad_request) if the chunks of base and keyframes do not prove the keyframe.
+  /// Adds chunks as edits of the log left them and, if given, the keyframe that they complete. A
+  /// chunk that is stored already stays. Fails (bad_request) if the chunks of base and keyframes do
+  /// not prove the keyframe.
   virtual StoreResult<void> save_keyframe(ChunkSpan chunks,
                                           const std::optional<Keyframe>& keyframe) = 0;
 };

@@ -1,5 +1,5 @@
-// raw_sql: changes a world's database without the store, as damage and other programs do. It calls SQLite
-// directly, so that the layer under test has no part in it.
+// raw_sql: changes a world's database without the store, as damage and other programs do. It calls
+// SQLite directly, so that the layer under test has no part in it.
 #pragma once
 #include <sqlite3.h>
 
@@ -7,8 +7,8 @@
 
 namespace runstone::test {
 
-/// Runs statements on a database that is closed, or shared through its WAL. Returns the first column of
-/// the last row as text, or "ERROR: ..." if a statement failed.
+/// Runs statements on a database that is closed, or shared through its WAL. Returns the first
+/// column of the last row as text, or "ERROR: ..." if a statement failed.
 inline std::string raw_sql(const std::string& file, const std::string& sql,
                            const char* vfs = nullptr) {
   sqlite3* database = nullptr;

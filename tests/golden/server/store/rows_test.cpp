@@ -1,7 +1,6 @@
-// The bytes of world format 4: columns, row checksums and marks. A change here means a new
-// kStoreFormatVersion and a way to open the old one.
+// The bytes of world format 1: columns, row checksums and marks. A change here means a new
+// kWorldFormat.
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <string>
 
 #include "server/store/sqlite_store.hpp"
@@ -23,7 +22,7 @@ ChunkPtr golden_chunk(Material material, Version version) {
   return std::make_shared<const Chunk>(std::move(chunk));
 }
 
-/// One row in every table, nothing in it left to chance.
+/// Makes a world with at least one row in every table. Every value is fixed.
 std::string make_world(const TempFolder& folder) {
   auto store = *create_world(folder.path(), sample_meta());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{{0, {-1, 2, 3}}, golden_chunk(1, {})}};
@@ -55,15 +54,15 @@ std::string columns(const std::string& file, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("the marks of a world are where format 4 has them", "[store][golden]") {
+TEST_CASE("the marks of a world are where format 1 has them", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(raw_sql(file, "PRAGMA application_id") == "1383427667");
-  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
+  CHECK(raw_sql(file, "PRAGMA user_version") == "1");
   CHECK(raw_sql(file, "PRAGMA journal_mode") == "wal");
 }
 
-TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
+TEST_CASE("the tables have the columns of format 1", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   CHECK(columns(file, "meta") == "key TEXT1, value ANY0, checksum INTEGER0");
@@ -122,7 +121,7 @@ TEST_CASE("the tables have the columns of format 4", "[store][golden]") {
         "seed server_key_seed snapshot_fold spawn world_id");
 }
 
-TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
+TEST_CASE("rows have the bytes and checksums of format 1", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   const auto value = [&](const std::string& column, const std::string& from) {
@@ -170,48 +169,7 @@ TEST_CASE("rows have the bytes and checksums of format 4", "[store][golden]") {
         "0100000000000000D2455B47B79BD394");
 }
 
-TEST_CASE(
-    "chunks of a world of format 3 are read, and it is of format 4 once it was opened for writing",
-    "[store][golden]") {
-  const TempFolder folder;
-  const std::string file = make_world(folder);
-  const auto put_back = [&](const std::string& table, const std::string& data,
-                            const std::string& checksum) {
-    REQUIRE(raw_sql(file, "UPDATE " + table + " SET data = x'" + data + "', checksum = " + checksum)
-                .empty());
-  };
-  put_back("base", "0201011010100101010100", "2279636502801835223");
-  put_back("snapshot", "0201011010100101020100", "526761025094432557");
-  put_back("keyframe_chunk", "0201011010100101030100", "-5574597237841816912");
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 3").empty());
-  for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
-    auto store = *open_world(folder.path(), access);
-    CHECK(store->load_base({0, {-1, 2, 3}})->value().voxels == golden_chunk(1, {})->voxels);
-    CHECK(store->load_snapshot({0, {0, 0, -7}})->value().voxels == golden_chunk(2, {1, 1})->voxels);
-    CHECK(store->check().has_value());
-    CHECK(raw_sql(file, "PRAGMA user_version") == (access == StoreAccess::read_only ? "3" : "4"));
-  }
-}
-
-TEST_CASE("an upgrade that a crash left in the WAL gets into the main file at the next start",
-          "[store][golden]") {
-  const TempFolder folder;
-  const std::string file = make_world(folder);
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 3").empty());
-  const auto format_in_file = [&] {
-    std::ifstream in(file, std::ios::binary);
-    in.seekg(63);
-    return in.get();
-  };
-  // While somebody reads, who closes the world moves nothing out of the WAL.
-  const auto reader = *open_world(folder.path(), StoreAccess::read_only);
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 4").empty());
-  REQUIRE(format_in_file() == 3);
-  const auto store = *open_world(folder.path(), StoreAccess::read_write);
-  CHECK(format_in_file() == 4);
-}
-
-TEST_CASE("the head of a compacted log has the bytes of format 4", "[store][golden]") {
+TEST_CASE("the head of a compacted log has the bytes of format 1", "[store][golden]") {
   const TempFolder folder;
   const std::string file = make_world(folder);
   compact_by_hand(file, {{1, 2}, 1'700'000'000'000'001}, {});

@@ -1,6 +1,6 @@
-// Undo and redo of one player in a chunk, against models that know nothing of selections: a stack of whole
-// states while the player is alone, and each voxel's own last writer when others build there too.
-#include "server/rollback/own_actions.hpp"
+// Undo and redo of one player in a chunk, against models without selections: a stack of whole
+// states while the player is alone, and the last writer of each voxel when others build there too.
+#include "server/rollback/player_actions.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -22,10 +22,10 @@ struct Entry {
   AuthorId author = 0;
   Cause cause = Cause::player;
   Sequence subject = 0;
-  std::vector<EditDescriptor> edits;  // one record; an undo is as many voxels
+  std::vector<EditDescriptor> edits;  // a record has one edit; an undo has one for each voxel
 };
 
-/// A log of one chunk, and undo and redo as a server does them, from nothing but that log.
+/// A log of one chunk, with undo and redo as a server does them: from the log alone.
 class ChunkLog {
  public:
   explicit ChunkLog(RunChunk start) : start_(std::move(start)), now_(DenseChunk::of(start_)) {}
@@ -37,7 +37,8 @@ class ChunkLog {
     append({author, Cause::player, 0, {edit}});
   }
 
-  /// The action; nothing if there was none left. `skipped` says how many had nothing to take back.
+  /// Returns the action, or nullopt if there is none left. `skipped` is the number of actions
+  /// without effect before it.
   std::optional<Sequence> undo(int* skipped = nullptr) {
     const PlayerActions mine(player_records());
     for (const Sequence action : mine.undoable()) {
@@ -123,7 +124,7 @@ TEST_CASE("undo and redo of a player alone step through a stack of states",
   int undone = 0, redone = 0, refused = 0;
   for (int round = 0; round < 60; ++round) {
     ChunkLog log(small_chunk(rng));
-    std::vector<DenseChunk> states = {log.now()};  // states[at] is the one shown
+    std::vector<DenseChunk> states = {log.now()};  // states[at] is the current state
     std::size_t at = 0;
     for (int step = 0; step < 40; ++step) {
       CAPTURE(Catch::rngSeed(), round, step);
@@ -131,7 +132,7 @@ TEST_CASE("undo and redo of a player alone step through a stack of states",
       if (dice < 4) {
         log.act(kMe, random_edit_near(rng, kOrigin, Extent::cube(8)));
         states.erase(states.begin() + static_cast<std::ptrdiff_t>(at + 1),
-                     states.end());  // whatever it does, there is nothing to redo any more
+                     states.end());  // after a new action there is nothing to redo
         if (!(log.now() == states[at])) {
           states.push_back(log.now());
           ++at;
@@ -161,7 +162,7 @@ TEST_CASE("undo and redo leave alone what others wrote last", "[rollback][proper
   int undone = 0, over_others = 0, came_back = 0;
   for (int round = 0; round < 60; ++round) {
     ChunkLog log(small_chunk(rng));
-    DenseChunk last_writer(Extent::cube(8));  // 0 nobody, else the author
+    DenseChunk last_writer(Extent::cube(8));  // 0 if no edit changed the voxel, else the author
     for (int step = 0; step < 40; ++step) {
       CAPTURE(Catch::rngSeed(), round, step);
       const DenseChunk before = log.now();
@@ -182,7 +183,7 @@ TEST_CASE("undo and redo leave alone what others wrote last", "[rollback][proper
       if (!has_undone) continue;
       ++undone;
       if (rng.below(2) == 0) continue;
-      // Nobody has built in between, so redo gives exactly what undo took.
+      // No other edit came in between, so redo restores exactly what undo took.
       REQUIRE(log.redo().has_value());
       REQUIRE(log.now() == before);
       ++came_back;
@@ -193,13 +194,12 @@ TEST_CASE("undo and redo leave alone what others wrote last", "[rollback][proper
   CHECK(over_others > 1000);
 }
 
-TEST_CASE("a voxel that only the player wrote follows the player's own stack",
-          "[rollback][property]") {
+TEST_CASE("a voxel that only the player wrote follows the player's stack", "[rollback][property]") {
   SplitMix64 rng{73 + Catch::rngSeed()};
   std::uint64_t compared = 0;
   for (int round = 0; round < 80; ++round) {
     ChunkLog log(small_chunk(rng));
-    DenseChunk others(Extent::cube(8));        // 1 where another ever wrote
+    DenseChunk others(Extent::cube(8));        // 1 where another author ever wrote
     std::vector<EditDescriptor> done, undone;  // the player's actions, newest last
     const DenseChunk start = log.now();
     int skipped = 0;
@@ -224,7 +224,8 @@ TEST_CASE("a voxel that only the player wrote follows the player's own stack",
         done.push_back(undone.back());
         undone.pop_back();
       }
-      if (skipped != 0) break;  // an older action was undone below a newer one: no stack any more
+      if (skipped != 0)
+        break;  // an older action was undone below a newer one, so the model of a stack ends
       DenseChunk expected = start;
       oracle_apply(expected, kOrigin, done);
       for_each_voxel(start, [&](int x, int y, int z) {

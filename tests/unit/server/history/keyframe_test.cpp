@@ -1,4 +1,5 @@
-// Keyframes: where they are due, that they change no moment, and that damage in them is noticed.
+// Keyframes: they are made where they are due, they change no moment, and damage in them is
+// detected.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
@@ -17,7 +18,8 @@ namespace {
 constexpr Sequence kEdits = 400;
 constexpr KeyframePolicy kPolicy{40, 3};
 
-/// Any edit around the chunk at the origin that touches few chunks, so that keyframes come to be due.
+/// Returns a random edit near the chunk at the origin. It touches few chunks, so that keyframes
+/// become due.
 EditDescriptor small_edit(SplitMix64& rng) {
   for (;;) {
     const EditDescriptor edit = random_edit_near(rng, {}, Extent::cube(kSampleEdge));
@@ -64,7 +66,7 @@ struct Logged {
   }
 };
 
-/// All edited chunks of a moment.
+/// Returns all edited chunks of a moment.
 std::vector<std::pair<ChunkKey, Chunk>> chunks_at(Logged& logged, Sequence seq) {
   WorldAt world = logged.at(seq);
   std::vector<std::pair<ChunkKey, Chunk>> chunks;
@@ -77,7 +79,7 @@ std::vector<std::pair<ChunkKey, Chunk>> chunks_at(Logged& logged, Sequence seq) 
   return chunks;
 }
 
-/// Where the rule of KeyframePolicy has keyframes, told by its words.
+/// Returns the places of keyframes according to the rule of KeyframePolicy.
 std::vector<Sequence> due_places(const std::vector<EditRecord>& records,
                                  const KeyframePolicy& policy) {
   std::vector<Sequence> places;
@@ -109,11 +111,11 @@ void check(Store& store) {
 
 }  // namespace
 
-TEST_CASE("keyframes stand where they are due", "[history][keyframe]") {
+TEST_CASE("keyframes are made where they are due", "[history][keyframe]") {
   Logged logged(1);
   const std::vector<Sequence> due = due_places(logged.records, kPolicy);
   REQUIRE(due.size() > 3);
-  CHECK(due.front() > kPolicy.edits_min);  // both halves of the rule were asked
+  CHECK(due.front() > kPolicy.edits_min);  // both conditions of the rule decided a place
   logged.make_keyframes();
   CHECK(places(*logged.store) == due);
   check(*logged.store);
@@ -132,8 +134,7 @@ TEST_CASE("keyframes stand where they are due", "[history][keyframe]") {
   }
 }
 
-TEST_CASE("a log that grows gets the keyframes of one that was there at once",
-          "[history][keyframe]") {
+TEST_CASE("a log that grows gets the same keyframes as a complete log", "[history][keyframe]") {
   Logged logged(2, 1);
   SplitMix64 rng(3);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
@@ -168,17 +169,17 @@ TEST_CASE("a moment is the same with keyframes and without", "[history][keyframe
     CAPTURE(seq);
     CHECK(chunks_at(logged, seq) == chunks);
   }
-  WorldAt follower = logged.at(0);  // goes on over keyframes without looking at them
+  WorldAt follower = logged.at(0);  // moves past keyframes without reading them
   REQUIRE(follower.advance(kEdits).has_value());
   for (const auto& [key, chunk] : chunks_at(logged, kEdits)) CHECK(*follower.chunk(key) == chunk);
 }
 
-TEST_CASE("a keyframe that was broken off does no harm and is made again", "[history][keyframe]") {
+TEST_CASE("an interrupted keyframe does no harm and is made again", "[history][keyframe]") {
   Logged logged(6);
   const auto at_end = chunks_at(logged, kEdits);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
   const std::vector<Sequence> due = due_places(logged.records, kPolicy);
-  int chunks_left = 13;  // one keyframe has nearly thirty
+  int chunks_left = 13;  // a keyframe has nearly thirty chunks
   KeyframeMaker::Chunks part;
   const auto broken =
       maker.make_due([&](const KeyframeMaker::Chunks& chunks, const std::optional<Keyframe>&) {
@@ -195,7 +196,7 @@ TEST_CASE("a keyframe that was broken off does no harm and is made again", "[his
   CHECK(places(*logged.store).empty());
   check(*logged.store);
   CHECK(chunks_at(logged, kEdits) == at_end);
-  // Rows at another place than the keyframe that comes first: they are older than it, or its own.
+  // Rows beside the first keyframe are older than it, or belong to it.
   KeyframeMaker other(*logged.store, *logged.generator, kPolicy);
   REQUIRE(other.make_at(due.front() + 20, logged.save()).has_value());
   check(*logged.store);
@@ -206,7 +207,7 @@ TEST_CASE("a keyframe that was broken off does no harm and is made again", "[his
   CHECK(chunks_at(logged, kEdits) == at_end);
 }
 
-TEST_CASE("making keyframes can be called off between chunks", "[history][keyframe]") {
+TEST_CASE("making keyframes can be cancelled between chunks", "[history][keyframe]") {
   Logged logged(7);
   KeyframeMaker maker(*logged.store, *logged.generator, kPolicy);
   int steps = 0;
@@ -240,7 +241,7 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
     REQUIRE_FALSE(saved.has_value());
     CHECK(saved.error().kind == StoreError::Kind::bad_request);
     CHECK(raw_sql(logged.store->file(), "SELECT count(*) FROM keyframe_chunk") ==
-          "0");  // nothing of it stays
+          "0");  // nothing of it is stored
     return saved.error().where;
   };
   KeyframeMaker::Chunks fewer(chunks.begin() + 1, chunks.end());
@@ -260,7 +261,7 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
             .starts_with("keyframe_chunk chunk="));
   REQUIRE(logged.store->save_keyframe(chunks, keyframe).has_value());
   check(*logged.store);
-  // The same row again is no work; another one under its key is damage somewhere.
+  // A row that is stored already stays. Another row under its key is damage.
   REQUIRE(logged.store->save_keyframe(chunks, std::nullopt).has_value());
   SplitMix64 rng(9);
   const auto& [key, chunk] = chunks.front();
@@ -271,7 +272,7 @@ TEST_CASE("a store takes no keyframe that its chunks do not prove", "[history][k
   CHECK(differs.error().kind == StoreError::Kind::corrupt);
 }
 
-TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
+TEST_CASE("the check names damage in keyframes, and no moment contains it",
           "[history][keyframe][damage]") {
   Logged logged(10);
   logged.make_keyframes();
@@ -316,7 +317,7 @@ TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
     CHECK(checked.error().kind == StoreError::Kind::corrupt);
     const std::string where = checked.error().where;
     CHECK((damage.where.empty() ? where.starts_with("keyframe") : where == damage.where));
-    // Moments either cannot be opened, or a chunk cannot be read, or all is as it was.
+    // A moment cannot be opened, or a chunk cannot be read, or all chunks are right.
     bool is_noticed = false;
     for (const auto& [seq, chunks] : {std::pair(first, &at_first), std::pair(kEdits, &at_end)}) {
       auto world = WorldAt::open(*store, *logged.generator, seq);
@@ -331,25 +332,4 @@ TEST_CASE("damage in keyframes is named by the check and mixed into no moment",
     }
     CHECK(is_noticed);
   }
-}
-
-TEST_CASE("a world of format 2 has no keyframes until it is opened for writing",
-          "[history][keyframe]") {
-  Logged logged(11);
-  const auto at_end = chunks_at(logged, kEdits);
-  logged.store.reset();
-  const std::string file = logged.folder / "world.sqlite";
-  REQUIRE(raw_sql(file,
-                  "DROP TABLE keyframe; DROP TABLE keyframe_chunk; PRAGMA user_version=2; PRAGMA "
-                  "wal_checkpoint(TRUNCATE)")
-              .find("ERROR") == std::string::npos);
-  logged.store = *open_world(logged.folder.path(), StoreAccess::read_only);
-  CHECK(places(*logged.store).empty());
-  CHECK(chunks_at(logged, kEdits) == at_end);
-  check(*logged.store);
-  logged.store = *open_world(logged.folder.path(), StoreAccess::read_write);
-  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
-  logged.make_keyframes();
-  check(*logged.store);
-  CHECK(chunks_at(logged, kEdits) == at_end);
 }

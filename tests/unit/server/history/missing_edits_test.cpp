@@ -1,4 +1,4 @@
-// What leads from one version of a chunk to another, against a plain walk over all records.
+// The edits from one version of a chunk to another, against a plain walk over all records.
 #include "server/history/missing_edits.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Log {
     REQUIRE(store->raise_epoch().has_value());
     REQUIRE(store->append_history({}, records).has_value());
   }
-  /// The records that touch a chunk, by geometry.
+  /// Returns the records that touch a chunk by geometry.
   std::vector<EditRecord> of(const ChunkKey& key) const {
     std::vector<EditRecord> out;
     for (const EditRecord& record : records) {
@@ -61,16 +61,16 @@ TEST_CASE("the edits between two versions of a chunk are all that touch it, in o
     const auto all = log.of(key);
     REQUIRE(all.size() >= 4);
     const Version newest = all.back().version;
-    for (std::size_t held = 0; held + 1 < all.size(); ++held, ++looked) {
-      const auto update = log.missing(key, newest, all[held].version);
+    for (std::size_t kept = 0; kept + 1 < all.size(); ++kept, ++looked) {
+      const auto update = log.missing(key, newest, all[kept].version);
       REQUIRE(update.has_value());
-      CHECK(update->from == all[held].version.seq);
+      CHECK(update->from == all[kept].version.seq);
       CHECK(update->to == newest);
       CHECK(update->digest == Digest{{7, 8}});
-      REQUIRE(update->edits.size() == all.size() - held - 1);
+      REQUIRE(update->edits.size() == all.size() - kept - 1);
       for (std::size_t i = 0; i < update->edits.size(); ++i) {
-        CHECK(update->edits[i].seq == all[held + 1 + i].version.seq);
-        CHECK(update->edits[i].edit == all[held + 1 + i].edit);
+        CHECK(update->edits[i].seq == all[kept + 1 + i].version.seq);
+        CHECK(update->edits[i].edit == all[kept + 1 + i].edit);
       }
     }
     const auto from_base = log.missing(key, newest, {});
@@ -84,17 +84,17 @@ TEST_CASE("a version that is not in the log, or too far behind, gets no edits", 
   Log log;
   const ChunkKey key{0, {0, 0, 0}};
   const auto all = log.of(key);
-  const Version newest = all.back().version, held = all[all.size() / 2].version;
-  REQUIRE(log.missing(key, newest, held).has_value());
+  const Version newest = all.back().version, kept = all[all.size() / 2].version;
+  REQUIRE(log.missing(key, newest, kept).has_value());
   CHECK_FALSE(
-      log.missing(key, newest, {held.epoch + 5, held.seq}).has_value());  // of another epoch
+      log.missing(key, newest, {kept.epoch + 5, kept.seq}).has_value());  // of another epoch
   for (const EditRecord& record : log.records) {  // an edit of the log, but not of this chunk
     const bool is_here = touches(record.edit, box_of(key.at, kSampleEdge));
     if (is_here || record.version.seq >= newest.seq) continue;
     CHECK_FALSE(log.missing(key, newest, record.version).has_value());
   }
   CHECK_FALSE(
-      log.missing(key, newest, held, 4).has_value());  // a snapshot of four bytes is shorter
-  // The log ends below what the chunk says: better a snapshot than too little.
-  CHECK_FALSE(log.missing(key, {newest.epoch, kEdits + 1}, held).has_value());
+      log.missing(key, newest, kept, 4).has_value());  // a snapshot of four bytes is shorter
+  // The log ends before the version of the chunk, so a snapshot is the only complete answer.
+  CHECK_FALSE(log.missing(key, {newest.epoch, kEdits + 1}, kept).has_value());
 }

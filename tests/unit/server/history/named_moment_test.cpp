@@ -1,4 +1,4 @@
-// Moments as people write them, and what they mean in a log.
+// Moments as users write them, and their sequences in a log.
 #include "server/history/named_moment.hpp"
 
 #include <catch2/catch.hpp>
@@ -37,7 +37,7 @@ TEST_CASE("moments are sequences, times in UTC and times before the end", "[hist
   CHECK(parsed("-90s") == NamedMoment(BeforeEnd{90 * kSecond}));
 }
 
-TEST_CASE("what is no moment is refused with what is one", "[history][moment]") {
+TEST_CASE("a text that is no moment is refused with examples of moments", "[history][moment]") {
   for (const char* text : {"",
                            "-",
                            "x",

@@ -1,4 +1,4 @@
-// The world at a sequence is what base and edits up to it say, voxel by voxel.
+// The world at a sequence equals the base with the edits up to it, voxel by voxel.
 #include "server/history/world_at.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ namespace {
 constexpr Sequence kEdits = 200;
 constexpr ChunkKey kImported{0, {1, 0, 0}};
 
-/// The chunks around (0, 0, 0), where the edits of these tests lie for the most part.
+/// The chunks around (0, 0, 0). Most edits of these tests are there.
 std::vector<ChunkKey> watched() {
   std::vector<ChunkKey> keys;
   for (int x = -1; x <= 1; ++x) {
@@ -29,7 +29,7 @@ std::vector<ChunkKey> watched() {
   return keys;
 }
 
-/// A world on disk and what the oracle knows of it.
+/// A world on disk, and its records for the oracle.
 struct History {
   TempFolder folder;
   std::vector<EditRecord> records;  // record i has sequence i + 1
@@ -81,7 +81,8 @@ bool oracle_touches(const EditDescriptor& edit, const VoxelBox& box) {
   return false;
 }
 
-/// Compares all watched chunks of `world`, which stands at `seq`, with what the oracle makes of base and edits.
+/// Compares all watched chunks of `world` at `seq` with those that the oracle makes from base and
+/// edits.
 void compare(const History& history, WorldAt& world, Sequence seq) {
   CAPTURE(seq);
   REQUIRE(world.at() == seq);
@@ -140,7 +141,7 @@ TEST_CASE("the world at a sequence is base and edits up to it", "[history]") {
   }
 }
 
-TEST_CASE("a world at a sequence goes on to later ones", "[history]") {
+TEST_CASE("a world at a sequence can move to later ones", "[history]") {
   History history(2);
   WorldAt world = history.at(0);
   for (const Sequence seq : {Sequence{3}, Sequence{3}, Sequence{30}, Sequence{66}, kEdits}) {
@@ -149,7 +150,7 @@ TEST_CASE("a world at a sequence goes on to later ones", "[history]") {
   }
 }
 
-TEST_CASE("a moment outside the log is refused, and what stands stays", "[history]") {
+TEST_CASE("a moment outside the log is refused, and the open one stays", "[history]") {
   History history(3);
   CHECK(refusal(WorldAt::open(*history.store, *history.generator, kEdits + 1)) ==
         "ends at seq=200, before seq=201");
@@ -161,7 +162,7 @@ TEST_CASE("a moment outside the log is refused, and what stands stays", "[histor
   compare(history, world, 30);
 }
 
-TEST_CASE("a compacted log tells the moments from its head on", "[history]") {
+TEST_CASE("a compacted log has the moments from its head on", "[history]") {
   History history(4);
   constexpr Sequence kHead = 50;
   std::vector<std::pair<ChunkKey, ChunkPtr>> completed;
@@ -183,7 +184,7 @@ TEST_CASE("a compacted log tells the moments from its head on", "[history]") {
         "seq=50");
 }
 
-TEST_CASE("a compaction beyond the moment is noticed, not mixed in", "[history]") {
+TEST_CASE("a compaction beyond the moment is an error", "[history]") {
   History history(5);
   WorldAt world = history.at(20);
   const ChunkKey key = kImported;
@@ -199,10 +200,10 @@ TEST_CASE("a compaction beyond the moment is noticed, not mixed in", "[history]"
   REQUIRE_FALSE(chunk.has_value());
   CHECK(chunk.error().what == compacted);
   CHECK(refusal(reading.advance(60)) == compacted);
-  CHECK(reading.chunk({0, {0, 0, 0}}).has_value());  // untouched by it
+  CHECK(reading.chunk({0, {0, 0, 0}}).has_value());  // the compaction did not touch it
 }
 
-TEST_CASE("reading the edits can be called off", "[history]") {
+TEST_CASE("reading the edits can be cancelled", "[history]") {
   const TempFolder folder;
   SplitMix64 rng(6);
   auto store = *create_world(folder.path(), sample_meta());
@@ -220,7 +221,7 @@ TEST_CASE("reading the edits can be called off", "[history]") {
   CHECK(seen == std::vector<Sequence>{1024, 2048});
 }
 
-TEST_CASE("a damaged edit is named, not left out", "[history][damage]") {
+TEST_CASE("a damaged edit is an error that names it", "[history][damage]") {
   History history(7);
   WorldAt world = history.at(5);
   raw_sql(history.folder / "world.sqlite",

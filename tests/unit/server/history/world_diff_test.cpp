@@ -1,4 +1,4 @@
-// What differs between two moments, and whose work it is, against a count voxel by voxel.
+// The differences between two moments and their authors, against a count voxel by voxel.
 #include "server/history/world_diff.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,7 +20,8 @@ struct Counted {
   std::uint64_t sum = 0;
 };
 
-/// Every chunk an edit may touch, every edit, every voxel: who changed it last, and does it differ?
+/// Counts by a walk over every voxel of every chunk that an edit may touch: the author of the last
+/// change, if it differs.
 Counted count_densely(const std::vector<EditRecord>& records, const Generator& generator,
                       Sequence from, Sequence to) {
   Counted counted;
@@ -73,7 +74,8 @@ TEST_CASE("a difference of two moments is that of their voxels, each with its la
     } while (touched_chunks(record.edit, kSampleEdge).size() > 4);
     record.op.author = rng.below(5);
   }
-  // Back and forth, by two authors: the last who changed a voxel, not the last who touched it.
+  // Two authors change a voxel in turn. The last change counts, not the last edit that touched the
+  // voxel.
   const auto last_five = std::span(records).last(5);
   for (std::size_t i = 0; i < 5; ++i) {
     last_five[i].edit = {FillBox{{{0, 0, 0}, {8, 8, 8}}}, {}, static_cast<Material>(i < 3 ? i : 2)};

@@ -1,4 +1,4 @@
-// The import of a whole foreign world against an independent reading of its every node.
+// The import of a whole Luanti world against an independent reader of every node.
 #include "server/import/import_luanti.hpp"
 
 #include <sqlite3.h>
@@ -30,8 +30,8 @@ void each_block(const std::string& folder,
   sqlite3_stmt* rows = nullptr;
   REQUIRE(sqlite3_prepare_v2(db, "SELECT pos, data FROM blocks", -1, &rows, nullptr) == SQLITE_OK);
   while (sqlite3_step(rows) == SQLITE_ROW) {
-    // pos = z * 4096^2 + y * 4096 + x with -2048 <= x, y, z < 2048, solved by shifting all three to be
-    // positive.
+    // pos = z * 4096^2 + y * 4096 + x with -2048 <= x, y, z < 2048, solved by shifting all three to
+    // be positive.
     const std::int64_t shifted =
         sqlite3_column_int64(rows, 0) + 2048 * (std::int64_t{1} + 4096 + 4096 * 4096);
     const ChunkCoord at{static_cast<std::int32_t>(shifted % 4096 - 2048),
@@ -89,7 +89,7 @@ Imported import(const std::string& folder, std::int32_t edge, bool keep_all = fa
   return out;
 }
 
-/// Nodes whose voxel is not what it should be. `skip` names blocks that must have become empty.
+/// Returns the number of nodes with a wrong voxel. `skip` names blocks that must have become empty.
 std::uint64_t wrong_voxels(const Imported& world, const std::string& folder, bool keep_all,
                            const std::function<bool(ChunkCoord)>& skip = {}) {
   const MaterialTable& table = world.report.materials;
@@ -98,7 +98,7 @@ std::uint64_t wrong_voxels(const Imported& world, const std::string& folder, boo
   const auto expected = [&](const std::string& name) {
     const auto known = ids.find(name);
     if (known != ids.end()) return known->second;
-    // By its kind, what is thin has no voxel; said here in this test's own words.
+    // A thin node has no voxel. This list does not come from the importer.
     bool there = name != "air" && name != "ignore";
     for (const char* thin : {"default:grass_", "default:dry_grass_", "default:marram_grass_",
                              "flowers:", "farming:"}) {
@@ -151,7 +151,7 @@ TEST_CASE("plants are imported when asked for", "[server][import]") {
   CHECK(world.report.voxels[*tulip] == 6);
 }
 
-TEST_CASE("the node check tells one wrong voxel", "[server][import]") {
+TEST_CASE("the node check detects one wrong voxel", "[server][import]") {
   Imported world = import(kWorld, 32);
   RunChunk& chunk = world.chunks.begin()->second;
   REQUIRE(fill(chunk, 1234, 1, chunk.runs.material(find_run(chunk, 1234)) == 1 ? 2 : 1));
@@ -167,7 +167,7 @@ TEST_CASE("materials are numbered by name, whatever the edge", "[server][import]
   for (std::size_t i = 1; i < rows.size(); ++i) CHECK(rows[i].visibility != Visibility::empty);
 }
 
-TEST_CASE("one stands on the middle of an imported world", "[server][import]") {
+TEST_CASE("the spawn is on top of the middle of an imported world", "[server][import]") {
   const Imported world = import(kWorld, 32);
   const VoxelPos spawn = world.report.spawn;
   CHECK(spawn.x == 0);
@@ -229,7 +229,7 @@ TEST_CASE("a map with columns x, y and z imports like one with pos", "[server][i
   CHECK(a.chunks == b.chunks);
 }
 
-TEST_CASE("what is no map is refused with its name", "[server][import]") {
+TEST_CASE("a file that is no map is refused, and the error names it", "[server][import]") {
   const TempFolder folder;
   const LuantiImportSink sink{
       [](const MaterialTable&) {}, [](const ChunkKey&, RunChunk&&) { return true; }, {}};
@@ -246,7 +246,7 @@ TEST_CASE("what is no map is refused with its name", "[server][import]") {
   CHECK(other.error().what.find("not a Luanti map") != std::string::npos);
 }
 
-TEST_CASE("a sink that has enough ends the import", "[server][import]") {
+TEST_CASE("a sink that returns false ends the import", "[server][import]") {
   int chunks = 0;
   const LuantiImportSink sink{
       [](const MaterialTable&) {}, [&](const ChunkKey&, RunChunk&&) { return ++chunks < 3; }, {}};

@@ -1,4 +1,5 @@
-// A job alone: plans come from the test, the log's room and the author's rate are small.
+// A job without workers: the test makes the plans. The room of the log and the author's rate are
+// small.
 #include "server/rollback/restore_job.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,7 +37,7 @@ struct JobBench {
     order.selection = std::make_shared<const Selection>(std::move(selection));
     return order;
   }
-  /// `count` edits of a voxel each.
+  /// Returns `count` edits of one voxel each.
   RestoredChunk planned(const ChunkKey& key, int count) const {
     RestoredChunk chunk;
     chunk.key = key;
@@ -78,7 +79,7 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
     const std::size_t before = b.bench.environment.records.size();
     b.step();
     CHECK(b.bench.environment.records.size() == std::min<std::size_t>(before + room, 10));
-    b.step();  // full: nothing more goes in
+    b.step();  // the log is full
     CHECK(b.bench.environment.records.size() == std::min<std::size_t>(before + room, 10));
     if (b.job.state() == RestoreJob::State::applying)
       CHECK(b.job.progress().waits_for == "the log is full (log_queue_records)");
@@ -99,7 +100,7 @@ TEST_CASE("a job whose slice has more edits than the log has room for writes it 
   }
 }
 
-TEST_CASE("the rest of a chunk is planned again if somebody built there between two parts",
+TEST_CASE("the rest of a chunk is planned again if another player edits it between two parts",
           "[rollback]") {
   JobBench b;
   b.bench.environment.log_records_max = 2;
@@ -110,7 +111,7 @@ TEST_CASE("the rest of a chunk is planned again if somebody built there between 
   b.bench.edit(kBuilder, 1, kAtOrigin, 2);
   b.bench.server.commit(b.bench.now());
   b.write_log();
-  for (int i = 0; i < 2; ++i) {  // the other chunk goes on
+  for (int i = 0; i < 2; ++i) {  // the other chunk is written
     b.step();
     b.write_log();
   }
@@ -128,7 +129,7 @@ TEST_CASE("the rest of a chunk is planned again if somebody built there between 
   CHECK(b.job.progress().chunks_changed == 2);
 }
 
-TEST_CASE("a job that somebody pays for writes what their rate gives back", "[rollback]") {
+TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "[rollback]") {
   WorldConfig slow = config();
   slow.edits_per_second = 10;
   slow.edit_burst = 4;
@@ -138,10 +139,9 @@ TEST_CASE("a job that somebody pays for writes what their rate gives back", "[ro
   b.step();
   CHECK(b.job.progress().edits == 4);
   CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
-  b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket is one
+  b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket holds one edit
   REQUIRE(b.bench.environment.messages<Reject>(kBuilder, kEdge).size() == 1);
-  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason ==
-        RejectReason::rate_limited);
+  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason == RejectReason::rate_limited);
   SECTION("time gives it back") {
     b.bench.tick(200'000);
     b.job.step(b.bench.server, b.bench.now());

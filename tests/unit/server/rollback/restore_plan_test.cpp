@@ -1,4 +1,4 @@
-// Selections and plans from a world on disk, against every voxel's own history.
+// Selections and plans from a world on disk, against the history of every voxel.
 #include "server/rollback/restore_plan.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr AuthorId kAuthors = 3;
 
-/// Edits of three authors around a few chunks; mostly by players.
+/// Returns edits of three authors in a few chunks, most of them with cause player.
 std::vector<EditRecord> some_records(SplitMix64& rng, std::size_t count) {
   std::vector<EditRecord> records;
   for (Sequence seq = 1; seq <= count; ++seq) {
@@ -72,7 +72,7 @@ struct World {
     pin.name = "empty";
     generator = *make_generator(pin, meta.materials);
   }
-  /// Saves what some chunks are at some sequence, so that plans begin there.
+  /// Saves some chunks as they are at some sequence, so that plans begin there.
   void save_some_snapshots() {
     std::set<ChunkKey> keys;
     for (const EditRecord& record : records) {
@@ -89,7 +89,7 @@ struct World {
         chunks.emplace_back(key, std::make_shared<const Chunk>(*std::move(chunk)));
     }
     REQUIRE(store->save_snapshots(chunks, std::nullopt).has_value());
-    // And others as keyframes keep them, several of one chunk.
+    // It also saves rows of keyframes, several of one chunk.
     for (int moment = 0; moment < 3; ++moment) {
       std::map<ChunkKey, ChunkPtr> kept;
       const Sequence then = 1 + rng.below(static_cast<std::uint32_t>(records.size()));
@@ -112,7 +112,7 @@ struct World {
   std::vector<EditRecord> records;
 };
 
-/// The chunk now and restored, from each voxel's writers.
+/// Returns the chunk now and restored, from the writers of each voxel.
 std::pair<DenseChunk, DenseChunk> by_history(const World& world, const ChunkKey& key,
                                              const std::set<Sequence>& selected,
                                              const std::optional<VoxelBox>& box) {
@@ -152,7 +152,7 @@ DenseChunk pasted(const RunChunk& onto, VoxelPos origin,
 
 }  // namespace
 
-TEST_CASE("plans from the log equal each voxel's own history", "[rollback]") {
+TEST_CASE("plans from the log equal the history of each voxel", "[rollback]") {
   std::size_t with_box = 0, changed = 0, empty = 0;
   for (std::uint64_t seed = 1; seed <= 14; ++seed) {
     World world(seed + Catch::rngSeed());
@@ -220,7 +220,7 @@ TEST_CASE("careful pastes leave alone what was changed since the plan", "[rollba
     std::vector<Difference> differences;
     append_differences(now, restored, differences);
     const auto careful = careful_restore_pastes(now, differences, {0, 0, 0});
-    // Somebody builds with a material that the chunk did not have.
+    // Another player builds with a material that the chunk did not have.
     DenseChunk since = DenseChunk::of(now);
     EditDescriptor built = random_edit_near(rng, {0, 0, 0}, now.extent);
     if (!std::holds_alternative<Paste>(built.shape)) built.material = 77;
@@ -241,7 +241,7 @@ TEST_CASE("careful pastes leave alone what was changed since the plan", "[rollba
   }
 }
 
-TEST_CASE("what differs too much for one clipboard is pasted in parts", "[rollback]") {
+TEST_CASE("differences that are too large for one clipboard are pasted in parts", "[rollback]") {
   SplitMix64 rng(6);
   // Noise of many materials: more than a clipboard may hold.
   const RunChunk now = random_chunk(rng, Extent::cube(64), AxisOrder::zxy, 40'000, Shape::noise);

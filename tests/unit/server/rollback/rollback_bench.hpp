@@ -1,5 +1,5 @@
-// DeskBench: a world strand over a world on disk, and a rollback desk, with nothing that runs by itself: the
-// test says when the log is written, when a worker works and when a tick comes.
+// RollbackBench: a world strand over a world on disk, and a rollback service. The test decides when
+// the log is written, when a worker runs and when a tick comes.
 #pragma once
 #include <catch2/catch.hpp>
 #include <deque>
@@ -17,10 +17,10 @@
 
 namespace runstone::test {
 
-class DeskBench : public RollbackService::Workers {
+class RollbackBench : public RollbackService::Workers {
  public:
-  explicit DeskBench(WorldConfig c = config())
-      : bench(std::move(c)), desk(bench.server, *this, [this](std::span<std::uint8_t> out) {
+  explicit RollbackBench(WorldConfig c = config())
+      : bench(std::move(c)), service(bench.server, *this, [this](std::span<std::uint8_t> out) {
           for (auto& byte : out) byte = static_cast<std::uint8_t>(++random_);
         }) {
     WorldMeta meta = sample_meta();
@@ -31,13 +31,13 @@ class DeskBench : public RollbackService::Workers {
     GeneratorPin pin;
     pin.name = "empty";
     generator = *make_generator(pin, meta.materials);
-    bench.has_empty_base = true;  // as the generator makes it
+    bench.has_empty_base = true;  // the generator makes empty chunks
   }
 
   void run(Work work, std::function<void(std::string)> then) override {
     works.emplace_back(std::move(work), std::move(then));
   }
-  /// One piece of work; false if there is none.
+  /// Does one piece of work. Returns false if there is none.
   bool work() {
     if (works.empty()) return false;
     auto [job, then] = std::move(works.front());
@@ -47,7 +47,7 @@ class DeskBench : public RollbackService::Workers {
     return true;
   }
 
-  /// What was ordered goes to disk.
+  /// Writes the ordered edits to disk.
   void write_log() {
     bench.server.commit(bench.now());
     auto& records = bench.environment.records;
@@ -62,32 +62,31 @@ class DeskBench : public RollbackService::Workers {
   }
   void tick() {
     bench.tick();
-    desk.tick(bench.now());
+    service.tick(bench.now());
   }
-  /// Until nothing is under way.
-  void settle() {
+  /// Works and ticks until nothing is under way.
+  void run_all() {
     for (int i = 0; i < 2000; ++i) {
       write_log();
       tick();
-      while (work()) desk.tick(bench.now());
-      if (works.empty() && desk.running() == 0 && written == bench.environment.records.size() &&
-          i > 2)
+      while (work()) service.tick(bench.now());
+      if (works.empty() && service.running() == 0 && written == bench.environment.records.size() && i > 2)
         return;
     }
-    FAIL("the desk does not come to rest");
+    FAIL("the service does not come to rest");
   }
 
   CommandReply reply() {
-    return [this](const DeskAnswer& answer) { answers.push_back(answer); };
+    return [this](const CommandAnswer& answer) { answers.push_back(answer); };
   }
-  /// The last answer to what was asked; it must be there.
-  DeskAnswer answer() {
+  /// Returns the last answer to the command. Requires that there is one.
+  CommandAnswer answer() {
     REQUIRE_FALSE(answers.empty());
     REQUIRE(answers.back().is_done);
     return answers.back();
   }
 
-  /// A session that sees the first chunks, and edits.
+  /// Opens a session that sees the first chunks.
   AuthorId join(SessionId session) {
     const AuthorId author = bench.join(session, static_cast<std::uint8_t>(session)).author;
     bench.view(session, View{{0, 0, 0}, 4, 1});
@@ -109,7 +108,7 @@ class DeskBench : public RollbackService::Workers {
     REQUIRE(chunk != nullptr);
     return material_at(chunk->voxels, local_of(p, kEdge));
   }
-  /// Digest of each edited chunk in memory.
+  /// Returns the digest of each edited chunk in memory.
   std::vector<std::pair<ChunkKey, Digest>> digests() {
     std::vector<std::pair<ChunkKey, Digest>> out;
     for (const auto& [key, chunk] : bench.server.edited_chunks()) {
@@ -123,7 +122,7 @@ class DeskBench : public RollbackService::Workers {
   std::unique_ptr<Generator> generator;
   WorldBench bench;
   std::deque<std::pair<Work, std::function<void(std::string)>>> works;
-  std::vector<DeskAnswer> answers;
+  std::vector<CommandAnswer> answers;
   std::map<SessionId, ClientSequence> client_seq;
   std::size_t written = 0;
 
@@ -131,7 +130,7 @@ class DeskBench : public RollbackService::Workers {
   std::uint64_t random_ = 0;
 
  public:
-  RollbackService desk;
+  RollbackService service;
 };
 
 }  // namespace runstone::test

@@ -15,8 +15,8 @@ SelectionFilter of_author(AuthorId author) {
   return filter;
 }
 
-/// The builder's house, then the griefer all over it.
-struct Night : DeskBench {
+/// A builder makes a house. Then a griefer edits all over it.
+struct Night : RollbackBench {
   Night() {
     griefer = join(kGriefer);
     builder = join(kBuilder);
@@ -26,8 +26,8 @@ struct Night : DeskBench {
     write_log();
   }
   std::string preview_id() {
-    desk.preview(of_author(griefer), bench.now(), reply());
-    settle();
+    service.preview(of_author(griefer), bench.now(), reply());
+    run_all();
     REQUIRE(answer().is_ok);
     const std::string text = answer().text;
     REQUIRE(text.starts_with("preview p"));
@@ -39,7 +39,7 @@ struct Night : DeskBench {
 
 }  // namespace
 
-TEST_CASE("a rollback gives the world back as it was, and its undo takes that back", "[rollback]") {
+TEST_CASE("a rollback restores the world, and its undo restores the edits", "[rollback]") {
   Night night;
   const auto griefed = night.digests();
   const std::string id = night.preview_id();
@@ -47,8 +47,8 @@ TEST_CASE("a rollback gives the world back as it was, and its undo takes that ba
   CHECK(night.answer().text.find("6400 voxels in 16 chunks") != std::string::npos);
   CHECK(night.answer().text.find("nothing has changed yet") != std::string::npos);
   CHECK(night.digests() == griefed);
-  night.desk.apply(id, 0, night.reply());
-  night.settle();
+  night.service.apply(id, 0, night.reply());
+  night.run_all();
   CHECK(night.answer().is_ok);
   CHECK(night.digests() == night.before);
   const EditRecord first = night.bench.environment.records[2];
@@ -59,59 +59,59 @@ TEST_CASE("a rollback gives the world back as it was, and its undo takes that ba
   CHECK(night.bench.environment.records.back().op.instance == first.op.instance);
 
   SECTION("by the sequence of its first edit") {
-    night.desk.undo_rollback("3", 0, night.bench.now(), night.reply());
-    night.settle();
+    night.service.undo_rollback("3", 0, night.bench.now(), night.reply());
+    night.run_all();
     CHECK(night.answer().is_ok);
     CHECK(night.digests() == griefed);
     CHECK(night.bench.environment.records.back().cause == Cause::undo);
-    night.desk.list(night.reply());
-    night.settle();
+    night.service.list(night.reply());
+    night.run_all();
     CHECK(night.answer().text.find("rollback 3 ") == 0);
     CHECK(night.answer().text.find("taken back by 19") != std::string::npos);
-    // The undo is a group of its own, and can be taken back in turn.
-    night.desk.undo_rollback("19", 0, night.bench.now(), night.reply());
-    night.settle();
+    // The undo is a group too, and can be undone.
+    night.service.undo_rollback("19", 0, night.bench.now(), night.reply());
+    night.run_all();
     CHECK(night.digests() == night.before);
   }
   SECTION("by the preview's id") {
-    night.desk.undo_rollback(id, 0, night.bench.now(), night.reply());
-    night.settle();
+    night.service.undo_rollback(id, 0, night.bench.now(), night.reply());
+    night.run_all();
     CHECK(night.digests() == griefed);
   }
   SECTION("not by an edit within") {
-    night.desk.undo_rollback("4", 0, night.bench.now(), night.reply());
-    night.settle();
+    night.service.undo_rollback("4", 0, night.bench.now(), night.reply());
+    night.run_all();
     CHECK_FALSE(night.answer().is_ok);
     CHECK(night.answer().text.find("no rollback begins there") != std::string::npos);
     CHECK(night.digests() == night.before);
   }
   SECTION("a second rollback of the same edits says that nothing is left") {
-    night.desk.preview(of_author(night.griefer), night.bench.now(), night.reply());
-    night.settle();
+    night.service.preview(of_author(night.griefer), night.bench.now(), night.reply());
+    night.run_all();
     CHECK(night.answer().text.find("nothing to do: 1 edit match, but nothing of them is left") !=
           std::string::npos);
   }
 }
 
-TEST_CASE("a rollback of nobody says so", "[rollback]") {
+TEST_CASE("a rollback that matches no edit answers so", "[rollback]") {
   Night night;
-  night.desk.preview(of_author(99), night.bench.now(), night.reply());
-  night.settle();
+  night.service.preview(of_author(99), night.bench.now(), night.reply());
+  night.run_all();
   CHECK(night.answer().is_ok);
   CHECK(night.answer().text == "rollback preview: nothing to do: no edit matches");
-  night.desk.apply("p1", 0, night.reply());
+  night.service.apply("p1", 0, night.reply());
   CHECK_FALSE(night.answer().is_ok);
   CHECK(night.answer().text.find("there is no preview \"p1\"") != std::string::npos);
 }
 
-TEST_CASE("what others build during a rollback stands", "[rollback]") {
+TEST_CASE("edits of other players during a rollback stay", "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
-  night.desk.apply(id, 0, night.reply());
-  // The builder builds in every chunk again and again, before, between and behind plan and slice.
+  night.service.apply(id, 0, night.reply());
+  // The builder builds in every chunk before, between and after plan and slice.
   std::set<VoxelPos> built;
   int step = 0;
-  while (night.desk.running() > 0 || step < 4) {
+  while (night.service.running() > 0 || step < 4) {
     REQUIRE(step < 400);
     const auto build = [&](int salt) {
       const VoxelPos p{-20 + (step * 7 + salt * 3) % 40, (step + salt) % 4,
@@ -128,7 +128,7 @@ TEST_CASE("what others build during a rollback stands", "[rollback]") {
     night.tick();
     ++step;
   }
-  night.settle();
+  night.run_all();
   CHECK(night.answer().is_ok);
   for (int z = -20; z < 20; ++z) {
     for (int y = 0; y < 4; ++y) {
@@ -143,18 +143,17 @@ TEST_CASE("what others build during a rollback stands", "[rollback]") {
   }
 }
 
-TEST_CASE("a chunk that somebody changes before every slice is restored by masked edits",
-          "[rollback]") {
+TEST_CASE("a chunk that changes before every slice is restored by masked edits", "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
-  night.desk.apply(id, 0, night.reply());
+  night.service.apply(id, 0, night.reply());
   int blinks = 0;
-  while (night.desk.running() > 0) {
+  while (night.service.running() > 0) {
     REQUIRE(++blinks < 200);
     night.write_log();
     while (night.work()) {
     }
-    // One voxel on, off, on in every chunk, so that no plan ever fits.
+    // One voxel of every chunk changes again and again, so that no plan ever fits.
     for (int x = -20; x < 20; x += 13) {
       for (int z = -20; z < 20; z += 13)
         night.set(kBuilder, {x, 0, z}, static_cast<Material>(3 + blinks % 2));
@@ -173,23 +172,23 @@ TEST_CASE("a chunk that somebody changes before every slice is restored by maske
   CHECK(is_masked);
 }
 
-TEST_CASE("a rollback waits while the log is full, and says when it cannot be written",
+TEST_CASE("a rollback waits while the log is full, and fails if it cannot be written",
           "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
   const std::size_t ordered = night.bench.environment.records.size();
   night.bench.environment.log_room = false;
-  night.desk.apply(id, 0, night.reply());
+  night.service.apply(id, 0, night.reply());
   for (int i = 0; i < 20; ++i) {
     night.tick();
     while (night.work()) {
     }
   }
   CHECK(night.bench.environment.records.size() == ordered);
-  CHECK(night.desk.running() == 1);
+  CHECK(night.service.running() == 1);
   SECTION("room again") {
     night.bench.environment.log_room = true;
-    night.settle();
+    night.run_all();
     CHECK(night.answer().is_ok);
     CHECK(night.digests() == night.before);
   }
@@ -199,12 +198,12 @@ TEST_CASE("a rollback waits while the log is full, and says when it cannot be wr
     CHECK_FALSE(night.answer().is_ok);
     CHECK(night.answer().text.find("failed after 0 of 16 chunks") != std::string::npos);
     CHECK(night.answer().text.find("its log cannot be written") != std::string::npos);
-    CHECK(night.desk.running() == 0);
-    night.desk.undo(night.builder, night.bench.now(), night.reply());
+    CHECK(night.service.running() == 0);
+    night.service.undo(night.builder, night.bench.now(), night.reply());
     CHECK_FALSE(night.answer().is_ok);
   }
   SECTION("cancelled") {
-    night.desk.cancel(id, night.reply());
+    night.service.cancel(id, night.reply());
     night.tick();
     CHECK_FALSE(night.answer().is_ok);
     CHECK(night.answer().text.find("was cancelled after 0 of 16 chunks") != std::string::npos);
@@ -217,7 +216,7 @@ TEST_CASE(
     "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
-  night.desk.apply(id, 0, night.reply());
+  night.service.apply(id, 0, night.reply());
   night.tick();
   REQUIRE_FALSE(night.works.empty());
   night.bench.server.log_failed();
@@ -226,54 +225,54 @@ TEST_CASE(
   while (night.work()) {
   }
   night.tick();
-  CHECK(night.desk.running() == 0);
+  CHECK(night.service.running() == 0);
   CHECK(night.works.empty());
 }
 
-TEST_CASE("a rollback that is cancelled midway can be taken back", "[rollback]") {
+TEST_CASE("a rollback that is cancelled midway can be undone", "[rollback]") {
   Night night;
   const auto griefed = night.digests();
   // More chunks than a slice has.
   night.fill(kGriefer, {{-60, 0, -60}, {60, 1, 60}}, 1);
   night.write_log();
   const std::string id = night.preview_id();
-  night.desk.apply(id, 0, night.reply());
+  night.service.apply(id, 0, night.reply());
   night.tick();
   while (night.work()) {
   }
   night.tick();
-  night.desk.cancel(id, night.reply());
-  night.settle();
+  night.service.cancel(id, night.reply());
+  night.run_all();
   CHECK_FALSE(night.answer().is_ok);
   CHECK(night.answer().text.find(
             "was cancelled after 16 of 64 chunks; `rollback undo 4` takes it back") !=
         std::string::npos);
-  night.desk.undo_rollback(id, 0, night.bench.now(), night.reply());
-  night.settle();
+  night.service.undo_rollback(id, 0, night.bench.now(), night.reply());
+  night.run_all();
   CHECK(night.answer().is_ok);
   CHECK(night.at({-19, 3, -19}) == 1);
   CHECK(night.at({-59, 0, 1}) == 1);
 }
 
 TEST_CASE("players undo and redo their own edits, and nobody else's", "[rollback][undo]") {
-  DeskBench bench;
+  RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);
   const AuthorId ben = bench.join(kGriefer);
   const auto undo = [&](AuthorId who) {
-    bench.desk.undo(who, bench.bench.now(), bench.reply());
-    bench.settle();
+    bench.service.undo(who, bench.bench.now(), bench.reply());
+    bench.run_all();
     return bench.answer().is_ok;
   };
   const auto redo = [&](AuthorId who) {
-    bench.desk.redo(who, bench.bench.now(), bench.reply());
-    bench.settle();
+    bench.service.redo(who, bench.bench.now(), bench.reply());
+    bench.run_all();
     return bench.answer().is_ok;
   };
   CHECK_FALSE(undo(ana));
   CHECK(bench.answer().text == "nothing to undo");
   bench.fill(kBuilder, {{0, 0, 0}, {4, 4, 4}}, 1);
   bench.fill(kBuilder, {{2, 0, 0}, {6, 4, 4}}, 2);  // overlaps
-  bench.set(kGriefer, {5, 0, 0}, 3);                // over ana's second
+  bench.set(kGriefer, {5, 0, 0}, 3);                // over ana's second edit
   CHECK(undo(ana));
   CHECK(bench.answer().text == "undo: 63 voxels in 1 chunk");
   CHECK(bench.at({3, 1, 1}) == 1);
@@ -293,69 +292,68 @@ TEST_CASE("players undo and redo their own edits, and nobody else's", "[rollback
   CHECK(bench.at({5, 0, 0}) == 3);
   CHECK_FALSE(redo(ana));
   CHECK(undo(ben));
-  CHECK(bench.at({5, 0, 0}) == 2);  // what was there before ben
+  CHECK(bench.at({5, 0, 0}) == 2);  // as it was before ben's edit
   CHECK(undo(ana));
   bench.set(kBuilder, {9, 9, 9}, 4);
-  CHECK_FALSE(redo(ana));  // something new was built since
+  CHECK_FALSE(redo(ana));  // there is a newer edit
   CHECK(bench.answer().text == "nothing to redo");
 }
 
-TEST_CASE("an undo of what others have built over entirely passes on to the one before",
-          "[rollback][undo]") {
-  DeskBench bench;
+TEST_CASE("an undo skips an edit that others have built over entirely", "[rollback][undo]") {
+  RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);
   bench.join(kGriefer);
   bench.set(kBuilder, {1, 1, 1}, 1);
   bench.set(kBuilder, {2, 2, 2}, 1);
   bench.set(kGriefer, {2, 2, 2}, 2);
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(bench.at({1, 1, 1}) == kEmpty);
   CHECK(bench.at({2, 2, 2}) == 2);
 }
 
-TEST_CASE("one undo of a player at a time; it waits until the edit is on disk",
+TEST_CASE("a player has one undo at a time, and it waits until the edit is on disk",
           "[rollback][undo]") {
-  DeskBench bench;
+  RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);
   bench.set(kBuilder, {1, 1, 1}, 1);
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
   bench.tick();
-  CHECK(bench.works.empty());  // the log does not have it yet
+  CHECK(bench.works.empty());  // the edit is not durable yet
   bench.write_log();
   bench.tick();
   CHECK(bench.works.size() == 1);
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
   CHECK_FALSE(bench.answer().is_ok);
   CHECK(bench.answer().text == "undo: one of yours is still under way");
-  bench.settle();
+  bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(bench.at({1, 1, 1}) == kEmpty);
 }
 
-TEST_CASE("a rollback goes on where the log holds fewer edits than a slice has", "[rollback]") {
+TEST_CASE("a rollback continues if the log has room for fewer edits than a slice", "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
   night.bench.environment.log_records_max = 3;
-  night.desk.apply(id, 0, night.reply());
-  night.settle();
+  night.service.apply(id, 0, night.reply());
+  night.run_all();
   CHECK(night.answer().is_ok);
   CHECK(night.digests() == night.before);
 }
 
-TEST_CASE("undo and redo cost of the player's edits a second, and say when they wait for them",
+TEST_CASE("undo and redo count against the player's edit rate, and report when they wait for it",
           "[rollback][undo]") {
   WorldConfig slow = config();
   slow.edits_per_second = 10;
   slow.edit_burst = 21;
-  DeskBench bench(slow);
+  RollbackBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.join(kGriefer);
   bench.fill(kBuilder, kGrief,
-             1);  // in 16 chunks: a token for each, then as many pastes, two tokens each
+             1);  // 16 chunks cost a token each; the 16 pastes cost two tokens each
   bench.write_log();
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
   bench.tick();
   while (bench.work()) bench.tick();
   while (bench.work()) bench.tick();
@@ -370,73 +368,74 @@ TEST_CASE("undo and redo cost of the player's edits a second, and say when they 
         RejectReason::rate_limited);
   bench.set(kGriefer, {0, 9, 0}, 1);
   CHECK(bench.bench.environment.messages<Reject>(kGriefer, kEdge).empty());
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
   CHECK(bench.answers.back().text.find(
             "one of yours is still under way, and waits: the author's edits") != std::string::npos);
-  bench.desk.list(bench.reply());
+  bench.service.list(bench.reply());
   bench.work();
   CHECK(bench.answers.back().text.find("(waits: the author's edits per second are used up") !=
         std::string::npos);
-  const std::size_t told = bench.answers.size();
+  const std::size_t answers_before = bench.answers.size();
   const TimeUs began = bench.bench.time_us;
-  bench.settle();
+  bench.run_all();
   CHECK(bench.answer().text == "undo: 6400 voxels in 16 chunks");
-  CHECK(bench.answers.size() == told + 1);  // it says once that it waits
+  CHECK(bench.answers.size() == answers_before + 1);  // it reports once that it waits
   CHECK(bench.bench.time_us - began >= 1'500'000);
   CHECK(bench.at({-1, 0, 0}) == kEmpty);
 }
 
-TEST_CASE("a rollback costs nobody's edits a second", "[rollback]") {
+TEST_CASE("a rollback counts against no edit rate", "[rollback]") {
   WorldConfig slow = config();
   slow.edits_per_second = 1;
-  slow.edit_burst = 17;  // a fill of 16 chunks, and one edit
-  DeskBench bench(slow);
+  slow.edit_burst = 17;  // a fill of 16 chunks, and one more edit
+  RollbackBench bench(slow);
   const AuthorId ana = bench.join(kBuilder);
   bench.fill(kBuilder, kGrief, 1);
   bench.write_log();
-  bench.desk.preview(of_author(ana), bench.bench.now(), bench.reply());
-  bench.settle();
-  bench.desk.apply("p1", ana, bench.reply());
+  bench.service.preview(of_author(ana), bench.bench.now(), bench.reply());
+  bench.run_all();
+  bench.service.apply("p1", ana, bench.reply());
   const TimeUs began = bench.bench.time_us;
-  bench.settle();
+  bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(bench.bench.time_us - began < 1'000'000);
   bench.set(kBuilder, {0, 9, 0}, 1);
   CHECK(bench.bench.environment.messages<Reject>(kBuilder, kEdge).empty());
 }
 
-TEST_CASE("the undos of one run are one client instance of each author, and no rollbacks",
+TEST_CASE("the undos of one run share one client instance for each author, and are no rollbacks",
           "[rollback][undo]") {
-  DeskBench bench;
+  RollbackBench bench;
   const AuthorId ana = bench.join(kBuilder);
   const AuthorId ben = bench.join(kGriefer);
   for (int i = 0; i < 3; ++i) bench.set(kBuilder, {i, 0, 0}, 1);
   bench.set(kGriefer, {0, 5, 0}, 1);
   const auto last = [&] { return bench.bench.environment.records.back(); };
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   const EditRecord first = last();
   CHECK(first.op.seq == 2);
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(last().op == OperationId{ana, first.op.instance, 3});
-  bench.desk.redo(ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.redo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(last().op == OperationId{ana, first.op.instance, 4});
-  bench.desk.undo(ben, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(ben, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(last().op == OperationId{ben, first.op.instance, 2});
 
-  bench.desk.undo_rollback(std::to_string(first.version.seq), 0, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo_rollback(std::to_string(first.version.seq), 0, bench.bench.now(),
+                              bench.reply());
+  bench.run_all();
   CHECK_FALSE(bench.answer().is_ok);
   CHECK(bench.answer().text.find("no rollback begins there") != std::string::npos);
 
-  // A client of hers that comes under that instance pushes the numbers up, no more.
+  // A client of hers with the same instance only raises the sequence numbers.
   bench.bench.join(9, static_cast<std::uint8_t>(kBuilder), first.op.instance);
   bench.bench.edit(9, 1000, SetVoxel{{9, 9, 9}});
-  bench.desk.undo(ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(bench.answer().is_ok);
   CHECK(last().op == OperationId{ana, first.op.instance, 1001});
 }

@@ -1,4 +1,5 @@
-// A log whose beginning was compacted into the base goes on where it was, and base and log never overlap.
+// A log whose beginning was compacted into the base continues where it was, and base and log never
+// overlap.
 #include <catch2/catch.hpp>
 
 #include "server/store/sqlite_store.hpp"
@@ -14,7 +15,8 @@ namespace {
 
 constexpr ChunkKey kKey{0, {1, 0, -3}};
 
-/// A closed world of `count` edits with an imported chunk at kKey; returns the last edit.
+/// Makes a world of `count` edits with an imported chunk at kKey, and closes it. Returns the last
+/// edit.
 EditRecord make_world(const std::string& folder, SplitMix64& rng, std::size_t count) {
   auto store = *create_world(folder, sample_meta());
   const std::vector<std::pair<ChunkKey, ChunkPtr>> base = {{kKey, sample_chunk(rng, {})}};
@@ -108,7 +110,8 @@ TEST_CASE("a base chunk is only ever replaced by a newer one", "[store]") {
 
 TEST_CASE("a log that does not fit its head is noticed", "[store][damage]") {
   SplitMix64 rng(5);
-  /// Where log_range() finds the damage after `sql` was done to a world compacted up to 7 of 12 edits.
+  /// Returns the place of the damage that log_range() finds after `sql` ran on a world of 12 edits,
+  /// compacted up to edit 7.
   const auto where = [&](const std::string& sql) {
     const TempFolder folder;
     make_world(folder.path(), rng, 7);

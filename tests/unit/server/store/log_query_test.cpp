@@ -1,5 +1,5 @@
-// Questions to the log against a naive scan of it, in worlds that grew in many small commits, were opened
-// again, upgraded from format 1, compacted, or damaged.
+// Queries of the log against a naive scan of it, in worlds that grew in many small commits, were
+// opened again, compacted or damaged.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -16,7 +16,7 @@ using namespace runstone::test;
 
 namespace {
 
-/// Builders' edits with some boxes, spheres, rollbacks and console edits among them.
+/// Returns builders' edits with some boxes, spheres, rollbacks and console edits among them.
 std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
   BuilderSession session(seed, 5);
   SplitMix64 rng(seed);
@@ -31,7 +31,7 @@ std::vector<EditRecord> mixed_records(std::uint64_t seed, std::size_t count) {
   return records;
 }
 
-/// Commits of 1 to 40 records, three connect_count.
+/// Writes the records in commits of 1 to 40, and opens the world three times.
 void make_world(const std::string& folder, std::vector<EditRecord>& records, SplitMix64& rng) {
   REQUIRE(create_world(folder, sample_meta()).has_value());
   std::size_t done = 0;
@@ -88,7 +88,7 @@ std::vector<EditRecord> ask(Store& store, const LogQuery& query) {
   return found;
 }
 
-/// Returns how many questions had an answer.
+/// Returns the number of queries that found a record.
 std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitMix64& rng,
                     int questions) {
   std::size_t answered = 0;
@@ -105,19 +105,9 @@ std::size_t compare(Store& store, const std::vector<EditRecord>& records, SplitM
   return answered;
 }
 
-/// Takes from a closed world what formats 2 and 3 added.
-void back_to_format_1(const std::string& file) {
-  REQUIRE(
-      raw_sql(file,
-              "DROP INDEX edit_log_author; DROP INDEX edit_log_cause; DROP TABLE log_box; DROP "
-              "TABLE keyframe; "
-              "DROP TABLE keyframe_chunk; PRAGMA user_version=1; PRAGMA wal_checkpoint(TRUNCATE)")
-          .find("ERROR") == std::string::npos);
-}
-
 }  // namespace
 
-TEST_CASE("questions to the log have the answers of a naive scan", "[store][query]") {
+TEST_CASE("queries of the log find the same records as a naive scan", "[store][query]") {
   const TempFolder folder;
   SplitMix64 rng(1);
   auto records = mixed_records(1, 1500);
@@ -131,27 +121,7 @@ TEST_CASE("questions to the log have the answers of a naive scan", "[store][quer
   CHECK(seen == 7);
 }
 
-TEST_CASE("a world of format 1 gets its indexes when it is opened for writing", "[store][query]") {
-  const TempFolder folder;
-  SplitMix64 rng(2);
-  auto records = mixed_records(2, 600);
-  make_world(folder.path(), records, rng);
-  const std::string file = folder / "world.sqlite";
-  back_to_format_1(file);
-  {
-    auto reader = *open_world(folder.path(), StoreAccess::read_only);
-    CHECK(reader->check().has_value());
-    const auto asked = reader->query_log({}, [](const EditRecord&) { return true; });
-    REQUIRE_FALSE(asked.has_value());
-    CHECK(asked.error().kind == StoreError::Kind::bad_request);
-  }
-  auto store = *open_world(folder.path(), StoreAccess::read_write);
-  CHECK(raw_sql(file, "PRAGMA user_version") == "4");
-  CHECK(compare(*store, records, rng, 100) > 30);
-  CHECK(store->check().has_value());
-}
-
-TEST_CASE("questions reach no further back than the log", "[store][query]") {
+TEST_CASE("queries reach no further back than the log", "[store][query]") {
   const TempFolder folder;
   SplitMix64 rng(3);
   auto records = mixed_records(3, 300);
@@ -189,7 +159,7 @@ TEST_CASE("a commit that was refused leaves the segments as they were", "[store]
   REQUIRE(store->append({}, std::span(records).first(20)).has_value());
   const PlayerRow one = sample_player(1);
   PlayerRow other = sample_player(2);
-  other.key = one.key;  // refused by the table, after nothing or everything else went in
+  other.key = one.key;  // the table refuses a second player with that key
   CHECK_FALSE(store->append(std::vector<PlayerRow>{one, other}, std::span(records).subspan(20))
                   .has_value());
   CHECK(store->check().has_value());

@@ -76,7 +76,7 @@ TEST_CASE("everything that queued during one commit goes into the next", "[store
   std::vector<Sequence> durable;
   LogWriter writer(sink, {[&](Sequence seq) { durable.push_back(seq); }, {}, {}});
   writer.append({}, sample_records(rng, 1, 1, 1));
-  sink.entered.acquire();  // the first commit is "on its way to the disk"
+  sink.entered.acquire();  // the first commit is being written
   for (Sequence seq = 2; seq <= 10; ++seq)
     writer.append({sample_player(static_cast<AuthorId>(seq))}, sample_records(rng, 1, seq, 1));
   CHECK(writer.counters().queued_records == 10);
@@ -111,7 +111,7 @@ TEST_CASE("a group ends before its limit, and a batch is never divided", "[store
   CHECK(sizes == std::vector<std::size_t>{1, 10, 25, 1});
 }
 
-TEST_CASE("a full queue says so until a commit has made room", "[store][log-writer]") {
+TEST_CASE("a full queue has no room until a commit is done", "[store][log-writer]") {
   FakeSink sink;
   SplitMix64 rng(3);
   LogWriter::Limits limits;
@@ -122,7 +122,7 @@ TEST_CASE("a full queue says so until a commit has made room", "[store][log-writ
   CHECK_FALSE(writer.has_room(9));
   writer.append({}, sample_records(rng, 1, 1, 3));
   sink.entered.acquire();
-  CHECK(writer.has_room(5));  // what is being written still takes room
+  CHECK(writer.has_room(5));  // the batch that is being written still takes room
   CHECK_FALSE(writer.has_room(6));
   writer.append({}, sample_records(rng, 1, 4, 5));
   CHECK(writer.has_room(0));
@@ -145,7 +145,7 @@ TEST_CASE("players without records are written, and take the room of one record 
   LogWriter::Limits limits;
   limits.queued_records_max = 2;
   LogWriter writer(sink, {}, limits);
-  writer.append({}, {});  // nothing: takes no room and makes no commit
+  writer.append({}, {});  // an empty batch takes no room and makes no commit
   CHECK(writer.has_room(2));
   writer.append({sample_player(1), sample_player(2)}, {});
   sink.entered.acquire();
@@ -153,7 +153,7 @@ TEST_CASE("players without records are written, and take the room of one record 
   writer.append({sample_player(3)}, {});
   CHECK_FALSE(writer.has_room(1));
   sink.open_gate();
-  sink.entered.acquire();  // the second commit: the first one's room is free again
+  sink.entered.acquire();  // the second commit has begun, so the room of the first one is free
   CHECK(writer.has_room(1));
   writer.stop();
   REQUIRE(sink.commits.size() == 2);
@@ -178,7 +178,7 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
                     {}},
                    limits);
   REQUIRE(writer.save_snapshots(chunks(10), 77));
-  sink.entered.acquire();  // in the first slice
+  sink.entered.acquire();  // the writer is in the first slice
   writer.append({}, sample_records(rng, 1, 1, 2));
   sink.open_gate();
   writer.stop();
@@ -187,7 +187,7 @@ TEST_CASE("records overtake the slices of a large snapshot job", "[store][log-wr
   CHECK(sink.commits[1].records.size() == 2);
   CHECK(sink.commits[2].chunks == 4);
   CHECK(sink.commits[3].chunks == 2);
-  CHECK_FALSE(sink.commits[0].checkpoint.has_value());  // only the whole job moves the checkpoint
+  CHECK_FALSE(sink.commits[0].checkpoint.has_value());  // the last slice moves the checkpoint
   CHECK_FALSE(sink.commits[2].checkpoint.has_value());
   CHECK(sink.commits[3].checkpoint == Sequence{77});
   CHECK(saved == 10);
@@ -206,7 +206,7 @@ TEST_CASE("a snapshot job that finds the queue full is refused and takes nothing
       limits);
   REQUIRE(writer.save_snapshots(chunks(1), {}));
   sink.entered.acquire();
-  CHECK(writer.save_snapshots({}, 5));  // a job of no chunks moves the checkpoint alone
+  CHECK(writer.save_snapshots({}, 5));  // a job without chunks moves only the checkpoint
   CHECK_FALSE(writer.save_snapshots(chunks(3), {}));
   sink.open_gate();
   writer.stop();
@@ -235,7 +235,7 @@ TEST_CASE("after a failure nothing more is written or acknowledged", "[store][lo
   sink.open_gate();
   failed.acquire();
   CHECK_FALSE(writer.has_room(0));
-  writer.append({}, sample_records(rng, 1, 5, 2));  // dropped: it will never be acknowledged
+  writer.append({}, sample_records(rng, 1, 5, 2));  // the writer drops it: it is never acknowledged
   CHECK_FALSE(writer.save_snapshots(chunks(1), {}));
   writer.stop();
   CHECK(sink.commits.size() == 1);
@@ -243,7 +243,7 @@ TEST_CASE("after a failure nothing more is written or acknowledged", "[store][lo
   CHECK(failures == std::vector<std::string>{"w: disk full"});
 }
 
-TEST_CASE("a keyframe comes with the last slice of its chunks, behind records",
+TEST_CASE("a keyframe is written with the last slice of its chunks, after records",
           "[store][log-writer]") {
   FakeSink sink;
   SplitMix64 rng(7);
@@ -294,7 +294,8 @@ TEST_CASE("a keyframe that cannot be written ends its job and nothing else",
   CHECK(writer.counters().keyframes == 0);
 }
 
-TEST_CASE("who waits for a keyframe is told when the writer fails", "[store][log-writer]") {
+TEST_CASE("a failure of the writer ends the jobs for keyframes with an error",
+          "[store][log-writer]") {
   FakeSink sink;
   sink.fail_at = 1;
   SplitMix64 rng(9);
@@ -306,7 +307,7 @@ TEST_CASE("who waits for a keyframe is told when the writer fails", "[store][log
   };
   LogWriter writer(sink, {}, limits);
   REQUIRE(writer.save_keyframe(chunks(3), Keyframe{}, tell));
-  sink.entered.acquire();  // in its first slice, which succeeds
+  sink.entered.acquire();  // the writer is in the first slice, which succeeds
   REQUIRE(writer.save_keyframe(chunks(1), Keyframe{}, tell));
   writer.append({}, sample_records(rng, 1, 1, 2));  // fails
   sink.open_gate();

@@ -1,4 +1,4 @@
-// Damage in any column of any table is noticed, named, and never repaired in silence.
+// Damage in any column of any table is detected, named in the error, and never repaired.
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr ChunkKey kBaseKey{0, {2, 3, 4}};
 constexpr ChunkKey kSnapshotKey{0, {1, 0, -3}};
 
-/// A world with at least one row in every table; closed.
+/// Makes a world with at least one row in every table, and closes it.
 void make_world(const std::string& folder) {
   SplitMix64 rng(77);
   auto store = create_world(folder, sample_meta());
@@ -30,7 +30,7 @@ void make_world(const std::string& folder) {
   REQUIRE((*store)->save_snapshots(snapshots, 12).has_value());
 }
 
-/// Opens and audits; the place of the first damage, or "fine".
+/// Opens and checks a world. Returns the place of the first damage, or "fine".
 std::string audit(const std::string& folder) {
   auto store = open_world(folder, StoreAccess::read_only);
   const auto verdict = store ? (*store)->check() : Unexpected<StoreError>{store.error()};
@@ -41,7 +41,7 @@ std::string audit(const std::string& folder) {
   return verdict.error().where;
 }
 
-/// Place of the damage that one SQL statement does to a fresh copy of `pristine`.
+/// Returns the place of the damage that one SQL statement does to a fresh copy of `pristine`.
 std::string damage(const TempFolder& pristine, const std::string& sql) {
   const TempFolder copy;
   std::filesystem::copy(
@@ -70,7 +70,7 @@ TEST_CASE("a changed column of the edit log is named", "[store][damage]") {
         std::string("UPDATE edit_log SET ") + column + " = " + column + " + 1 WHERE seq = 7";
     CHECK(damage(folder, set) == "edit_log seq=7");
   }
-  for (const char* subject : {"1 - subject", "7", "-1", "99"}) {  // 7 would answer itself
+  for (const char* subject : {"1 - subject", "7", "-1", "99"}) {  // 7 would be its own subject
     CAPTURE(subject);
     CHECK(damage(folder, std::string("UPDATE edit_log SET subject = ") + subject +
                              " WHERE seq = 7") == "edit_log seq=7");
@@ -98,15 +98,14 @@ TEST_CASE("a missing or moved edit is named", "[store][damage]") {
   CHECK(damage(folder, "UPDATE edit_log SET seq = 99 WHERE seq = 7") == "edit_log seq=7");
   CHECK(damage(folder, "UPDATE edit_log SET seq = 21 WHERE seq = 20") == "edit_log seq=20");
   CHECK(damage(folder, "DELETE FROM edit_log WHERE seq > 12 AND seq > 19") ==
-        "fine");  // a shorter log is a log ...
+        "fine");  // a log without its last edits is a log
 }
 
 TEST_CASE("a log that ends before its snapshots or its checkpoint is noticed", "[store][damage]") {
   const TempFolder folder;
   make_world(folder.path());
   REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM edit_log WHERE seq > 12").empty());
-  CHECK(audit(folder.path()) ==
-        "snapshot chunk=5,5,5");  // ... unless something refers to what is gone
+  CHECK(audit(folder.path()) == "snapshot chunk=5,5,5");  // a snapshot refers to the missing edits
   REQUIRE(raw_sql(folder / "world.sqlite", "DELETE FROM edit_log WHERE seq > 11").empty());
   CHECK(audit(folder.path()) == "edit_log");
   const auto store = open_world(folder.path(), StoreAccess::read_only);
@@ -127,8 +126,8 @@ TEST_CASE("a changed column of a snapshot or base chunk is named", "[store][dama
       CAPTURE(table.name, column);
       CHECK(damage(folder, update + column + " = " + column + " + 1" + table.where) == table.place);
     }
-    // Every byte of the chunk, flipped one after another, would take long; the first, last and one between
-    // do.
+    // A test of every byte of the chunk would take long. The first, the last and one between are
+    // enough.
     for (const char* at : {"1", "length(data) / 2 + 1", "length(data)"}) {
       CAPTURE(table.name, at);
       const std::string byte = std::string("substr(data, ") + at + ", 1)";
@@ -138,7 +137,7 @@ TEST_CASE("a changed column of a snapshot or base chunk is named", "[store][dama
     }
     CHECK(damage(folder, update + "data = CAST(substr(data, 1, length(data) - 1) AS BLOB)" +
                              table.where) == table.place);
-    // A row under another key is a row that vanished.
+    // A row with another key counts as one that vanished.
     for (const char* column : {"lod", "x", "y", "z"}) {
       CAPTURE(table.name, column);
       CHECK(damage(folder, update + column + " = " + column + " + 256" + table.where) ==
@@ -187,7 +186,7 @@ TEST_CASE("a changed column of a player is named", "[store][damage]") {
   CHECK(damage(folder, "UPDATE player_instance SET checksum = 0" + last) == name);
   CHECK(damage(folder, "UPDATE player_instance SET author = 5" + last) ==
         "player_instance author=5 instance=" + std::to_string(0xf000000000000001ULL));
-  CHECK(damage(folder, "DELETE FROM player_instance" + last) == name);  // the log knows better
+  CHECK(damage(folder, "DELETE FROM player_instance" + last) == name);  // the log has it
 }
 
 TEST_CASE("a damaged mark is not overwritten by the next edit of its client", "[store][damage]") {

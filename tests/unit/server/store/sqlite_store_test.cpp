@@ -1,11 +1,6 @@
 #include "server/store/sqlite_store.hpp"
 
-#include <sys/stat.h>
-
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "tests/support/raw_sql.hpp"
@@ -30,7 +25,7 @@ std::unique_ptr<Store> opened(const std::string& folder,
   return *std::move(store);
 }
 
-/// A world that was started once and holds `count` records.
+/// Makes a world that was started once and holds `count` records.
 std::unique_ptr<Store> filled(const std::string& folder, SplitMix64& rng, std::size_t count) {
   auto store = created(folder);
   REQUIRE(store->raise_epoch().has_value());
@@ -47,11 +42,6 @@ std::vector<EditRecord> log_of(Store& store, Sequence first = 1, Sequence last =
   });
   if (!read) FAIL(read.error().message());
   return records;
-}
-
-std::vector<char> bytes_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -145,10 +135,10 @@ TEST_CASE("a mark never falls when an older client sequence is logged later", "[
   REQUIRE(store->high_waters()->size() == 1);
   CHECK(store->high_waters()->front().resolved == 90);
   CHECK(store->high_waters()->front().last_us ==
-        records[1].time_us);  // the client was there, though
+        records[1].time_us);  // the time rises although the sequence does not
 }
 
-TEST_CASE("reading the log stops when asked to and may be nested", "[store]") {
+TEST_CASE("a read of the log stops when its callback returns false, and may be nested", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(3);
   auto store = filled(folder.path(), rng, 10);
@@ -285,37 +275,6 @@ TEST_CASE("a snapshot that would harm the world is refused and nothing of its jo
   CHECK(store->snapshot_keys()->size() == 1);
 }
 
-TEST_CASE("a new world is for its owner alone, and a folder that is there stays as it is",
-          "[store]") {
-  using std::filesystem::perms;
-  const auto mode = [](const std::string& path) {
-    return std::filesystem::status(path).permissions();
-  };
-  const perms own_file = perms::owner_read | perms::owner_write;
-  const TempFolder folder;
-  const std::string fresh = folder / "deep/world";
-  const auto umask_before = ::umask(0);  // the most open one
-  {
-    auto store = create_world(fresh, sample_meta());
-    REQUIRE(store.has_value());
-    SplitMix64 rng(3);
-    REQUIRE((*store)->raise_epoch().has_value());
-    REQUIRE((*store)->append({}, sample_records(rng, 1, 1, 1)).has_value());
-    CHECK(mode(fresh) == perms::owner_all);
-    CHECK(mode(fresh + "/world.sqlite") == own_file);
-    CHECK(mode(fresh + "/world.sqlite-wal") == own_file);
-    CHECK(mode(fresh + "/world.sqlite-shm") == own_file);
-  }
-  const std::string given = folder / "given";
-  std::filesystem::create_directory(given);
-  std::filesystem::permissions(given, perms::owner_all | perms::group_all);
-  const bool is_made = create_world(given + "/", sample_meta()).has_value();
-  ::umask(umask_before);
-  CHECK(is_made);
-  CHECK(mode(given) == (perms::owner_all | perms::group_all));
-  CHECK(mode(given + "/world.sqlite") == own_file);
-}
-
 TEST_CASE("base chunks are taken once, and only while the log is empty", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(7);
@@ -365,78 +324,11 @@ TEST_CASE("a second writer is refused while readers come and go", "[store]") {
   CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
 }
 
-TEST_CASE("a world of a newer format is refused and its bytes stay as they are", "[store]") {
-  const TempFolder folder;
-  created(folder.path());
-  const std::string file = folder / "world.sqlite";
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 5").empty());
-  const auto before = bytes_of(file);
-  for (const StoreAccess access : {StoreAccess::read_only, StoreAccess::read_write}) {
-    const auto store = open_world(folder.path(), access);
-    REQUIRE_FALSE(store.has_value());
-    CHECK(store.error().kind == StoreError::Kind::newer_version);
-    CHECK(store.error().message() ==
-          file + ": is of world format 5; this program knows up to 4. Nothing was changed.");
-  }
-  CHECK(bytes_of(file) == before);
-  CHECK_FALSE(std::filesystem::exists(file + "-wal"));
-  REQUIRE(raw_sql(file, "PRAGMA user_version = 0").empty());
-  CHECK(open_world(folder.path(), StoreAccess::read_only).error().kind ==
-        StoreError::Kind::corrupt);
-}
-
-TEST_CASE("what is not a world is refused and left alone", "[store]") {
-  const TempFolder folder;
-  const std::string file = folder / "world.sqlite";
-  const auto kind = [&] { return open_world(folder.path(), StoreAccess::read_write).error().kind; };
-  CHECK(kind() == StoreError::Kind::not_a_world);  // nothing there
-  CHECK(std::filesystem::is_empty(folder.path()));
-  std::ofstream(file)
-      << "hello, I am a text file and long enough to be mistaken for something else";
-  const auto text = bytes_of(file);
-  CHECK(kind() == StoreError::Kind::not_a_world);
-  CHECK(bytes_of(file) == text);
-  CHECK(create_world(folder.path(), sample_meta()).error().kind == StoreError::Kind::exists);
-  CHECK(bytes_of(file) == text);
-  std::filesystem::remove(file);
-  std::ofstream(file).flush();
-  REQUIRE(raw_sql(file, "CREATE TABLE meta(key, value)").empty());  // a database of somebody else
-  CHECK(kind() == StoreError::Kind::not_a_world);
-}
-
-TEST_CASE("a world is created once and only from meta that can be read back", "[store]") {
-  const TempFolder folder;
-  WorldMeta meta = sample_meta();
-  meta.chunk_edge = 48;
-  CHECK(create_world(folder.path(), meta).error().kind == StoreError::Kind::bad_request);
-  CHECK(std::filesystem::is_empty(folder.path()));
-  created(folder.path());
-  CHECK(create_world(folder.path(), sample_meta()).error().kind == StoreError::Kind::exists);
-  CHECK(open_world(folder.path(), StoreAccess::read_write).has_value());
-}
-
-TEST_CASE("a folder that cannot be written is reported", "[store]") {
-  // Not even root can make a folder there, so that this holds in containers too.
-  const auto made = create_world("/proc/runstone-world", sample_meta());
-  REQUIRE_FALSE(made.has_value());
-  CHECK(made.error().kind == StoreError::Kind::io);
-  CHECK(made.error().file == "/proc/runstone-world/world.sqlite");
-  const TempFolder folder;
-  created(folder.path());
-  std::filesystem::remove(folder / "world.lock");
-  std::filesystem::create_directory(folder /
-                                    "world.lock");  // open() for writing fails for root as well
-  const auto opened_again = open_world(folder.path(), StoreAccess::read_write);
-  REQUIRE_FALSE(opened_again.has_value());
-  CHECK(opened_again.error().kind == StoreError::Kind::io);
-  CHECK(opened_again.error().file == folder / "world.lock");
-}
-
 TEST_CASE("a write that another program blocks is reported and works later", "[store]") {
   const TempFolder folder;
   SplitMix64 rng(9);
   auto store = filled(folder.path(), rng, 3);
-  // Another connection holds the write lock for longer than the store waits for it.
+  // Another connection holds the write lock longer than the store waits.
   sqlite3* other = nullptr;
   REQUIRE(sqlite3_open((folder / "world.sqlite").c_str(), &other) == SQLITE_OK);
   REQUIRE(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_OK);
@@ -474,7 +366,7 @@ TEST_CASE("a single-voxel edit costs at most 120 bytes of database", "[store]") 
   const double bytes = static_cast<double>((pages() - before) * 4096) / kEdits;
   CAPTURE(bytes);
   CHECK(bytes < 120);
-  CHECK(bytes > 40);  // a figure below the payload would mean that nothing was measured
+  CHECK(bytes > 40);  // less than the payload would mean that nothing was measured
 }
 
 TEST_CASE("an error message names file, place and cause in one line", "[store]") {

@@ -1,4 +1,4 @@
-#include "server/rollback/player_actions.hpp"
+#include "server/rollback/player_action_search.hpp"
 
 #include "server/rollback/chunk_logs.hpp"
 #include "tests/unit/server/rollback/rollback_bench.hpp"
@@ -8,8 +8,8 @@ namespace {
 
 constexpr SessionId kGriefer = 1, kBuilder = 2;
 
-/// Ana sets voxels; those from the second on are built over by another. All in one chunk.
-struct BuiltOver : DeskBench {
+/// Ana sets voxels in one chunk. Another player builds over all but the first.
+struct BuiltOver : RollbackBench {
   explicit BuiltOver(int edits) {
     ana = join(kBuilder);
     join(kGriefer);
@@ -22,13 +22,13 @@ struct BuiltOver : DeskBench {
 
 }  // namespace
 
-TEST_CASE("an undo passes by sixteen edits with nothing left, and says so where there are more",
+TEST_CASE("an undo skips sixteen edits with nothing left, and reports if there are more",
           "[rollback][undo]") {
   const int passed = GENERATE(15, 16, 17, 40);
   CAPTURE(passed);
   BuiltOver bench(1 + passed);
-  bench.desk.undo(bench.ana, bench.bench.now(), bench.reply());
-  bench.settle();
+  bench.service.undo(bench.ana, bench.bench.now(), bench.reply());
+  bench.run_all();
   CHECK(bench.answer().is_ok == (passed < 16));
   CHECK(bench.at({0, 0, 0}) == (passed < 16 ? kEmpty : Material{1}));
   if (passed >= 16) {
@@ -36,46 +36,46 @@ TEST_CASE("an undo passes by sixteen edits with nothing left, and says so where 
   }
 }
 
-TEST_CASE("what an undo reads of the log serves all edits that it looks at", "[rollback][undo]") {
+TEST_CASE("an undo reads the log once for all edits that it considers", "[rollback][undo]") {
   BuiltOver bench(16);
-  std::size_t asked = 0;
+  std::size_t calls = 0;
   const auto found = next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                                        bench.bench.server.durable(), [&] { return ++asked > 0; });
+                                        bench.bench.server.durable(), [&] { return ++calls > 0; });
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
-  // 16 records of hers, 31 of the chunk, and once for each of 16 plans.
-  CHECK(asked == 16 + 31 + 16);
+  // 16 records of hers, 31 of the chunk, and one call for each of 16 plans.
+  CHECK(calls == 16 + 31 + 16);
 }
 
-TEST_CASE("an undo that nobody waits for ends at once", "[rollback][undo]") {
+TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
   BuiltOver bench(16);
   for (std::size_t allowed = 0; allowed < 16 + 31 + 16; ++allowed) {
-    std::size_t asked = 0;
+    std::size_t calls = 0;
     const auto found =
         next_player_change(*bench.store, *bench.generator, bench.ana, Cause::undo,
-                           bench.bench.server.durable(), [&] { return ++asked <= allowed; });
+                           bench.bench.server.durable(), [&] { return ++calls <= allowed; });
     REQUIRE_FALSE(found.has_value());
     CHECK(found.error().kind == StoreError::Kind::cancelled);
-    CHECK(asked == allowed + 1);
+    CHECK(calls == allowed + 1);
   }
 }
 
 TEST_CASE("a stop ends the reading of undos and jobs", "[rollback][undo]") {
   BuiltOver bench(2);
-  bench.desk.undo(bench.ana, bench.bench.now(), bench.reply());
+  bench.service.undo(bench.ana, bench.bench.now(), bench.reply());
   SECTION("while it looks for what is next") {
-    bench.desk.stop();
+    bench.service.stop();
     REQUIRE(bench.work());
     CHECK(bench.answer().text == "undo: not now: the server stops");
-    CHECK(bench.desk.running() == 0);
+    CHECK(bench.service.running() == 0);
   }
   SECTION("while its chunks are planned") {
     REQUIRE(bench.work());
     bench.tick();
     REQUIRE(bench.works.size() == 1);
-    bench.desk.stop();
-    bench.settle();
+    bench.service.stop();
+    bench.run_all();
     CHECK_FALSE(bench.answer().is_ok);
     CHECK(bench.answer().text.find("cancelled") != std::string::npos);
     CHECK(bench.at({0, 0, 0}) == 1);

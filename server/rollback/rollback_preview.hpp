@@ -1,0 +1,51 @@
+// RollbackPreview: what a rollback would change. A worker computes it; the world strand keeps it
+// under an id and answers from it.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/rollback/restore_plan.hpp"
+#include "server/rollback/selection.hpp"
+#include "server/store/world_reader.hpp"
+
+namespace runstone {
+
+struct RollbackPreview {
+  enum class State { computing, ready, applied };
+  /// Gets the plan of each chunk that would change, one after another, on the worker.
+  using PlanViewer = std::function<void(const RestorePlan&)>;
+  /// Is called on the worker after the last plan. Returns lines for the answer.
+  using Summary = std::function<std::string(WorldReader& reader, const Generator& generator,
+                                            const std::string& id)>;
+
+  std::uint64_t number = 0;
+  State state = State::computing;
+  /// The world strand clears it when nobody wants the preview any more. Threads: any.
+  std::shared_ptr<std::atomic<bool>> is_wanted = std::make_shared<std::atomic<bool>>(true);
+  Sequence rollback = 0;  // first edit of the rollback; 0 until it has written one
+
+  // The worker writes these in compute(). The world strand reads them after the worker has
+  // answered.
+  std::shared_ptr<const Selection> selection;
+  std::uint64_t voxels = 0, chunks = 0;  // that would change
+  std::string summary, error;            // `error` is empty if the preview could be computed
+
+  /// Returns the id: "p1".
+  std::string id() const { return "p" + std::to_string(number); }
+  /// Selects edits and plans each chunk that they touch, up to sequence `end`, which must be
+  /// durable. Blocks on the disk. Both functions may be empty.
+  void compute(WorldReader& reader, const Generator& generator, const SelectionFilter& filter,
+               Sequence end, const PlanViewer& view_plan, const Summary& summarise);
+  /// Returns true if the rollback would change nothing. Requires that compute() succeeded, as for
+  /// the texts below.
+  bool is_empty() const { return selection->edits == 0 || voxels == 0; }
+  /// Returns the answer about an empty preview.
+  std::string text_of_nothing() const;
+  /// Returns the answer about a preview that is not empty.
+  std::string text() const;
+};
+
+}  // namespace runstone
