@@ -87,7 +87,8 @@ void CommandHandler::status(const CommandReply& reply) const {
 
 void CommandHandler::players(const CommandReply& reply) {
   std::map<AuthorId, WorldServer::OnlinePlayer> here;
-  for (WorldServer::OnlinePlayer& player : world_.online_players()) here[player.author] = std::move(player);
+  for (WorldServer::OnlinePlayer& player : world_.online_players())
+    here[player.author] = std::move(player);
   auto rows = std::make_shared<StoreResult<std::vector<PlayerRow>>>(std::vector<PlayerRow>());
   workers_.run([rows](Store& reader, const Generator&) { *rows = reader.players(); },
                [rows, here, reply](const std::string& error) {

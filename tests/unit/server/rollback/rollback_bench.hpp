@@ -70,7 +70,8 @@ class DeskBench : public RollbackService::Workers {
       write_log();
       tick();
       while (work()) desk.tick(bench.now());
-      if (works.empty() && desk.running() == 0 && written == bench.environment.records.size() && i > 2)
+      if (works.empty() && desk.running() == 0 && written == bench.environment.records.size() &&
+          i > 2)
         return;
     }
     FAIL("the desk does not come to rest");
