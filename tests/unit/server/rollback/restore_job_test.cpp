@@ -141,7 +141,8 @@ TEST_CASE("a job with a payer writes as fast as the rate of the payer allows", "
   CHECK(b.job.progress().waits_for.find("edits_per_second") != std::string::npos);
   b.bench.edit(kBuilder, 1, kAtOrigin);  // the bucket holds one edit
   REQUIRE(b.bench.environment.messages<Reject>(kBuilder, kEdge).size() == 1);
-  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason == RejectReason::rate_limited);
+  CHECK(b.bench.environment.messages<Reject>(kBuilder, kEdge)[0].reason ==
+        RejectReason::rate_limited);
   SECTION("time gives it back") {
     b.bench.tick(200'000);
     b.job.step(b.bench.server, b.bench.now());
