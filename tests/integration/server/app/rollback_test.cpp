@@ -94,8 +94,9 @@ TEST_CASE("players undo and redo by a command; the rest is for operators",
   RawClient boss(server->port());
   REQUIRE(boss.join(2).has_value());
   CHECK(command(boss, "rollback list").is_ok);
-  CHECK(command(boss, "log limit 3").text.find(" player1 #1 redo of 2 restored 2 70 0 to 5 73 3\n") !=
-        std::string::npos);
+  CHECK(
+      command(boss, "log limit 3").text.find(" player1 #1 redo of 2 restored 2 70 0 to 5 73 3\n") !=
+      std::string::npos);
   seed.fill(1);
   const std::string key = to_hex(key_pair_of(seed).public_key);
   CHECK(command(boss, "players").text.find("player1 #1 key " + key + " is here") !=
