@@ -35,7 +35,8 @@ class Columns {
   const MaterialTable& materials_;
 };
 
-/// Returns the land column of the ring that is nearest to the origin; the smallest x, then z, among equally near ones.
+/// Returns the land column of the ring that is nearest to the origin; the smallest x, then z, among
+/// equally near ones.
 std::optional<VoxelPos> nearest_on_ring(const Columns& columns, std::int32_t ring) {
   const std::int32_t side = ring * kStep;
   std::optional<VoxelPos> nearest;

@@ -9,9 +9,9 @@
 
 namespace runstone {
 
-/// Returns the material of that name. If there is none, returns the only material whose name ends with ':' and
-/// `name`: "stone" finds "default:stone". Fails with one line of text if no material matches, or if several
-/// do; the line lists up to eight of them. Cost: O(materials).
+/// Returns the material of that name. If there is none, returns the only material whose name ends
+/// with ':' and `name`: "stone" finds "default:stone". Fails with one line of text if no material
+/// matches, or if several do; the line lists up to eight of them. Cost: O(materials).
 Result<Material, std::string> find_material(const MaterialTable& table, std::string_view name);
 
 }  // namespace runstone

@@ -1,4 +1,4 @@
-// AuthorNames: who the authors in a log are, and who is meant by a name.
+// AuthorNames: the names of the authors in a log, and the author that a name means.
 #pragma once
 #include <map>
 #include <string>
@@ -14,10 +14,11 @@ class AuthorNames {
  public:
   explicit AuthorNames(const std::vector<PlayerRow>& rows);
 
-  /// "ana #3"; "#3" of an author without a row; "the server" of author 0.
+  /// Returns "ana #3", or "#3" for an author without a row, or "the server" for author 0.
   std::string of(AuthorId author) const;
-  /// The author of a name. Names are not unique, keys are: to take back somebody else's work by mistake is worse than to
-  /// ask, so the error names all the authors that have the name, or says that there is none. O(authors).
+  /// Returns the only author with this name. Fails if there is none, or if several authors have the
+  /// name, because keys are unique and names are not; the error then lists their numbers. Cost:
+  /// O(authors).
   Result<AuthorId, std::string> find(const std::string& name) const;
 
  private:

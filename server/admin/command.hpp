@@ -1,6 +1,6 @@
-// Command: one line of the console, of `runstone-server control` or of a client, as a value. Parsing knows neither world
-// nor clock: names stay names, and the current time is an argument. An error names the wrong word and lists what is
-// allowed in its place.
+// Command: one line of the console, of `runstone-server control` or of a client, as a value.
+// Parsing knows neither world nor clock: names stay names, and the current time is an argument. An
+// error names the wrong word and lists what is allowed in its place.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -75,15 +75,17 @@ using Command = std::variant<HelpCommand, StatusCommand, PlayersCommand, Materia
                              StopCommand, UndoCommand, LogCommand, RollbackPreviewCommand,
                              RollbackCommand, RollbackListCommand>;
 
-/// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate words; a word that contains
-/// blanks stands in double quotes. `now_us` (UTC) is the time to which ages such as "since 1h" refer. The error is one
-/// line of text for the person who typed the command.
+/// Parses one line without its line break, of at most kCommandBytesMax bytes. Blanks separate
+/// words; a word that contains blanks stands in double quotes. `now_us` (UTC) is the time to which
+/// ages such as "since 1h" refer. The error is one line of text for the person who typed the
+/// command.
 Result<Command, std::string> parse_command(std::string_view line, TimeUs now_us);
 
 /// Returns true if every player may give the command. The others are for operators.
 bool is_for_everybody(const Command& command);
 
-/// Returns a text that lists the commands: all of them for operators, otherwise those for everybody.
+/// Returns a text that lists the commands: all of them for operators, otherwise those for
+/// everybody.
 std::string command_help(bool is_operator);
 
 /// Returns the name that filters and answers use: "player", "rollback", ...

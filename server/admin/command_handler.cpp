@@ -173,7 +173,7 @@ void CommandHandler::preview(const RollbackPreviewCommand& command, const Clocks
     if (!picture) return rollback_.preview(filter, now, reply);
     const auto pictures = std::make_shared<PreviewPictures>(world_folder_);
     rollback_.preview(
-        filter, now, reply, [pictures](const RestorePlan& plan) { pictures->see(plan); },
+        filter, now, reply, [pictures](const RestorePlan& plan) { pictures->add(plan); },
         [pictures](WorldReader& reader, const Generator& generator, const std::string& id) {
           return pictures->draw(reader, generator, id);
         });

@@ -1,6 +1,6 @@
-// CommandHandler: carries out the commands of console, control and clients (server/admin/command.hpp). It answers
-// in lines, some at once, the last one when all is done. It belongs to the world strand; what reads the disk
-// runs on the rollback desk's workers.
+// CommandHandler: carries out the commands of console, control and clients
+// (server/admin/command.hpp). It answers with lines of text; the last answer comes when everything
+// is done. Thread: the world strand. Reads from the disk run on the workers.
 #pragma once
 #include <functional>
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace runstone {
 
-/// Who gives a command.
+/// The giver of a command.
 struct CommandCaller {
-  AuthorId author = 0;  // 0: console and control
+  AuthorId author = 0;  // 0: console or control
   bool is_operator = false;
 };
 
 class CommandHandler {
  public:
-  /// All must outlive the desk. `stop` asks the program to stop the server.
+  /// The references must outlive the handler. `stop` makes the program stop the server.
   CommandHandler(WorldServer& world, RollbackService& rollback, RollbackService::Workers& workers,
                  MaterialTable materials, std::string world_folder, std::function<void()> stop);
 
-  /// Carries out one line. `reply` is called on the world strand, and must not call in.
+  /// Carries out one line. `reply` is called on the world strand and must not call this object.
   void run(const CommandCaller& caller, const std::string& line, const Clocks& now,
            CommandReply reply);
 
@@ -32,7 +32,8 @@ class CommandHandler {
   void players(const CommandReply& reply);
   void log(const LogCommand& command, const Clocks& now, const CommandReply& reply);
   void preview(const RollbackPreviewCommand& command, const Clocks& now, const CommandReply& reply);
-  /// Finds the authors that a filter names, on a worker, then goes on with the filter; or refuses.
+  /// Looks up the authors that a filter names, on a worker. Calls `go_on` with the result, or
+  /// rejects the command if a name is unknown or ambiguous.
   void resolve(const CommandFilter& filter, const std::string& command, const CommandReply& reply,
                std::function<void(const SelectionFilter&)> go_on);
 
@@ -40,7 +41,7 @@ class CommandHandler {
   RollbackService& rollback_;
   RollbackService::Workers& workers_;
   MaterialTable materials_;
-  const std::string world_folder_;  // previews are drawn there
+  const std::string world_folder_;  // for the pictures of previews
   std::function<void()> stop_;
 };
 

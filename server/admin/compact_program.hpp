@@ -1,4 +1,5 @@
-// runstone-server compact: takes the oldest part of a world's log into its base, while no server runs it.
+// runstone-server compact: moves the oldest part of a world's log into its base, while no server
+// runs it.
 #pragma once
 #include <cstdint>
 #include <iosfwd>
@@ -11,13 +12,14 @@ namespace runstone {
 
 struct CompactRequest {
   std::string world;            // folder
-  std::uint64_t keep_days = 0;  // edits that are younger stay
+  std::uint64_t keep_days = 0;  // younger edits stay in the log
   bool shrink = true;           // give the free space back to the file system
-  bool progress = false;        // also where stderr is no terminal
+  bool progress = false;        // print progress even if standard error is no terminal
 };
 
-/// `now_us`: UTC. Prints what it did, or that there is nothing to do. The error is one line; the world then stands as before, or, if
-/// only the space could not be given back, compacted, which is said.
+/// Compacts the world and prints the result, or prints that no edit is old enough. `now_us` is the
+/// time in UTC. The error is one line. After an error the world is as before, or, if only the space
+/// could not be given back, compacted; the error then says so.
 Result<void, std::string> compact_world(const CompactRequest& request, TimeUs now_us,
                                         std::ostream& out, const SqliteOptions& options = {});
 

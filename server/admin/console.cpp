@@ -14,7 +14,7 @@ namespace runstone {
 Result<std::shared_ptr<Console>, std::string> Console::open(asio::io_context& loop, Handler handler,
                                                             OnFailure on_failure, int descriptor,
                                                             std::ostream& out) {
-  // A server that was put into the background must not be halted because somebody types into the shell.
+  // Reading the terminal from the background would otherwise stop the process.
   std::signal(SIGTTIN, SIG_IGN);
   auto console = std::make_shared<Console>(loop, std::move(handler), std::move(on_failure), out);
   asio::error_code error;
@@ -34,12 +34,12 @@ void Console::read() {
                                                 const asio::error_code& error, std::size_t bytes) {
     if (error == asio::error::operation_aborted || !self->input_.is_open()) return;
     if (error == asio::error::eof) {
-      // It may have been cut off: half a command could be another one.
+      // The line may be incomplete, and a part of a command can be another command.
       if (!self->line_.empty())
         self->out_ << "the last line has no end, and is left out" << std::endl;
       return;
     }
-    if (error) {  // EIO: a terminal that is gone, or that this program is in the background of
+    if (error) {  // EIO: the terminal is closed, or this process is in its background
       return self->on_failure_("console: standard input cannot be read any more: " +
                                error.message());
     }

@@ -1,5 +1,5 @@
-// Console: commands typed into the server's own terminal, or piped into it, line by line; answers go to standard
-// output. Belongs to the thread that runs the loop.
+// Console: reads commands from the server's terminal or from a pipe, line by line, and prints the
+// answers to standard output. Thread: the one that runs the loop.
 #pragma once
 #include <unistd.h>
 
@@ -21,16 +21,16 @@ namespace runstone {
 class Console : public std::enable_shared_from_this<Console> {
  public:
   using Handler = std::function<void(const std::string& line, CommandReply reply)>;
-  /// Is told, once, why nothing more is read although the input has not ended.
+  /// Called once, with the reason, if reading fails before the end of the input.
   using OnFailure = std::function<void(const std::string& line)>;
 
-  /// Reads a descriptor, which stays the caller's, from now on. A line longer than a command may be is answered with a
-  /// mistake and left out. Fails if the descriptor cannot be waited for, such as a plain file.
+  /// Starts reading from a copy of the descriptor. A line that is longer than a command is
+  /// rejected. Fails if the descriptor cannot be waited for, as that of a regular file.
   static Result<std::shared_ptr<Console>, std::string> open(asio::io_context& loop, Handler handler,
                                                             OnFailure on_failure,
                                                             int descriptor = STDIN_FILENO,
                                                             std::ostream& out = std::cout);
-  /// Reads no more. Answers that come later are still printed, as long as the loop runs.
+  /// Stops reading. Later answers are still printed while the loop runs.
   void close();
 
   Console(asio::io_context& loop, Handler handler, OnFailure on_failure, std::ostream& out)
@@ -51,8 +51,8 @@ class Console : public std::enable_shared_from_this<Console> {
   OnFailure on_failure_;
   std::ostream& out_;
   std::array<char, 4096> in_{};
-  std::string line_;          // so far
-  bool is_too_long_ = false;  // the line: its bytes are dropped until it ends
+  std::string line_;          // the part read so far
+  bool is_too_long_ = false;  // the rest of the line is dropped
 };
 
 }  // namespace runstone

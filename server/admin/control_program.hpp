@@ -13,12 +13,14 @@ struct ControlRequest {
   std::vector<std::string> words;  // of the command, as the shell passed them
 };
 
-/// Returns the command as one line. A single word is the whole line, as a person would type it at the console. Of
-/// several words, those that contain blanks are put in quotes, because the shell has removed the quotes around them.
+/// Returns the command as one line. A single word is the whole line, as a person would type it at
+/// the console. Of several words, those that contain blanks are put in quotes, because the shell
+/// has removed the quotes around them.
 std::string control_line(const std::vector<std::string>& words);
 
-/// Gives the command and prints each line of the answer to `out` as it arrives. Returns true if the command succeeded.
-/// The error is one line: no server runs that world. Blocks until the answer is complete.
+/// Gives the command and prints each line of the answer to `out` as it arrives. Returns true if the
+/// command succeeded. The error is one line: no server runs that world. Blocks until the answer is
+/// complete.
 Result<bool, std::string> control_server(const ControlRequest& request, std::ostream& out);
 
 }  // namespace runstone

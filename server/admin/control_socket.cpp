@@ -30,7 +30,7 @@ constexpr std::size_t kConnectionsMax = 16;
 constexpr auto kRetryInterval = std::chrono::milliseconds(200);
 constexpr std::size_t kPathBytesMax = sizeof(sockaddr_un::sun_path) - 1;
 
-/// One connection: reads a line, has it carried out, writes the answer, reads the next.
+/// One connection: reads a line, hands it to the handler, writes the answer, reads the next line.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Local::socket socket, Strand strand, ControlSocket::Handler handler,
@@ -40,7 +40,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         handler_(std::move(handler)),
         slot_(std::move(slot)) {}
 
-  /// No further line; the answer under way is still written. All calls on the strand.
+  /// Reads no more lines, and closes once the current answer is written. Thread: the strand, as for
+  /// all calls.
   void finish() {
     is_finishing_ = true;
     if (!is_busy_) close();
@@ -55,7 +56,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         socket_, asio::dynamic_buffer(in_, kCommandBytesMax + 1), '\n',
         asio::bind_executor(
             strand_, [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
-              if (error) return;  // gone, or a line without end
+              if (error) return;  // the peer closed, or the line is too long
               const std::string line = self->in_.substr(0, bytes - 1);
               self->in_.erase(0, bytes);
               self->is_busy_ = true;
@@ -96,10 +97,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Local::socket socket_;
   Strand strand_;
   ControlSocket::Handler handler_;
-  std::shared_ptr<int> slot_;  // one of kConnectionsMax, while the connection lives
+  std::shared_ptr<int> slot_;  // counts the connections by its references
   std::string in_;
   std::deque<std::string> out_;
-  bool is_done_ = false;       // the last answer to the line is among those to be written
+  bool is_done_ = false;       // out_ holds the last answer to the line
   bool is_busy_ = false;       // a line is being carried out or answered
   bool is_finishing_ = false;  // the server stops
 };
@@ -118,8 +119,8 @@ struct ControlSocket::Parts : std::enable_shared_from_this<Parts> {
     acceptor.async_accept(asio::bind_executor(
         strand, [self = shared_from_this()](const asio::error_code& error, Local::socket socket) {
           if (error == asio::error::operation_aborted) return;
-          if (error) return self->accept_later();  // too many open files, for one
-          // More than so many programs of one user at a time are a mistake: the next one is turned away.
+          if (error) return self->accept_later();  // for example, too many open files
+          // A user has no reason for more programs at a time, so further connections are closed.
           if (self->slots.use_count() <= static_cast<long>(kConnectionsMax)) {
             const auto connection = std::make_shared<Connection>(std::move(socket), self->strand,
                                                                  self->handler, self->slots);
@@ -177,7 +178,7 @@ Result<std::unique_ptr<ControlSocket>, std::string> ControlSocket::listen(asio::
   asio::error_code error;
   parts->acceptor.open(Local(), error);
   if (!error) parts->acceptor.bind(Local::endpoint(*path), error);
-  // Before it listens nobody can connect, so the mode is in force in time.
+  // Nobody can connect before listen(), so the mode takes effect in time.
   if (!error && ::chmod(path->c_str(), S_IRUSR | S_IWUSR) != 0) {
     error = asio::error_code(errno, asio::error::get_system_category());
   }

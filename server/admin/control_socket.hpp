@@ -1,7 +1,8 @@
-// ControlSocket: takes commands from other programs of the same user, through a Unix domain socket in the world's
-// folder ("control.sock", mode 0600, gone when the server stops). One text line in; the answer is lines that
-// begin with "|", and last "=ok" or "=error". A connection may give several commands, one after another.
-// Threads: all on one strand of the I/O context; the handler is called there, its replies may come from any.
+// ControlSocket: receives commands from other programs of the same user, through a Unix domain
+// socket in the world's folder ("control.sock", mode 0600, removed when the server stops). A
+// command is one line of text. The answer is lines that begin with "|", followed by "=ok" or
+// "=error". A connection may send several commands, one after another. Thread: everything runs on
+// one strand of the I/O context. The handler is called there; it may reply from any thread.
 #pragma once
 #include <asio/io_context.hpp>
 #include <functional>
@@ -15,25 +16,26 @@ namespace runstone {
 
 inline constexpr const char* kControlSocketName = "control.sock";
 
-/// The socket's path in a world's folder; an error if a socket cannot have so long a path.
+/// Returns the path of the socket in a world's folder. Fails if the path is too long for a socket.
 Result<std::string, std::string> control_path(const std::string& world);
 
 class ControlSocket {
  public:
-  /// Carries out one line; the reply may be called from any thread, the last time with is_done.
+  /// Carries out one line. The reply may be called from any thread; the last call has is_done.
   using Handler = std::function<void(const std::string& line, CommandReply reply)>;
 
-  /// Replaces a socket that a server which died left behind: the caller holds the world's lock, so nobody else
-  /// listens. Fails if the path is too long or the folder cannot be written.
+  /// Starts listening. Requires the world's lock; a socket that exists was then left by a server
+  /// that crashed, and is replaced. Fails if the path is too long or the folder cannot be written.
   static Result<std::unique_ptr<ControlSocket>, std::string> listen(asio::io_context& io,
                                                                     const std::string& world,
                                                                     Handler handler);
-  /// stop(), and closes the connections that are left, whatever they wait for.
+  /// Stops, and closes all connections, even those that wait for an answer.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Takes no more connections and removes the file. Connections end, those that wait for an answer once they have it.
+  /// Accepts no more connections and removes the file. Each connection is closed after the answer
+  /// it waits for.
   void stop();
 
  private:

@@ -24,8 +24,8 @@ const char* name_of(EditKind kind) {
   return "?";
 }
 
-/// Returns true if the edit restores earlier voxels. It is a paste by its kind, which says nothing about the edit that it
-/// takes back.
+/// Returns true if the edit restores earlier voxels. It is a paste by its kind, which says nothing
+/// about the edit that it takes back.
 bool restores(Cause cause) {
   return cause == Cause::undo || cause == Cause::redo || cause == Cause::rollback;
 }

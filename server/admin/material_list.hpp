@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-/// Returns the names of the materials that contain `part`, one per line, in the order of their ids. The material "air" is
-/// listed too: edits may set it. A last line counts the names beyond 1000.
+/// Returns the names of the materials that contain `part`, one per line, in the order of their ids.
+/// The material "air" is listed too: edits may set it. A last line counts the names beyond 1000.
 std::string material_list(const MaterialTable& materials, std::string_view part);
 
 }  // namespace runstone

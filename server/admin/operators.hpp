@@ -1,4 +1,5 @@
-// Operators: the players who may give every command, by public key. Names are not unique and not proved; keys are.
+// Operators: the players who may give every command. They are known by public key, because names
+// are neither unique nor authenticated.
 #pragma once
 #include <set>
 #include <string>
@@ -9,8 +10,8 @@
 
 namespace runstone {
 
-/// Keys of 64 hexadecimal digits each, parted by blanks or commas; none is allowed. The error names the word that is no
-/// key.
+/// Parses keys of 64 hexadecimal digits each, separated by blanks or commas. An empty text has no
+/// keys. The error names the word that is no key.
 Result<std::set<PublicKey>, std::string> parse_operators(std::string_view text);
 
 }  // namespace runstone

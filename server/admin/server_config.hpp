@@ -1,7 +1,11 @@
-// ServerConfig: every setting of the server with its default, unit and range. All settings follow one naming rule:
-//   file  sessions_max = 64        environment  RUNSTONE_SESSIONS_MAX=64        flag  --sessions-max 64
-// The order of precedence is flag, environment, file, default. Values are checked when they are set, so a ServerConfig
-// is always valid. It is read once and passed on by const reference. docs/server-reference.md describes the settings.
+// ServerConfig: every setting of the server with its default, unit and range. All settings follow
+// one naming rule:
+//   file         sessions_max = 64
+//   environment  RUNSTONE_SESSIONS_MAX=64
+//   flag         --sessions-max 64
+// The order of precedence is flag, environment, file, default. Values are checked when they are
+// set, so a ServerConfig is always valid. It is read once and passed on by const reference.
+// docs/server-reference.md describes the settings.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -44,7 +48,8 @@ struct ServerConfig {
   std::uint64_t chunk_queue_kib = 4'096;     // KiB per session, 64..1048576
   /// KiB sent to each session per second, 0: no limit. Only terrain waits at the limit.
   std::uint64_t session_kib_per_second = 0;
-  /// KiB sent to all sessions together per second, 0: no limit. Sessions with terrain to send share it.
+  /// KiB sent to all sessions together per second, 0: no limit. Sessions with terrain to send share
+  /// it.
   std::uint64_t server_kib_per_second = 0;
   std::set<PublicKey> operators;  // players who may give every command
   // Edits.
@@ -76,14 +81,16 @@ std::vector<ConfigField> config_fields();
 std::string environment_name(const std::string& field);
 std::string flag_name(const std::string& field);
 
-/// Sets one field from the text of a flag or variable. The error names the field and says what is wrong.
+/// Sets one field from the text of a flag or variable. The error names the field and says what is
+/// wrong.
 Result<void, std::string> set_config(ServerConfig& config, const std::string& field,
                                      const std::string& text);
-/// Sets the fields that a TOML file names; `file` is only for messages. Fails on unknown keys and wrong values, with their
-/// line; `config` is then unchanged.
+/// Sets the fields that a TOML file names; `file` is only for messages. Fails on unknown keys and
+/// wrong values, with their line; `config` is then unchanged.
 Result<void, TextError> read_config_toml(ServerConfig& config, std::string_view toml,
                                          std::string_view file);
-/// Sets the fields that the environment names. `look_up` returns the value of a variable, or nullopt.
+/// Sets the fields that the environment names. `look_up` returns the value of a variable, or
+/// nullopt.
 Result<void, std::string> read_config_environment(
     ServerConfig& config,
     const std::function<std::optional<std::string>(const std::string&)>& look_up);

@@ -19,11 +19,11 @@
 namespace runstone {
 namespace {
 
-// Terrain gives way to edits on a machine that has not cores for both.
-std::unique_ptr<asio::thread_pool> patient_workers(std::size_t count) {
+/// Makes worker threads of low priority: on a machine with few cores edits run before terrain.
+std::unique_ptr<asio::thread_pool> low_priority_workers(std::size_t count) {
   std::unique_ptr<asio::thread_pool> workers;
   const auto start = [&] {
-    lower_priority();  // its threads begin with that of the one that starts them
+    lower_priority();  // threads inherit the priority of the thread that starts them
     workers = std::make_unique<asio::thread_pool>(count);
   };
   std::thread(start).join();
@@ -32,7 +32,7 @@ std::unique_ptr<asio::thread_pool> patient_workers(std::size_t count) {
 
 }  // namespace
 
-// Members are destroyed in reverse: the core goes before what it borrows.
+// Members are destroyed in reverse order: the core before the objects that it refers to.
 struct Server::Parts {
   ServerConfig config;
   OpenedWorld world;
@@ -40,7 +40,7 @@ struct Server::Parts {
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
   std::unique_ptr<asio::thread_pool> workers;
   std::vector<std::thread> io_threads;
-  std::unique_ptr<ControlSocket> control;  // none if the folder's path is too long for one
+  std::unique_ptr<ControlSocket> control;  // null if the folder's path is too long
   std::unique_ptr<ServerCore> core;
   bool is_running = false;
 };
@@ -56,7 +56,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
                                                            std::function<void()> on_failure,
                                                            std::function<void()> on_stop) {
   if (sodium_init() < 0) return Unexpected<std::string>{"libsodium cannot start"};
-  // A start that cannot serve leaves no trace: neither a new world nor, below, a raised epoch.
+  // A start that fails must neither make a new world nor raise the epoch.
   if (const auto free = can_listen(config.listen); !free)
     return Unexpected<std::string>{free.error()};
   auto world = open_or_create_world(config.world, creation);
@@ -64,7 +64,7 @@ Result<std::unique_ptr<Server>, std::string> Server::start(const ServerConfig& c
   auto parts = std::make_unique<Parts>();
   parts->config = config;
   parts->world = *std::move(world);
-  parts->workers = patient_workers(config.worker_threads);
+  parts->workers = low_priority_workers(config.worker_threads);
   parts->core = std::make_unique<ServerCore>(parts->io, *parts->workers, parts->config,
                                              *parts->world.store, *parts->world.generator,
                                              std::move(on_failure), std::move(on_stop));
@@ -121,7 +121,7 @@ StopReport Server::stop() {
   parts.core->stop_writer();
   parts.workers->join();
   parts.core->log_counters();
-  parts.control.reset();  // whoever has not read its answer by now has had time
+  parts.control.reset();  // closes connections that have not read their answer
   parts.work.reset();
   for (std::thread& thread : parts.io_threads) thread.join();
   const bool is_clean = is_flushed && !parts.core->has_failed();

@@ -1,5 +1,5 @@
-// Server: a whole Runstone server in this process: world folder, threads, sockets. The program runs one;
-// tests run several. Needs start_logging().
+// Server: a whole Runstone server in this process: world folder, threads, sockets. The program runs
+// one, tests run several. Requires start_logging().
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,21 +16,23 @@ namespace runstone {
 
 class Server {
  public:
-  /// Opens or makes the world, binds, recovers, and runs. The error is one line for the operator; nothing was
-  /// overwritten. `on_failure` is called once, from another thread, if the log cannot be written any more:
-  /// the caller then stops the server. `on_stop` likewise, for an operator who asks for it.
+  /// Opens or makes the world, binds the port, recovers, and runs. The error is one line for the
+  /// operator; nothing was overwritten. `on_failure` is called once, from another thread, if the
+  /// log cannot be written any more; the caller then stops the server. `on_stop` is called in the
+  /// same way when an operator gives the command `stop`.
   static Result<std::unique_ptr<Server>, std::string> start(
       const ServerConfig& config, const WorldCreation& creation,
       std::function<void()> on_failure = [] {}, std::function<void()> on_stop = [] {});
-  /// stop(), if nobody did.
+  /// Calls stop() unless it was called.
   ~Server();
 
   std::uint16_t port() const;
   void log_counters();
-  /// Carries out a command as an operator. The replies come from another thread, the last one is done; none may
-  /// come once the server has stopped.
+  /// Carries out a command as an operator. Replies come from another thread; the last one has
+  /// is_done. A server that stops may leave out replies.
   void command(const std::string& line, CommandReply reply);
-  /// Goodbyes, drains the log, writes all snapshots, ends all threads. Blocks. Once.
+  /// Says goodbye to all sessions, waits for the log, writes all snapshots and ends all threads.
+  /// Blocks. Call it once.
   StopReport stop();
 
  private:

@@ -1,5 +1,6 @@
-// runstone-server: runs a world, imports one, compacts one, or gives a running server a command. Exit codes: 0 stopped
-// cleanly (control: the command did what it was asked), 1 failed while running, 2 could not start (docs/server-reference.md).
+// runstone-server: runs a world, imports one, compacts one, or gives a running server a command.
+// Exit codes: 0 stopped cleanly (control: the command succeeded), 1 failed while running, 2 could
+// not start (docs/server-reference.md).
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -57,7 +58,8 @@ Result<ServerConfig, std::string> read_config(const ServerOptions& options) {
   return config;
 }
 
-/// A socket for each session and for each connection that is not one yet, the world's files, and some.
+/// Raises the limit of open files: a socket for each session and each connection in the handshake,
+/// the world's files, and a reserve.
 void allow_files_for(const ServerConfig& config) {
   const std::size_t needed = config.sessions_max + 256;
   const std::size_t allowed = allow_open_files(needed);
@@ -67,8 +69,9 @@ void allow_files_for(const ServerConfig& config) {
       config.sessions_max, needed, allowed);
 }
 
-/// What ends the loop, and what prints the counters. Made before the server starts: a stop that comes
-/// meanwhile waits for its turn (and would be lost on the first process of a container).
+/// The signals that end the loop, and the one that logs the counters. It is made before the server
+/// starts, so that a signal during the start is handled afterwards; the first process of a
+/// container would otherwise ignore it.
 class Signals {
  public:
   explicit Signals(asio::io_context& loop)
@@ -81,7 +84,7 @@ class Signals {
     });
     wait_for_counters(server);
     loop_.run();
-    // The signals get their default effect again: a second one ends the process at once.
+    // The signals get their default effect again, so a second one ends the process at once.
     stop_.clear();
     counters_.clear();
   }
@@ -110,7 +113,7 @@ int run(const ServerOptions& options) {
     return cannot_start(allowed.error());
   }
   start_logging(config->log_level);
-  if (!options.port_file.empty()) {  // before the world is touched
+  if (!options.port_file.empty()) {  // before the world is opened
     if (const auto written = write_text_file(options.port_file, ""); !written) {
       return cannot_start(written.error().message());
     }
@@ -177,7 +180,7 @@ int server_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     const int code = runstone::server_program(argc, argv);
-    spdlog::shutdown();  // lines still queued are written
+    spdlog::shutdown();  // writes the queued lines
     return code;
   } catch (const std::exception& error) {
     return runstone::cannot_start(error.what());

@@ -72,7 +72,8 @@ CLI::App* add_control(CLI::App& app, ControlRequest& out) {
   return control;
 }
 
-/// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse order.
+/// Prints the first argument that the parser did not understand. CLI11 lists all of them in reverse
+/// order.
 void print_unknown_argument(const CLI::App& app) {
   std::cerr
       << "runstone-server: \"" << app.remaining(true).front()
@@ -87,7 +88,8 @@ ParsedServerOptions parse_server_options(int argc, const char* const* argv) {
   CompactRequest compact_request;
   ControlRequest control_request;
   CLI::App app{"Runstone world server"};
-  // The last value wins, so that arguments appended to a fixed command line (a container's) change it.
+  // The last value wins, so that arguments appended to a fixed command line (a container's) change
+  // it.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_flags(app, out);
   const CLI::App* const import = add_import(app, import_request);

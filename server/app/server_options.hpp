@@ -23,8 +23,8 @@ struct ServerOptions {
   std::optional<ControlRequest> control;  // the control subcommand
 };
 
-/// The options, or the exit code of a program that has nothing more to do: 0 after help or version, 2 after an error.
-/// The help text or the error was printed.
+/// The options, or the exit code of a program that has nothing more to do: 0 after help or version,
+/// 2 after an error. The help text or the error was printed.
 struct ParsedServerOptions {
   std::optional<ServerOptions> options;
   int exit_code = 0;

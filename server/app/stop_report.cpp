@@ -8,14 +8,14 @@
 namespace runstone {
 namespace {
 
-/// What is wrong with a snapshot (null: there is none) of a chunk that was in memory; nothing if it tells the
-/// same.
+/// Compares a snapshot (null: there is none) with the chunk that was in memory. Returns how they
+/// differ, or nullopt.
 std::optional<std::string> difference(const DigestCheckEntry* stored,
                                       const DigestCheckEntry& live) {
   if (stored == nullptr) return "is missing, but the chunk was edited";
   if (stored->version != live.version) {
-    return "stands at version=" + text_of(stored->version) +
-           ", the server stood at version=" + text_of(live.version);
+    return "has version=" + text_of(stored->version) +
+           ", the server had version=" + text_of(live.version);
   }
   if (stored->digest != live.digest) {
     return "has digest=" + to_hex(stored->digest) +

@@ -1,5 +1,5 @@
-// StopReport: what a server leaves behind, summed up from what it held in memory when it stopped and what is
-// on disk. Both must tell the same world.
+// StopReport: the state of the world after a stop, from the chunks that were in memory and from the
+// disk. Both must agree.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -12,23 +12,24 @@
 namespace runstone {
 
 struct StopReport {
-  bool is_clean = false;  // everything ordered is on disk, in the log and in snapshots
-  Digest world_digest;    // over `digests`; of the world at their seq only if the stop was clean
-  /// After a clean stop all chunks ever edited: what was in memory recomputed from its runs there, the rest
-  /// from its snapshot. After any other stop only what is on disk, the snapshots, each as it stands there:
-  /// what was in memory may contain edits that are lost.
+  bool is_clean = false;  // every ordered edit is on disk, in the log and in snapshots
+  Digest world_digest;    // of `digests`; it is the world's digest only if the stop was clean
+  /// After a clean stop: all chunks ever edited; those in memory recomputed from their runs, the
+  /// others from their snapshots. After any other stop: the snapshots only, because chunks in
+  /// memory may contain edits that are lost.
   DigestList digests;
   std::size_t live_chunks = 0;  // edited chunks that were in memory
-  std::string error;  // first row that cannot be read or is not what was in memory; empty if none
+  std::string error;  // the first row that cannot be read or differs from memory; empty: none
 };
 
-/// The line a program prints last: "stopped seq=… edited_chunks=… live=… world_digest=…", or "stopped unclean
-/// seq=… snapshots=… live=…", without a digest, for there is no sequence whose it would be.
+/// Returns the last line of the program: "stopped seq=… edited_chunks=… live=… world_digest=…", or
+/// "stopped unclean seq=… snapshots=… live=…". The latter has no digest, because the snapshots do
+/// not belong to one sequence number.
 std::string stop_line(const StopReport& report);
 
-/// `live`: the edited chunks that were in memory, ascending. After a clean stop each has an equal snapshot;
-/// any other stop leaves chunks that are newer than theirs. Reads every snapshot.
-StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
-                  bool is_clean);
+/// Makes the report. `live` are the edited chunks that were in memory, ascending. After a clean
+/// stop each must have an equal snapshot; after any other stop they may be newer. Cost: reads every
+/// snapshot.
+StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean);
 
 }  // namespace runstone

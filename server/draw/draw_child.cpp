@@ -21,7 +21,7 @@ namespace {
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::size_t kOrdersKept = 64 * 1024;  // small orders are sent together
-constexpr Milliseconds kEndLimit{10'000};       // for a child that has nothing more to do
+constexpr Milliseconds kEndLimit{10'000};       // for the exit of a child without orders
 
 Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
@@ -68,8 +68,7 @@ void DrawChild::close_and_kill() {
 DrawChild::Outcome<DrawChild> DrawChild::start(const DrawChildOptions& options) {
   const std::string program =
       sibling_program(options.program, "RUNSTONE_CLIENT", "runstone-client");
-  // A pair of sockets instead of two pipes: to write where nobody reads any more is an error then, not a
-  // signal.
+  // A pair of sockets instead of two pipes: a write to a closed socket is an error, not a signal.
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return failure(program + ": no pair of sockets: " + std::strerror(errno));
@@ -122,7 +121,7 @@ DrawChild::Outcome<PictureDrawn> DrawChild::draw(const DrawCamera& camera, Pictu
   if (std::holds_alternative<PictureUnwritten>(*answer))
     return failure(file + ": cannot be written");
   auto* drawn = std::get_if<PictureDrawn>(&*answer);
-  if (drawn == nullptr || drawn->file != file) return lost("answered something that was not asked");
+  if (drawn == nullptr || drawn->file != file) return lost("sent an answer to another order");
   return std::move(*drawn);
 }
 
@@ -136,7 +135,7 @@ DrawChild::Outcome<void> DrawChild::finish() {
   return {};
 }
 
-/// Sends all that is waiting. The child answers nothing meanwhile but why it gives up.
+/// Sends all waiting orders. Meanwhile the child sends no answer, except the reason why it fails.
 DrawChild::Outcome<void> DrawChild::send() {
   if (!broken_.empty()) {
     orders_.clear();
@@ -151,10 +150,10 @@ DrawChild::Outcome<void> DrawChild::send() {
     }
     if (errno == EINTR) continue;
     if (errno != EAGAIN && errno != EWOULDBLOCK) {
-      // It is gone; its last words say why, if it had any.
-      const auto words = await_answer();
-      if (!words) return failure(words.error());
-      const auto* failed = std::get_if<DrawFailed>(&*words);
+      // The child has closed the socket. Its last answer, if it sent one, has the reason.
+      const auto answer = await_answer();
+      if (!answer) return failure(answer.error());
+      const auto* failed = std::get_if<DrawFailed>(&*answer);
       return lost(failed != nullptr ? failed->text : "gave up");
     }
     if (const auto ready = wait_for(POLLOUT); !ready) return ready;
@@ -164,7 +163,7 @@ DrawChild::Outcome<void> DrawChild::send() {
   return {};
 }
 
-/// Waits for the next answer. One that ends the child is an error, as is a child that ends without.
+/// Waits for the next answer. Fails if the child exits without one, or sends no valid answer.
 DrawChild::Outcome<DrawAnswer> DrawChild::await_answer() {
   if (!broken_.empty()) return failure(broken_);
   for (;;) {
@@ -185,7 +184,7 @@ DrawChild::Outcome<DrawAnswer> DrawChild::await_answer() {
   }
 }
 
-/// Waits until the socket can do one of these.
+/// Waits until one of the events of poll() is possible on the socket.
 DrawChild::Outcome<void> DrawChild::wait_for(short events) {
   const auto end = std::chrono::steady_clock::now() + answer_limit_;
   for (;;) {
@@ -196,7 +195,7 @@ DrawChild::Outcome<void> DrawChild::wait_for(short events) {
                   " s and was stopped");
     }
     pollfd poll{socket_, events, 0};
-    // In slices, so that no limit is too long for poll().
+    // In steps of a second, because the limit may not fit into an int.
     const int count =
         ::poll(&poll, 1, static_cast<int>(std::min<Milliseconds::rep>(left.count(), 1000)));
     if (count > 0) return {};
@@ -205,18 +204,19 @@ DrawChild::Outcome<void> DrawChild::wait_for(short events) {
   }
 }
 
-/// Whether there was anything before the end.
+/// Receives what is there. Returns false at the end of the stream.
 DrawChild::Outcome<bool> DrawChild::receive() {
   std::array<char, 4096> buffer;
   const ssize_t got = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return true;
-  // One that ended with orders unread leaves a reset connection instead of an end.
+  // A child that exits with unread orders resets the connection instead of ending the stream.
   if (got <= 0) return false;
   lines_.append(buffer.data(), static_cast<std::size_t>(got));
   return true;
 }
 
-/// There is no child from now on. Empty `why`: it ended by itself.
+/// Ends the child and returns the error for this call and all later ones. If `why` is empty, the
+/// child exits by itself and its exit status is the reason.
 Unexpected<std::string> DrawChild::lost(const std::string& why) {
   broken_ = program_ + ": " + (why.empty() ? reap() : why);
   close_and_kill();
@@ -224,14 +224,14 @@ Unexpected<std::string> DrawChild::lost(const std::string& why) {
   return failure(broken_);
 }
 
-/// Waits for the end of a child that is about to end, and says how it did.
+/// Waits for the exit of a child that has no more orders. Returns a text about its exit status.
 std::string DrawChild::reap() {
   const auto end = std::chrono::steady_clock::now() + kEndLimit;
   int status = 0;
   for (;;) {
     const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
     if (ended == pid_) break;
-    if (ended < 0 && errno != EINTR) return "is no child of ours any more";
+    if (ended < 0 && errno != EINTR) return "is no longer a child process";
     if (std::chrono::steady_clock::now() > end) {
       close_and_kill();
       return "did not end and was stopped";

@@ -1,19 +1,21 @@
-// DrawChild: pictures for a program that has no OpenGL. It starts `runstone-client --draw` as a child process,
-// sends it chunks and has them drawn into PNG files. A child, because server and client never include each
-// other, and because a graphics driver that hangs or crashes must not take a server with it.
+// DrawChild: draws pictures for a program that has no OpenGL. It starts `runstone-client --draw` as
+// a child process, sends it chunks and has them drawn into PNG files. It is a process of its own
+// because server and client never include each other, and because a graphics driver that hangs or
+// crashes must not end a server.
 //
-//   auto child = DrawChild::start({});                          // or {.program = "/path/to/runstone-client"}
-//   if (!child) return error(child.error());                    // one line, names the program
-//   child->world(edge, materials);                              // first, once
-//   for (...) child->chunk(key, *voxels);                       // what is not sent counts as empty
-//   child->draw(oblique_camera(box, size), size, "before.png"); // returns when the file is there
+//   auto child = DrawChild::start({});  // or {.program = "/path/to/runstone-client"}
+//   if (!child) return error(child.error());  // one line, names the program
+//   child->world(edge, materials);  // first, once
+//   for (...) child->chunk(key, *voxels);  // a chunk that is not sent is empty
+//   child->draw(oblique_camera(box, size), size, "before.png");  // returns with the file
 //   child->chunk(key, *other); child->draw(camera, size, "after.png");
-//   child->finish();                                            // or just drop it: the child is killed
+//   child->finish();  // without it the destructor kills the child
 //
-// Every call returns an error as one line of text. After a picture whose size, place or file will not do the next one may
-// succeed; after any other error there is no child any more, and every later call says so at once. One thread at a time; the calls
-// block, on the child's work at most `answer_limit` each, so a server's world strand never makes them.
-// The pair of sockets in between holds some 200 KB: the child is written to as fast as it reads.
+// Every call returns an error as one line of text. An invalid size, camera or file leaves the child
+// running, so that the next picture may succeed. After any other error there is no child, and every
+// later call returns that error at once. Thread: one at a time. A call blocks until the child has
+// done its work, at most `answer_limit`, so the world strand of a server never makes one. The
+// sockets between the processes buffer about 200 KB.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -30,10 +32,10 @@
 namespace runstone {
 
 struct DrawChildOptions {
-  /// The client's program. Empty: what the environment's RUNSTONE_CLIENT names, else `runstone-client` in the
-  /// folder of the running program.
+  /// Path of runstone-client. If it is empty, the variable RUNSTONE_CLIENT names it, otherwise it
+  /// is `runstone-client` in the folder of the running program.
   std::string program;
-  /// Longest silence of the child while something is expected of it.
+  /// The child is stopped if it takes longer to answer, or to read what it is sent.
   std::chrono::milliseconds answer_limit{std::chrono::minutes(2)};
 };
 
@@ -42,26 +44,27 @@ class DrawChild {
   template <class T>
   using Outcome = Result<T, std::string>;
 
-  /// Starts the program and waits until it has OpenGL. The child gets our standard error, nothing else of
-  /// ours: no socket, no file.
+  /// Starts the program and waits until it has OpenGL. The child inherits standard error, but no
+  /// other socket or file.
   static Outcome<DrawChild> start(const DrawChildOptions& options);
   DrawChild(DrawChild&& other) noexcept;
   DrawChild& operator=(DrawChild&& other) noexcept;
-  /// Kills the child if it runs, and reaps it.
+  /// Kills the child if it runs, and waits for its end.
   ~DrawChild();
 
   /// "EGL surfaceless" or "OSMesa".
   const std::string& renderer() const { return renderer_; }
 
-  /// What the chunks are made of. First, and once. `edge`: voxels a side.
+  /// Sends the edge of a chunk in voxels and the materials. Call it once, before all other orders.
   Outcome<void> world(std::int32_t edge, const MaterialTable& materials);
-  /// The chunk looks like this from now on. A cube of the world's edge. Packed and sent: O(runs).
+  /// Sets the voxels of a chunk, a cube of the world's edge. Cost: O(runs).
   Outcome<void> chunk(const ChunkKey& key, const RunChunk& voxels);
+  /// Makes the chunk empty.
   Outcome<void> forget(const ChunkKey& key);
-  /// Has the picture drawn and written, and returns when it is on the disk. `file`: UTF-8, from our working
+  /// Draws a picture and returns when the file is written. `file`: UTF-8, relative to the working
   /// folder.
   Outcome<PictureDrawn> draw(const DrawCamera& camera, PictureSize size, const std::string& file);
-  /// No more orders: waits until the child has ended by itself.
+  /// Ends the orders and waits until the child has exited.
   Outcome<void> finish();
 
  private:
@@ -75,12 +78,12 @@ class DrawChild {
   void close_and_kill();
 
   std::string program_, renderer_;
-  int pid_ = -1;     // -1: none, or reaped
+  int pid_ = -1;     // -1: no child
   int socket_ = -1;  // both of the child's standard streams
   std::chrono::milliseconds answer_limit_;
   Bytes orders_;        // not sent yet
-  std::string lines_;   // received, not taken yet
-  std::string broken_;  // why there is no child any more; empty while there is
+  std::string lines_;   // received, not parsed yet
+  std::string broken_;  // the error that every call returns; empty while there is a child
 };
 
 }  // namespace runstone

@@ -10,10 +10,11 @@
 namespace runstone {
 namespace {
 
-constexpr double kFovY = 0.8;  // radians: narrower than a player looks, so that towers do not lean
-constexpr double kMargin = 0.94;      // of the picture's sides that the box may fill
-constexpr double kFogStart = 0.6;     // of `far`: the renderer fades from there on
-constexpr double kNearPerFar = 5e-5;  // the depth buffer cannot tell much more apart
+/// Radians. It is narrower than a player's field of view, so that towers do not seem to lean.
+constexpr double kFovY = 0.8;
+constexpr double kMargin = 0.94;      // part of the picture's sides that the box may fill
+constexpr double kFogStart = 0.6;     // part of `far` at which the renderer's fog begins
+constexpr double kNearPerFar = 5e-5;  // limit of the depth buffer's resolution
 constexpr double kSmallestSide = 16;  // voxels
 
 struct Vec {
@@ -21,7 +22,9 @@ struct Vec {
 };
 double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Half-open in doubles, so that a corner of the world is one, too.
+/// Returns the corners of the box. A side shorter than `smallest` is extended to it on both ends.
+/// The maximum of a VoxelBox is one past its last voxel, which is the corner in continuous
+/// coordinates.
 std::array<Vec, 8> corners_of(const VoxelBox& box, double smallest) {
   const auto side = [smallest](double min, double max) {
     const double missing = std::max(0.0, smallest - (max - min)) / 2;
@@ -34,15 +37,16 @@ std::array<Vec, 8> corners_of(const VoxelBox& box, double smallest) {
   return out;
 }
 
-/// What the corners leave free on one axis of the picture. Corner c is inside if |c.side - eye.side| <=
-/// slope * (c.depth - eye.depth): the eye lies above low + slope * depth and below high - slope * depth.
+/// The places of the eye from which all corners are inside the picture, on one of its axes. Corner
+/// c is inside if |c.side - eye.side| <= slope * (c.depth - eye.depth). So the eye's side lies
+/// between high - slope * depth and low + slope * depth of the eye's depth.
 struct Wedge {
   double slope = 1, low = -std::numeric_limits<double>::infinity(), high = -low;
   void take(double side, double depth) {
     low = std::max(low, side - slope * depth);
     high = std::min(high, side + slope * depth);
   }
-  /// Where both meet: the deepest that the eye may stand.
+  /// Returns the greatest depth at which there is such a place.
   double depth() const { return (high - low) / (2 * slope); }
   double middle() const { return (low + high) / 2; }
 };

@@ -1,24 +1,25 @@
-// Where to stand to see a box: cameras for pictures that nobody steers.
+// Cameras that show a box, for pictures without a player.
 #pragma once
 #include "common/core/coords.hpp"
 #include "protocol/codec/draw_order.hpp"
 
 namespace runstone {
 
-/// From which side: as DrawCamera's angles, radians. The default looks down at 35 degrees, past two walls.
+/// Direction of view, in radians, as the angles of DrawCamera. The default looks down at 35
+/// degrees, diagonally past two walls.
 struct ViewDirection {
   double yaw = 0.65, pitch = -0.61;
 };
 
-/// The camera of this direction that sees the whole box with a margin, no nearer and no farther: the box
-/// touches the margin at two opposite sides of the picture. Small boxes are taken with the 16 voxels around their
-/// middle, so that one voxel is seen in its surroundings. Nothing of the box is cut away or fades. What stands
-/// between eye and box is seen instead. Requires a box that is not empty; beyond some 10^5 voxels it is not seen
-/// whole.
+/// Returns the camera of this direction that is nearest to the box and still sees all of it with a
+/// margin. The box touches the margin on two opposite sides of the picture. A side shorter than 16
+/// voxels counts as 16, so that a single voxel is seen in its surroundings. No part of the box is
+/// clipped or fades into fog, but voxels between eye and box may hide it. Requires a box that is
+/// not empty. A box of more than about 10^5 voxels a side is not seen as a whole.
 DrawCamera oblique_camera(const VoxelBox& box, PictureSize size, ViewDirection direction = {});
 
-/// Moves `near` and `far` so that from this eye nothing of `box` fades into the sky, and distances are told
-/// apart as well as they can be.
+/// Sets `near` and `far` so that from this eye no part of `box` fades into fog, and the depth
+/// buffer has the best resolution that this allows.
 void fit_distances(DrawCamera& camera, const VoxelBox& box);
 
 }  // namespace runstone

@@ -17,16 +17,16 @@ namespace {
 
 constexpr PictureSize kSize{960, 540};
 constexpr std::chrono::seconds kAnswerMax{20};
-constexpr std::int32_t kLandAround =
-    2;  // chunks beside those that change, for people to know the place
-constexpr std::size_t kLandMax = 4096;  // chunks drawn in all
+/// Chunks drawn around those that change, so that people recognise the place.
+constexpr std::int32_t kLandAround = 2;
+constexpr std::size_t kLandMax = 4096;  // chunks drawn around, at most
 
 VoxelBox united(const VoxelBox& a, const VoxelBox& b) {
   return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
 }
 
-/// The box of some voxels of a chunk, in the world.
+/// Returns a box of a chunk in world coordinates.
 VoxelBox in_world(const OrderedBox& box, AxisOrder order, VoxelPos origin) {
   const auto axes = axes_of(order);
   std::array<std::int32_t, 3> first = {origin.x, origin.y, origin.z}, last = first;
@@ -40,9 +40,9 @@ VoxelBox in_world(const OrderedBox& box, AxisOrder order, VoxelPos origin) {
 
 }  // namespace
 
-void PreviewPictures::see(const RestorePlan& plan) {
+void PreviewPictures::add(const RestorePlan& plan) {
   edge_ = plan.now.extent.x;
-  if (seen_.size() <= kChunksMax) seen_.push_back({plan.key, plan.now, plan.restored});
+  if (changed_.size() <= kChunksMax) changed_.push_back({plan.key, plan.now, plan.restored});
   const OrderedExtent extent = ordered(plan.now.extent, plan.now.order);
   for (const Difference& difference : plan.differences) {
     for_each_box(extent, difference.first, difference.last, [&](const OrderedBox& box) {
@@ -54,8 +54,8 @@ void PreviewPictures::see(const RestorePlan& plan) {
 
 std::string PreviewPictures::draw(WorldReader& reader, const Generator& generator,
                                   const std::string& name) {
-  if (seen_.empty()) return "no picture: nothing would change";
-  if (seen_.size() > kChunksMax) {
+  if (changed_.empty()) return "no picture: nothing would change";
+  if (changed_.size() > kChunksMax) {
     return "no picture: more than " + std::to_string(kChunksMax) +
            " chunks would change; a smaller `box` can be drawn";
   }
@@ -75,12 +75,12 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
   if (auto sent = child->world(edge_, reader.meta().materials); !sent) return sent;
 
   std::set<ChunkKey> changed, around;
-  for (const Seen& seen : seen_) changed.insert(seen.key);
-  for (const Seen& seen : seen_) {
+  for (const ChangedChunk& chunk : changed_) changed.insert(chunk.key);
+  for (const ChangedChunk& chunk : changed_) {
     for (std::int32_t dx = -kLandAround; dx <= kLandAround; ++dx) {
       for (std::int32_t dy = -1; dy <= 1; ++dy) {
         for (std::int32_t dz = -kLandAround; dz <= kLandAround; ++dz) {
-          const ChunkCoord at = {seen.key.at.x + dx, seen.key.at.y + dy, seen.key.at.z + dz};
+          const ChunkCoord at = {chunk.key.at.x + dx, chunk.key.at.y + dy, chunk.key.at.z + dz};
           if (around.size() < kLandMax && !changed.contains({0, at})) around.insert({0, at});
         }
       }
@@ -96,16 +96,17 @@ Result<void, std::string> PreviewPictures::draw_both(WorldReader& reader,
     if (auto sent = child->chunk(key, chunk->voxels); !sent) return sent;
   }
   const DrawCamera camera = oblique_camera(*area_, kSize);
-  const auto picture = [&](const char* which, RunChunk Seen::* state) -> Result<void, std::string> {
-    for (const Seen& seen : seen_) {
-      if (auto sent = child->chunk(seen.key, seen.*state); !sent) return sent;
+  const auto picture = [&](const char* which,
+                           RunChunk ChangedChunk::* state) -> Result<void, std::string> {
+    for (const ChangedChunk& chunk : changed_) {
+      if (auto sent = child->chunk(chunk.key, chunk.*state); !sent) return sent;
     }
     const auto drawn = child->draw(camera, kSize, folder_ + "/" + name + "-" + which + ".png");
     if (!drawn) return Unexpected<std::string>{drawn.error()};
     return {};
   };
-  if (auto drawn = picture("before", &Seen::now); !drawn) return drawn;
-  if (auto drawn = picture("after", &Seen::restored); !drawn) return drawn;
+  if (auto drawn = picture("before", &ChangedChunk::now); !drawn) return drawn;
+  if (auto drawn = picture("after", &ChangedChunk::restored); !drawn) return drawn;
   return child->finish();
 }
 

@@ -1,6 +1,7 @@
-// PreviewPictures: what a rollback would do, as two pictures of the area: as it is now, and as it would be. Drawn by
-// a child (draw_child.hpp) into WORLD/previews. Belongs to one preview; blocks on the disk and the child, so it
-// runs on a worker.
+// PreviewPictures: draws what a rollback would do: a picture of the area as it is, and one of the
+// area after the rollback. A child process (draw_child.hpp) draws them into WORLD/previews. One
+// object belongs to one preview. Thread: a worker, because calls block on the disk and on the
+// child.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -17,20 +18,20 @@ namespace runstone {
 
 class PreviewPictures {
  public:
-  /// Changed chunks in a picture at most; of more there is none.
+  /// If more chunks would change, no picture is drawn.
   static constexpr std::size_t kChunksMax = 1024;
 
   explicit PreviewPictures(std::string world_folder)
       : folder_(std::move(world_folder) + "/previews") {}
 
-  /// A chunk that would change.
-  void see(const RestorePlan& plan);
-  /// Draws NAME-before.png and NAME-after.png with the land around. Returns a line for people: where they lie, or why
-  /// there are none.
+  /// Adds a chunk that would change.
+  void add(const RestorePlan& plan);
+  /// Draws NAME-before.png and NAME-after.png, with the chunks around. Returns a line of text with
+  /// their paths, or with the reason why there are no pictures.
   std::string draw(WorldReader& reader, const Generator& generator, const std::string& name);
 
  private:
-  struct Seen {
+  struct ChangedChunk {
     ChunkKey key;
     RunChunk now, restored;
   };
@@ -38,7 +39,7 @@ class PreviewPictures {
                                       const std::string& name);
 
   std::string folder_;
-  std::vector<Seen> seen_;
+  std::vector<ChangedChunk> changed_;
   std::optional<VoxelBox> area_;  // of the voxels that change
   std::int32_t edge_ = 0;
 };

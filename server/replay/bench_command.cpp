@@ -53,8 +53,8 @@ struct Times {
   ReplayReport report;  // of the last round
 };
 
-/// Reads the log once, then rebuilds the world once, from a store that is opened for this round: nothing that a store
-/// keeps in memory speeds up the next round. The error is one line.
+/// Reads the log once, then rebuilds the world once, from a store that is opened for this round:
+/// nothing that a store keeps in memory speeds up the next round. The error is one line.
 Result<void, std::string> run_round(const BenchOptions& options, Times& times) {
   const auto world = open_for_reading(options.common.world);
   if (!world) return failure(world.error());

@@ -19,8 +19,8 @@ struct BenchOptions {
 
 void declare_bench(SubcommandOptions& command_line, BenchOptions& options);
 
-/// Times reading and rebuilding in alternation and prints a table; the JSON report has every time. Fails if the replay
-/// finds a difference. Memory: all edited chunks as runs.
+/// Times reading and rebuilding in alternation and prints a table; the JSON report has every time.
+/// Fails if the replay finds a difference. Memory: all edited chunks as runs.
 Result<int, std::string> run_bench(const BenchOptions& options, std::ostream& out);
 
 }  // namespace runstone

@@ -18,7 +18,7 @@ constexpr std::string_view kBlanks = " \t\r";
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadiansPerDegree = kPi / 180;
 
-/// Cuts the next word off.
+/// Removes the next word from the text and returns it.
 std::string_view take_word(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
   const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
@@ -37,11 +37,11 @@ std::optional<T> number_of(std::string_view word) {
 std::optional<double> number_in(std::string_view word, double low, double high) {
   const auto value = number_of<double>(word);
   if (!value || !(*value >= low && *value <= high))
-    return std::nullopt;  // so written, a NaN is outside
+    return std::nullopt;  // a NaN is outside the range too
   return value;
 }
 
-/// A sequence, or a share as the sequence it stands for.
+/// Parses a sequence number, or a percentage as the sequence number that it means.
 std::optional<double> moment_of(std::string_view word, Sequence first, Sequence last) {
   if (word.ends_with('%')) {
     const auto share = number_in(word.substr(0, word.size() - 1), 0, 100);

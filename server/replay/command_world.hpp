@@ -1,4 +1,5 @@
-// What the subcommands of runstone-replay share: opening a world, finding the end of a replay, and printing a report.
+// What the subcommands of runstone-replay share: opening a world, finding the end of a replay, and
+// printing a report.
 #pragma once
 #include <iosfwd>
 #include <memory>
@@ -19,11 +20,12 @@ struct CommandWorld {
   std::unique_ptr<Generator> generator;
 };
 
-/// Opens the world in `folder` for reading; a server may be running it. Fails if there is no world, or if this
-/// program lacks its generator. The error is one line.
+/// Opens the world in `folder` for reading; a server may be running it. Fails if there is no world,
+/// or if this program lacks its generator. The error is one line.
 Result<CommandWorld, std::string> open_for_reading(const std::string& folder);
 
-/// Returns the sequence number of the moment in this world, or the greatest sequence number if there is no moment.
+/// Returns the sequence number of the moment in this world, or the greatest sequence number if
+/// there is no moment.
 Result<Sequence, std::string> end_of_replay(Store& store, const std::optional<NamedMoment>& moment);
 
 /// Begins a row of a report's table: writes the name in a column of twelve characters.

@@ -23,7 +23,7 @@ Unexpected<TextError> failure(std::string_view file, std::string key, std::strin
   return {TextError{std::string(file), 0, std::move(key), std::move(what)}};
 }
 
-/// Exactly `digits` lower-case hex digits.
+/// Parses exactly `digits` lower-case hex digits.
 std::optional<std::uint64_t> parse_hex(std::string_view text, std::size_t digits) {
   std::uint64_t value = 0;
   if (text.size() != digits) return std::nullopt;
@@ -46,7 +46,7 @@ std::optional<Digest> parse_digest(std::string_view text) {
   return digest;
 }
 
-/// Member `key` of an object as an integer in [low, high].
+/// Returns member `key` of an object if it is an integer in [low, high].
 template <class T>
 std::optional<T> integer(const Json& object, const char* key, T low, T high) {
   const auto member = object.find(key);
@@ -93,7 +93,7 @@ std::string to_json(const DigestList& list) {
   rows.reserve(list.chunks.size());
   for (const DigestCheckEntry& entry : list.chunks) rows.push_back(&entry);
   std::sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->key < b->key; });
-  // By hand, because a library would put each number on a line of its own, or everything on one.
+  // The JSON library would put each number on a line of its own, or everything on one line.
   std::string json = "{\"world_id\":\"" + to_hex(list.world_id) +
                      "\",\"seq\":" + std::to_string(list.seq) +
                      (list.is_clean ? "" : ",\"clean\":false") + ",\"chunks\":[";

@@ -1,6 +1,6 @@
-// DigestList: the digests of a set of chunks as a JSON file, the paper on which server, clients and replay
-// compare what they hold (docs/replay.md gives the format). File access belongs to programs: call it from no
-// strand.
+// DigestList: the digests of a set of chunks as a JSON file. Server, clients and replay compare
+// their voxels with it (docs/replay.md has the format). Thread: no strand, because file access
+// blocks.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,22 +15,23 @@ namespace runstone {
 
 struct DigestList {
   WorldId world_id{};
-  Sequence seq = 0;                      // where the holder stood when it wrote the list
+  Sequence seq = 0;                      // last sequence number of the writer
   std::vector<DigestCheckEntry> chunks;  // any order
-  bool is_clean = true;  // false: chunks stand at their own versions, and not together at `seq`
+  bool is_clean = true;  // false: the chunks do not all belong to the world after `seq`
 };
 
-/// JSON text, chunks ascending by key, one line each: equal lists give equal bytes.
+/// Returns JSON text with the chunks ascending by key, one on each line. Equal lists give equal
+/// bytes.
 std::string to_json(const DigestList& list);
-/// The reverse; other keys are ignored, so that a file may say more. A list that is not clean is refused: it
-/// cannot be compared with anything. `file` is only for messages.
+/// Parses the text of to_json(). Unknown keys are ignored. Fails if the list is not clean, because
+/// such a list cannot be compared with a world. `file` is only for messages.
 Result<DigestList, TextError> parse_digests_json(std::string_view json, std::string_view file);
 
-/// Writes the file whole or not at all (a new file takes the old one's place).
+/// Writes the file completely or not at all: a finished file replaces the old one.
 Result<void, TextError> write_digests_json(const std::string& file, const DigestList& list);
 Result<DigestList, TextError> read_digests_json(const std::string& file);
 
-/// The two halves of write_digests_json() and read_digests_json(), for files that say more.
+/// Writes a text file completely or not at all: a finished file replaces the old one.
 Result<void, TextError> write_text_file(const std::string& file, std::string_view text);
 
 }  // namespace runstone

@@ -1,4 +1,5 @@
-// runstone-replay import: appends an .rlog file to a world's log, or makes the world (docs/replay.md).
+// runstone-replay import: appends an .rlog file to a world's log, or makes the world
+// (docs/replay.md).
 #pragma once
 #include <iosfwd>
 #include <string>
@@ -14,8 +15,8 @@ struct ImportOptions {
 };
 
 void declare_import(SubcommandOptions& command_line, ImportOptions& options);
-/// Imports the file up to its first damaged block and prints a table. Fails if anything of the file is damaged; the
-/// edits before it stay imported.
+/// Imports the file up to its first damaged block and prints a table. Fails if anything of the file
+/// is damaged; the edits before it stay imported.
 Result<int, std::string> run_import(const ImportOptions& options, std::ostream& out);
 
 }  // namespace runstone

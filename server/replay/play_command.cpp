@@ -71,8 +71,8 @@ class TemporaryFolder {
 
 volatile std::sig_atomic_t signal_caught = 0;
 
-/// Records SIGINT and SIGTERM while it lives, so that neither ends the program before the temporary file is removed. At
-/// most one object exists at a time.
+/// Records SIGINT and SIGTERM while it lives, so that neither ends the program before the temporary
+/// file is removed. At most one object exists at a time.
 class SignalRecorder {
  public:
   SignalRecorder() {

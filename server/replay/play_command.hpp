@@ -1,5 +1,5 @@
-// runstone-replay play: plays a world's log into a live server. Only clients join a server, so runstone-bot plays it, as
-// a child process.
+// runstone-replay play: plays a world's log into a live server. Only clients join a server, so
+// runstone-bot plays it, as a child process.
 #pragma once
 #include <iosfwd>
 #include <optional>
@@ -21,8 +21,9 @@ struct PlayOptions {
 
 void declare_play(SubcommandOptions& command_line, PlayOptions& options);
 
-/// Exports the log to a temporary file, starts runstone-bot on it and waits for its end. Returns its exit code. Removes
-/// the file in every case. Meanwhile SIGINT and SIGTERM are passed on to the child. Blocks.
+/// Exports the log to a temporary file, starts runstone-bot on it and waits for its end. Returns
+/// its exit code. Removes the file in every case. Meanwhile SIGINT and SIGTERM are passed on to the
+/// child. Blocks.
 Result<int, std::string> run_play(const PlayOptions& options, std::ostream& out);
 
 }  // namespace runstone

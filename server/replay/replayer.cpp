@@ -61,7 +61,8 @@ StoreResult<void> Replayer::compare(const ChunkKey& key, ReplayedChunk& rebuilt)
     rebuilt.settle(scratch_);
     const auto stored = store_.load_snapshot(key);
     if (!stored) return Unexpected<StoreError>{stored.error()};
-    // A server that runs meanwhile may have replaced it; then there is nothing to compare at this version.
+    // A running server may have replaced the snapshot. Then there is none to compare at this
+    // version.
     if (stored->has_value() && (*stored)->version == version) {
       check(key, {"snapshot", version, (*stored)->digest}, rebuilt.chunk());
       ++report_.snapshots_compared;
@@ -134,7 +135,7 @@ StoreResult<void> Replayer::compare_rest() {
 }
 
 StoreResult<void> Replayer::compare_left_over(const ChunkKey& key, const Expected& expected) {
-  // Either no edit touched the chunk, or the log passed the version without meeting it: check() sees which.
+  // Either no edit touched the chunk, or the log never had the version, which check() then finds.
   if (const auto found = chunks_.find(key); found != chunks_.end()) {
     check(key, expected, found->second.chunk());
     return {};
@@ -159,7 +160,7 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
     return Unexpected<StoreError>{expected.error()};
 
   if (range->first > 1) {
-    // What was edited only before the log begins belongs to the world all the same.
+    // Chunks whose edits were all compacted into the base belong to the world too.
     const auto base = store_.base_chunks();
     if (!base) return Unexpected<StoreError>{base.error()};
     for (const StoredChunk& stored : *base) {
@@ -188,7 +189,7 @@ StoreResult<ReplayReport> Replayer::run(Sequence at, const Progress& progress) {
   for (auto& [key, rebuilt] : chunks_) {
     rebuilt.settle(scratch_);
     const Chunk& chunk = rebuilt.chunk();
-    // The digest followed every edit; recomputed from the runs it must be the same.
+    // The digest that followed every edit must be that of the runs.
     check(key, {"followed digest", chunk.version, digest_of(chunk.voxels)}, chunk);
     report_.digests.push_back({key, chunk.version, chunk.digest});
     report_.world_digest = report_.world_digest + world_digest_term(key, chunk.digest);

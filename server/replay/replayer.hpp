@@ -1,6 +1,7 @@
-// Replayer: rebuilds a world from base and log alone and compares the result, digest by digest, with what was
-// stored as snapshots and with what a server or clients wrote down. Snapshots are never read for their
-// voxels. This is the proof that the log is the world: same apply function, another time, another process.
+// Replayer: rebuilds a world from base and log alone. It compares the digests of the result with
+// those of the stored snapshots and with digests that a server or clients wrote. It never reads the
+// voxels of a snapshot. It uses the same apply function as the server, in another process, so it
+// proves that the log holds the world.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,12 +17,12 @@
 
 namespace runstone {
 
-/// Two digests that should be equal and are not, or a version that the log does not have.
+/// Two digests that should be equal and differ, or a version that the log does not have.
 struct ReplayDifference {
   std::string source;  // "snapshot", "keyframe", "followed digest" or the name of a list
   ChunkKey key;
-  Version expected_version,
-      rebuilt_version;  // equal, unless the log never brought the chunk to the first
+  /// They are equal unless the log never brought the chunk to the expected version.
+  Version expected_version, rebuilt_version;
   Digest expected, rebuilt;
   std::string message() const;  // one line
 };
@@ -29,37 +30,40 @@ struct ReplayDifference {
 struct ReplayReport {
   Sequence seq = 0;  // where the replay ended
   std::uint64_t edits = 0;
-  /// Summed over sweeps: what one edit of a sweep sets and a later one resets is not in it.
+  /// Summed over sweeps. A voxel that one edit of a sweep sets and a later one resets does not
+  /// count.
   std::uint64_t voxels_changed = 0;
   StackDepths stack_depths;  // of the sweeps
   std::uint64_t snapshots_compared = 0;
   std::uint64_t keyframes_compared = 0;  // chunks of them
   std::uint64_t listed_compared = 0;
-  std::uint64_t not_compared =
-      0;  // snapshots and listed chunks newer than `seq`, or of another level of detail
+  /// Snapshots and listed chunks that are newer than `seq` or of another level of detail.
+  std::uint64_t not_compared = 0;
   std::uint64_t differences = 0;
-  std::optional<ReplayDifference> first;  // the first one met
+  std::optional<ReplayDifference> first;  // in the order of the replay
   Digest world_digest;                    // over `digests`
   std::vector<DigestCheckEntry> digests;  // of all edited chunks, ascending
 };
 
 class Replayer {
  public:
-  /// Both must outlive the replayer. The store may be open for reading only, with a server writing meanwhile.
+  /// Both must outlive the replayer. The store may be open for reading only while a server writes
+  /// it.
   Replayer(WorldReader& store, const Generator& generator);
 
-  /// Compares each listed chunk when (and if) the replay brings it to the listed version. Versions newer than
-  /// the end of the replay are left out; versions that the log passed without meeting them are differences.
+  /// Adds the chunks of a list. Each is compared when the replay brings it to the listed version. A
+  /// version that is newer than the end of the replay is not compared. A version that the log never
+  /// gives to the chunk is a difference.
   void expect(const std::string& source, const DigestList& list);
 
-  /// The same for chunks that keyframes hold.
+  /// Adds the chunks of keyframes in the same way.
   void expect_keyframes(const std::vector<StoredChunk>& chunks);
 
-  /// Called now and then with the sequence reached and the last one.
+  /// Called every 1024 edits with the sequence number reached and the last one.
   using Progress = std::function<void(Sequence, Sequence)>;
-  /// Replays the edits of the log up to min(at, last). Call once. Memory: all edited chunks as runs. Fails
-  /// with what the store says about rows that cannot be read, and (bad_request) if the log begins behind
-  /// `at`.
+  /// Replays the edits of the log up to min(at, last). Call it once. Memory: all edited chunks as
+  /// runs. Fails with the store's error if a row cannot be read, and with bad_request if the log
+  /// begins after `at`.
   StoreResult<ReplayReport> run(Sequence at, const Progress& progress = {});
 
  private:
@@ -71,10 +75,11 @@ class Replayer {
 
   StoreResult<void> replay_edit(const EditRecord& record);
   StoreResult<void> expect_snapshots();
-  /// Compares with all that is expected of this chunk at its present version and forgets that.
+  /// Compares the chunk with everything that is expected of it at its present version, and removes
+  /// these expectations.
   StoreResult<void> compare(const ChunkKey& key, ReplayedChunk& rebuilt);
-  /// What was not met on the way: chunks that no edit touched, versions beyond the end, versions that never
-  /// were.
+  /// Compares the remaining expectations: chunks that no edit touched, versions beyond the end, and
+  /// versions that never existed.
   StoreResult<void> compare_rest();
   StoreResult<void> compare_left_over(const ChunkKey& key, const Expected& expected);
   void check(const ChunkKey& key, const Expected& expected, const Chunk& rebuilt);

@@ -20,13 +20,13 @@ namespace runstone {
 namespace {
 
 constexpr std::size_t kEditsPerTransaction = 4096;
-constexpr mode_t kFileMode = 0600;  // names and keys of players are nobody else's business
+constexpr mode_t kFileMode = 0600;  // the file has names and keys of players
 
 Unexpected<std::string> failure(std::string line) { return {std::move(line)}; }
 
 std::string system_error_text() { return std::generic_category().message(errno); }
 
-/// An open file, closed with it.
+/// An open file. The destructor closes it.
 class File {
  public:
   File(const std::string& name, int flags)
@@ -49,7 +49,7 @@ class File {
   }
   bool sync() const { return ::fsync(descriptor_) == 0; }
 
-  /// As RlogSource.
+  /// Reads as an RlogSource does.
   std::optional<std::size_t> read(std::uint64_t position, std::span<std::uint8_t> out) const {
     std::size_t got = 0;
     while (got < out.size()) {
@@ -107,7 +107,7 @@ Result<RlogExport, std::string> write_rlog(WorldReader& store, const File& out,
   if (!world) return failure(world.error());
   const auto range = store.log_range();
   if (!range) return failure(range.error().message());
-  // After the range: a server that runs meanwhile adds players before their edits.
+  // The players are read after the range, because a running server adds players before their edits.
   const auto players = players_of(store);
   if (!players) return failure(players.error());
   RlogExport done;
@@ -130,12 +130,12 @@ Result<RlogExport, std::string> write_rlog(WorldReader& store, const File& out,
   return done;
 }
 
-/// What edits and players of a file do to a world, one transaction at a time.
+/// Writes edits and players of a file to a world, one transaction at a time.
 class Importer {
  public:
   Importer(Store& store, std::string file) : store_(store), file_(std::move(file)) {}
 
-  /// Players that the world does not know yet ride with the first edits.
+  /// Compares players and the ends of both logs. New players are written with the first edits.
   Result<void, std::string> begin(const RlogReader& reader) {
     const auto rows = store_.players();
     if (!rows) return failure(rows.error().message());
@@ -156,22 +156,23 @@ class Importer {
     const LogEnd head{reader.world().head, reader.world().head_us};
     const Sequence end = range_.last.version.seq;
     if (head.version.seq > end || (head.version.seq == end && head != range_.last)) {
-      return failure(file_ + ": goes on behind edit " + std::to_string(head.version.seq) +
+      return failure(file_ + ": continues after edit " + std::to_string(head.version.seq) +
                      " of epoch " + std::to_string(head.version.epoch) + ", but the log of " +
                      store_.file() + " ends with edit " + std::to_string(end) + " of epoch " +
                      std::to_string(range_.last.version.epoch));
     }
     return {};
   }
+  /// Adds an edit to the batch and writes a full batch. Returns false after an error.
   bool add(const EditRecord& record) {
     batch_.push_back(record);
     return batch_.size() < kEditsPerTransaction || flush();
   }
-  /// False after an error.
+  /// Writes the batch. Returns false after an error.
   bool flush() {
     if (!error_.empty()) return false;
     std::span<const EditRecord> rest(batch_);
-    const auto split = [&](Sequence behind) {  // takes what lies before a sequence
+    const auto split = [&](Sequence behind) {  // takes the edits before a sequence
       std::size_t count = 0;
       while (count < rest.size() && rest[count].version.seq < behind) ++count;
       const auto part = rest.first(count);
@@ -229,9 +230,9 @@ Result<std::unique_ptr<Store>, std::string> world_for(const std::string& folder,
     return *std::move(store);
   }
   if (wanted.has_base || wanted.head.seq != 0) {
-    return failure(file + ": holds not all of its world (" +
+    return failure(file + ": does not hold its whole world (" +
                    (wanted.has_base ? "there are base chunks that no generator makes"
-                                    : "it begins behind edit " + std::to_string(wanted.head.seq)) +
+                                    : "it begins after edit " + std::to_string(wanted.head.seq)) +
                    "): import it into a copy of the world's folder");
   }
   auto materials = parse_material_table(wanted.materials, file);

@@ -1,4 +1,5 @@
-// A world's log to an .rlog file and back (docs/edit-log.md gives the bytes). Blocks on the disk: for programs.
+// Writes a world's log to an .rlog file and reads it back (docs/edit-log.md has the bytes). Calls
+// block on the disk.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,31 +12,34 @@ namespace runstone {
 
 struct RlogExport {
   std::uint64_t edits = 0;
-  Sequence first = 1;       // of the log; behind the last one if there are no edits
+  Sequence first = 1;       // exported; last + 1 if there are no edits
   Sequence last = 0;        // exported
   std::uint64_t bytes = 0;  // of the file
 };
 
-/// Writes the log up to min(at, last) beside `file` and moves it there when it is complete and on disk; replaces
-/// what stood there. The store may be open for reading only, with a server writing meanwhile. The error is one line.
-Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
-                                            Sequence at, RlogOptions options = {});
+/// Writes the log up to min(at, last). The file gets its name when it is complete and on disk, and
+/// replaces an old one. The store may be open for reading only while a server writes it. The error
+/// is one line.
+Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file, Sequence at,
+                                            RlogOptions options = {});
 
 struct RlogImport {
-  bool made_world = false;  // the folder held none
+  bool made_world = false;  // the folder held no world
   std::uint64_t added = 0;  // edits
-  std::uint64_t known = 0;  // in the log already, and equal
-  std::uint64_t compacted =
-      0;              // before the beginning of the world's log: in its base, not compared
-  Sequence last = 0;  // of the world's log now
-  std::string
-      stopped;  // one line; empty if the file was sound to its end. What stands before is imported
+  std::uint64_t known = 0;  // edits that the log had already, and equal
+  /// Edits before the beginning of the world's log: they are part of its base and are not compared.
+  std::uint64_t compacted = 0;
+  Sequence last = 0;  // of the world's log after the import
+  /// One line about the damage that ended the import; empty if the file is sound. Edits before it
+  /// are imported.
+  std::string stopped;
 };
 
-/// Appends the edits of `file` to the world in `folder`, which must be the same world and end no earlier than the
-/// file begins; what both have must be equal. Makes the world if the folder holds none and the file begins at the
-/// beginning: same id, base from its generator, a server key of its own. Edits keep epoch and sequence. An import
-/// that was broken off may be done again. The error is one line; the world then holds what was imported before it.
+/// Appends the edits of `file` to the world in `folder`. It must be the same world and must end no
+/// earlier than the file begins; edits that both have must be equal. If the folder holds no world
+/// and the file begins at edit 1, the world is made: same id, base of its generator, a new server
+/// key. Edits keep epoch and sequence number. An interrupted import can be repeated. The error is
+/// one line; what was imported before it stays.
 Result<RlogImport, std::string> import_rlog(const std::string& folder, const std::string& file);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// Subcommand: one thing that runstone-replay can do. Each one has a file of its own with its options, a function that
-// declares them on the command line, and a function that runs it.
+// Subcommand: one thing that runstone-replay can do. Each one has a file of its own with its
+// options, a function that declares them on the command line, and a function that runs it.
 #pragma once
 #include <functional>
 #include <iosfwd>
@@ -21,8 +21,9 @@ struct Subcommand {
   std::function<std::function<Result<int, std::string>(std::ostream& out)>(SubcommandOptions&)> add;
 };
 
-/// `declare(command_line, options)` declares the options. `run(options, out)` prints the table to `out` and returns the
-/// exit code, or an error of one line, which means the exit code kReplayCannotRead.
+/// `declare(command_line, options)` declares the options. `run(options, out)` prints the table to
+/// `out` and returns the exit code, or an error of one line, which means the exit code
+/// kReplayCannotRead.
 template <class Options>
 Subcommand make_subcommand(const char* name, const char* help,
                            void (*declare)(SubcommandOptions&, Options&),

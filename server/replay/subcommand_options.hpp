@@ -1,5 +1,5 @@
-// SubcommandOptions: the command line of one subcommand of runstone-replay, declared option by option. It keeps the
-// command line library inside one source file.
+// SubcommandOptions: the command line of one subcommand of runstone-replay, declared option by
+// option. It keeps the command line library inside one source file.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,8 +11,7 @@
 
 namespace CLI {
 class App;
-class Option;
-}  // namespace CLI
+}
 
 namespace runstone {
 
@@ -23,8 +22,9 @@ struct CommonOptions {
   bool progress = false;  // print progress on standard error even if it is no terminal
 };
 
-/// Every output parameter is set while the command line is parsed and must live until then. A name without dashes
-/// declares a positional argument, which is required. An option given twice takes its last value.
+/// Every output parameter is set while the command line is parsed and must live until then. A name
+/// without dashes declares a positional argument, which is required. An option given twice takes
+/// its last value.
 class SubcommandOptions {
  public:
   enum class Presence { optional, required };

@@ -66,7 +66,8 @@ Result<std::optional<CameraPath>, std::string> path_of(const TimelapseOptions& o
   return std::optional<CameraPath>(*std::move(path));
 }
 
-/// Makes the folder. Fails if it holds frames of another timelapse, which would become part of the video.
+/// Makes the folder. Fails if it holds frames of another timelapse, which would become part of the
+/// video.
 Result<void, std::string> prepare_folder(const std::string& folder) {
   std::error_code wrong;
   std::filesystem::create_directories(folder, wrong);

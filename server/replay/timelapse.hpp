@@ -1,5 +1,6 @@
-// Timelapse: draws a world as it grew, one picture every so many edits, replayed from base and log. A child process draws
-// the pictures (draw_child.hpp). It gets all chunks that are drawn once, and after that only the chunks that changed.
+// Timelapse: draws a world as it grew, one picture every so many edits, replayed from base and log.
+// A child process draws the pictures (draw_child.hpp). It gets all chunks that are drawn once, and
+// after that only the chunks that changed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -40,10 +41,11 @@ inline constexpr std::uint64_t kTimelapseFramesMax = 999'999;
 /// Returns the file name of a frame: "frame-000001.png" for 1.
 std::string frame_name(std::uint64_t number);
 
-/// Draws the frames into options.folder, which is made if it does not exist and must hold no frames. The first frame shows
-/// the world after options.from, the last frame the world after min(at, last edit); between two frames lie `every` edits.
-/// Calls `progress` after each frame with the number of frames done and their total. Errors are one line of text. Blocks
-/// on the disk and on the child.
+/// Draws the frames into options.folder, which is made if it does not exist and must hold no
+/// frames. The first frame shows the world after options.from, the last frame the world after
+/// min(at, last edit); between two frames lie `every` edits. Calls `progress` after each frame with
+/// the number of frames done and their total. Errors are one line of text. Blocks on the disk and
+/// on the child.
 Result<TimelapseReport, std::string> make_timelapse(
     WorldReader& reader, const Generator& generator, const TimelapseOptions& options, Sequence at,
     const std::function<void(std::uint64_t, std::uint64_t)>& progress);

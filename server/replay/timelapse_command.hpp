@@ -21,7 +21,8 @@ struct TimelapseCommandOptions {
 
 void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions& options);
 
-/// Draws the frames, joins them into a video if ffmpeg is installed, and prints a table. A missing ffmpeg is no error.
+/// Draws the frames, joins them into a video if ffmpeg is installed, and prints a table. A missing
+/// ffmpeg is no error.
 Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, std::ostream& out);
 
 }  // namespace runstone

@@ -9,9 +9,8 @@
 namespace runstone {
 namespace {
 
-constexpr int kSurfaceDepth =
-    8;                       // chunks below the surface of a column that are looked at, at most
-constexpr int kSamples = 5;  // places a side of a column where its surface is looked at
+constexpr int kSurfaceDepth = 8;  // chunks below the surface of a column that are examined, at most
+constexpr int kSamples = 5;       // points a side of a column where its surface is sampled
 
 VoxelBox joined(const VoxelBox& a, const VoxelBox& b) {
   if (a.empty()) return b;
@@ -47,7 +46,7 @@ StoreResult<void> TimelapseWorld::find_edits(Sequence to) {
   };
   if (const auto read = reader_->read_log(at_ + 1, to, take); !read) return read;
   if (!edited_chunks_.empty()) return {};
-  // Nothing moves: then what moved before is what is to be seen.
+  // Without edits the timelapse shows what was edited before.
   for (const ChunkKey& key : start_.edited()) {
     edited_chunks_.insert(key);
     edited_ = joined(edited_, box_of(key.at, edge_));
@@ -66,7 +65,7 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
   };
   std::int32_t y_min = 0, y_max = 0;
   for (const ChunkKey& key : edited_chunks_) {
-    put_around(key.at);
+    add_around(key.at);
     add_columns(key.at);
     y_min = key == *edited_chunks_.begin() ? key.at.y : std::min(y_min, key.at.y);
     y_max = key == *edited_chunks_.begin() ? key.at.y : std::max(y_max, key.at.y);
@@ -75,34 +74,35 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
   for (const ChunkCoord& eye : eyes) add_columns(eye);
   if (columns.size() > kChunksMax) return too_large();
   for (const Column& column : columns) add_surface(column);
-  // What was built before stands above the ground, or below it.
+  // What was built before may lie above the ground or below it.
   for (const ChunkKey& key : start_.edited()) {
-    if (columns.contains({key.at.x, key.at.z})) put_around(key.at);
+    if (columns.contains({key.at.x, key.at.z})) add_around(key.at);
   }
-  // An imported world's ground is where it is: it has to be looked for, above and below the edits.
+  // No generator knows where the ground of an imported world is, so all chunks above and below the
+  // edits are drawn.
   const auto has_base = reader_->has_base();
   if (!has_base) return Unexpected<StoreError>{has_base.error()};
   for (const auto& [x, z] : columns) {
-    for (std::int32_t y = y_min - r; *has_base && y <= y_max + r; ++y) put_on_stage({x, y, z});
+    for (std::int32_t y = y_min - r; *has_base && y <= y_max + r; ++y) add_to_stage({x, y, z});
   }
   if (stage_.size() > kChunksMax) return too_large();
   return {};
 }
 
-/// What edits of a chunk lay bare belongs to the chunks beside it, too.
-void TimelapseWorld::put_around(ChunkCoord at) {
+/// Adds a chunk and its 26 neighbours: an edit can uncover faces of the neighbours.
+void TimelapseWorld::add_around(ChunkCoord at) {
   for (int i = 0; i < 27; ++i)
-    put_on_stage({at.x + i % 3 - 1, at.y + i / 3 % 3 - 1, at.z + i / 9 - 1});
+    add_to_stage({at.x + i % 3 - 1, at.y + i / 3 % 3 - 1, at.z + i / 9 - 1});
 }
 
-void TimelapseWorld::put_on_stage(ChunkCoord at) {
+void TimelapseWorld::add_to_stage(ChunkCoord at) {
   const std::int32_t reach = kWorldLimit / edge_;
   const auto inside = [reach](std::int32_t c) { return c >= -reach && c < reach; };
   if (inside(at.x) && inside(at.y) && inside(at.z)) stage_.insert({0, at});
 }
 
-/// The chunks of a column that show untouched ground: from its highest voxel down to a chunk that hides all
-/// that is below.
+/// Adds the chunks of a column that show untouched ground: from its highest voxel down to a chunk
+/// that hides everything below.
 void TimelapseWorld::add_surface(const Column& column) {
   const auto [x, z] = column;
   std::int32_t highest = generator_->y_min();
@@ -114,7 +114,7 @@ void TimelapseWorld::add_surface(const Column& column) {
   const std::int32_t top = floor_div(highest - 1, edge_);
   for (std::int32_t y = top; y > top - kSurfaceDepth && (y + 1) * edge_ > generator_->y_min();
        --y) {
-    put_on_stage({x, y, z});
+    add_to_stage({x, y, z});
     const RunChunk chunk = generator_->generate(origin_of({x, y, z}, edge_),
                                                 Extent::cube(static_cast<unsigned>(edge_)));
     if (!chunk.is_uniform()) continue;
@@ -142,7 +142,7 @@ StoreResult<void> TimelapseWorld::begin(const Each& each) {
     if (!chunk) return Unexpected<StoreError>{chunk.error()};
     if (!is_empty(chunk->voxels) && !each(key, chunk->voxels)) return {};
     if (edited_chunks_.contains(key))
-      moving_.emplace(key, ReplayedChunk(*std::move(chunk), origin_of(key.at, edge_)));
+      replayed_.emplace(key, ReplayedChunk(*std::move(chunk), origin_of(key.at, edge_)));
   }
   return {};
 }
@@ -153,7 +153,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   const auto read = reader_->read_log(at_ + 1, seq, [&](const EditRecord& record) {
     for (const ChunkCoord& at : touched_chunks(record.edit, edge_)) {
       const ChunkKey key{0, at};
-      moving_.at(key).add(record.edit, record.version, scratch_);
+      replayed_.at(key).add(record.edit, record.version, scratch_);
       touched.insert(key);
     }
     read_to = record.version.seq;
@@ -166,9 +166,9 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   }
   at_ = seq;
   for (const ChunkKey& key : touched) {
-    ReplayedChunk& moving = moving_.at(key);
-    moving.settle(scratch_);
-    if (moving.take_changed() && !each(key, moving.chunk().voxels)) return {};
+    ReplayedChunk& replayed = replayed_.at(key);
+    replayed.settle(scratch_);
+    if (replayed.take_changed() && !each(key, replayed.chunk().voxels)) return {};
   }
   return {};
 }

@@ -1,8 +1,9 @@
-// TimelapseWorld: the part of a world that a timelapse shows, on its way from one moment of the log to a later
-// one. The stage is fixed at the start: every chunk that is edited on the way, with the chunks around it, and for
-// some chunks farther out the surface of the world and what was built before. Each chunk is made once; what edits
-// touch is kept and follows the log by the same apply_stack() as everywhere.
-// Memory: the chunks that are edited on the way, as runs. One thread, which alone uses the store's reader.
+// TimelapseWorld: the part of a world that a timelapse shows, at successive moments of the log. The
+// set of chunks that are drawn, the stage, is fixed at the start. It has every chunk that the edits
+// of the timelapse touch, the chunks around it, and for some chunks farther out the surface of the
+// world and what was built there before. Each chunk is made once. Chunks that edits touch are kept
+// and follow the log by the same apply_stack() as everywhere. Memory: the chunks that the edits
+// touch, as runs. Thread: one, which is the only user of the store's reader.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,33 +23,34 @@ namespace runstone {
 
 class TimelapseWorld {
  public:
-  /// More would need gigabytes in the program that draws, and minutes a frame.
+  /// More chunks would need gigabytes in the program that draws, and minutes for each frame.
   static constexpr std::size_t kChunksMax = 1U << 16;
 
-  /// The world after edit `from`, to be followed up to `to`. Requires from <= to. `radius`: chunks of untouched
-  /// surface around what is edited, and around the chunks `eyes`, from which is looked. Fails with what the
-  /// store says of rows it cannot read, and (bad_request) if the log does not reach so far back, or the stage is
-  /// larger than kChunksMax.
-  static StoreResult<TimelapseWorld> open(WorldReader& reader, const Generator& generator,
-                                          Sequence from, Sequence to, std::uint32_t radius,
+  /// Opens the world after edit `from`, to be advanced up to `to`. `eyes` are the chunks in which
+  /// the camera stands. `radius` is the number of chunks of untouched surface around the edited
+  /// chunks and around `eyes`. Requires from <= to. Fails with the store's error if a row cannot be
+  /// read, and with bad_request if the log does not reach back to `from` or the stage has more than
+  /// kChunksMax chunks.
+  static StoreResult<TimelapseWorld> open(WorldReader& reader, const Generator& generator, Sequence from,
+                                          Sequence to, std::uint32_t radius,
                                           std::span<const ChunkCoord> eyes);
 
-  /// Smallest box that holds the geometry of all edits on the way; of all before it, if there are none on the
-  /// way; empty if there are none at all.
+  /// Returns the smallest box around all edits between `from` and `to`. If there are none, returns
+  /// a box around all chunks edited before; it is empty if there are none either.
   const VoxelBox& edited() const { return edited_; }
-  /// Box of all chunks on the stage.
+  /// Returns the box of all chunks on the stage.
   VoxelBox stage() const;
   std::size_t chunk_count() const { return stage_.size(); }
 
   using Each = std::function<bool(const ChunkKey&, const RunChunk&)>;
-  /// Calls `each` for every chunk of the stage that is not all empty, as it is at `from`. Call once, first.
-  /// Stops when it returns false.
+  /// Calls `each` for every chunk of the stage that is not empty, as it is after `from`. Call it
+  /// once, first. Stops when `each` returns false.
   StoreResult<void> begin(const Each& each);
-  /// Follows the log up to `seq`, and calls `each` for the chunks that look different since.
+  /// Applies the log up to `seq`, and calls `each` for the chunks whose voxels changed.
   StoreResult<void> advance(Sequence seq, const Each& each);
 
  private:
-  using Column = std::pair<std::int32_t, std::int32_t>;  // x, z of its chunks
+  using Column = std::pair<std::int32_t, std::int32_t>;  // x, z of chunks
 
   TimelapseWorld(WorldReader& reader, const Generator& generator, WorldAt start)
       : reader_(&reader),
@@ -57,8 +59,8 @@ class TimelapseWorld {
         start_(std::move(start)) {}
   StoreResult<void> find_edits(Sequence to);
   StoreResult<void> set_stage(std::uint32_t radius, std::span<const ChunkCoord> eyes);
-  void put_around(ChunkCoord at);
-  void put_on_stage(ChunkCoord at);
+  void add_around(ChunkCoord at);
+  void add_to_stage(ChunkCoord at);
   void add_surface(const Column& column);
   Unexpected<StoreError> too_large() const;
 
@@ -68,8 +70,8 @@ class TimelapseWorld {
   WorldAt start_;
   VoxelBox edited_;
   std::set<ChunkKey> stage_;
-  std::set<ChunkKey> edited_chunks_;          // on the way; before it, if there are none
-  std::map<ChunkKey, ReplayedChunk> moving_;  // edited_chunks_, from begin() on
+  std::set<ChunkKey> edited_chunks_;            // between from and to; if there are none, before
+  std::map<ChunkKey, ReplayedChunk> replayed_;  // edited_chunks_, after begin()
   Sequence at_ = 0;
   FollowScratch scratch_;
 };

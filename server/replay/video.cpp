@@ -12,7 +12,7 @@ namespace runstone {
 namespace {
 
 std::vector<std::string> words_of_command(std::uint32_t fps) {
-  // Players take mp4 with colours at half size each way, and that wants even sides.
+  // Video players expect yuv420p, which has half the resolution for colours and needs even sides.
   return {"ffmpeg",       "-y",
           "-loglevel",    "error",
           "-framerate",   std::to_string(fps),
@@ -36,7 +36,7 @@ Result<void, std::string> make_video(const std::string& folder, std::uint32_t fp
   }
   int status = 0;
   while (::waitpid(*pid, &status, 0) < 0) {
-    if (errno != EINTR) return failure("is no child of ours any more");
+    if (errno != EINTR) return failure("is no longer a child process");
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return failure(how_it_ended(status));
   return {};

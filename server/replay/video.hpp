@@ -1,4 +1,4 @@
-// A video of numbered pictures, by ffmpeg, where that is installed.
+// Joins numbered pictures into a video with ffmpeg, if it is installed.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,11 +7,12 @@
 
 namespace runstone {
 
-/// Joins frame-000001.png and so on in `folder` into timelapse.mp4 there, and waits until it is done. An error is
-/// one line: ffmpeg is not installed, or failed (what it has to say goes to standard error).
+/// Joins frame-000001.png and so on in `folder` into timelapse.mp4 there. Blocks until it is done.
+/// Fails if ffmpeg is not installed or fails; it prints its reason to standard error. The error is
+/// one line.
 Result<void, std::string> make_video(const std::string& folder, std::uint32_t fps);
 
-/// The command that does it by hand, in that folder.
+/// Returns the shell command that does the same in that folder.
 std::string video_command(std::uint32_t fps);
 
 }  // namespace runstone

@@ -61,15 +61,15 @@ Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& 
   auto world = WorldAt::open(source, generator, at);
   if (!world) return failure(world.error().message());
   auto whole = fs::absolute(folder, error).lexically_normal();
-  if (!whole.has_filename()) whole = whole.parent_path();  // "valley/"
+  if (!whole.has_filename()) whole = whole.parent_path();  // of "valley/"
   const std::string unfinished = whole.string() + ".unfinished";
-  fs::remove_all(unfinished, error);  // of a copy that was broken off
+  fs::remove_all(unfinished, error);  // left by an interrupted copy
   auto copy = fill(source, *world, unfinished, progress);
   if (!copy) {
     fs::remove_all(unfinished, error);
     return copy;
   }
-  fs::remove(whole, error);  // only an empty folder can be here
+  fs::remove(whole, error);  // it is an empty folder or does not exist
   fs::rename(unfinished, whole, error);
   if (error) return failure(folder + ": " + error.message());
   return copy;

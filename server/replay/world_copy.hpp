@@ -1,4 +1,4 @@
-// WorldCopy: the world of a moment as a world of its own.
+// WorldCopy: writes the world of a moment as a new world.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,11 +14,13 @@ struct WorldCopy {
   Digest world_digest;       // over them
 };
 
-/// Makes a new world in `folder`, which must be empty or not there: generator, materials, edge and spawn of the source, an
-/// identity of its own (world id and server key), an empty log; its base are the chunks of the source's base and all that were edited, as they stood at
-/// `at`. One slice of chunks at a time; until all is written the folder has another name. The error is one line.
-Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator,
-                                          Sequence at, const std::string& folder,
+/// Makes a new world in `folder`, which must be empty or must not exist. Generator, materials, edge
+/// and spawn are those of the source. World id and server key are new, and the log is empty. The
+/// base holds the source's base chunks and all edited chunks, as they were at `at`. Memory: one
+/// slice of chunks. Until the copy is complete, the folder's name ends with ".unfinished". The
+/// error is one line.
+Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator, Sequence at,
+                                          const std::string& folder,
                                           const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

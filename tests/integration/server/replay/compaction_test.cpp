@@ -1,4 +1,5 @@
-// A compaction forgets the beginning of the log and nothing else, whenever power or disk fail it.
+// A compaction moves the beginning of the log into the base and loses nothing, also if power or
+// disk fail meanwhile.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -62,7 +63,8 @@ void make_keyframe(Store& store, Sequence at) {
   if (!made) FAIL(made.error().message());
 }
 
-/// A closed world of kEdits edits with keyframes at 70 and 130, snapshots of some chunks and the checkpoint at 60.
+/// A closed world of kEdits edits with keyframes at 70 and 130, snapshots of some chunks and the
+/// checkpoint at 60.
 void make_world(const std::string& folder, const SqliteOptions& options = {}) {
   SplitMix64 rng(1);
   WorldMeta meta = sample_meta();
@@ -88,13 +90,13 @@ void make_world(const std::string& folder, const SqliteOptions& options = {}) {
   make_keyframe(store, 130);
 }
 
-/// What must hold of a compacted world, and of one that is not yet.
+/// Checks what must hold for the world before and after the compaction.
 void check_whole(Store& store, const Chunks& at_end) {
   const auto checked = store.check();
   if (!checked) FAIL(checked.error().message());
   REQUIRE(*store.last_sequence() == kEdits);
   CHECK(moment_of(store, kEdits) == at_end);
-  // What a server would load: snapshots, and the records above the checkpoint.
+  // A server would load the snapshots and the records above the checkpoint.
   const Sequence checkpoint = *store.checkpoint();
   const auto snapshot_keys = *store.snapshot_keys();
   const std::map<ChunkKey, Version> snapshots(snapshot_keys.begin(), snapshot_keys.end());
@@ -126,7 +128,7 @@ Outcome compact(const std::string& folder, TimeUs now_us, std::uint64_t keep_day
 
 }  // namespace
 
-TEST_CASE("a compacted world is the same from its new beginning on", "[store][compact]") {
+TEST_CASE("a compacted world is unchanged from its new beginning on", "[store][compact]") {
   const TempFolder folder;
   make_world(folder.path());
   std::map<Sequence, Chunks> before;
@@ -175,7 +177,7 @@ TEST_CASE("a compacted world is the same from its new beginning on", "[store][co
             {"verify", "--world", folder.path(), "--at", std::to_string(kEdits), "--json", json})
             .code == 0);
   CHECK(digest() == digest_before);
-  // Once more from there, to the end of the log and with nothing behind it.
+  // A second compaction reaches the end of the log and leaves no edit in it.
   CHECK(compact(folder.path(), kCutTime + 3 * kDay, 3).said ==
         "nothing to compact: no edit of the log is older than 3 days\n");
   REQUIRE(compact(folder.path(), kCutTime + kDay, 0).done);
@@ -185,7 +187,7 @@ TEST_CASE("a compacted world is the same from its new beginning on", "[store][co
   CHECK(store->keyframes()->empty());
 }
 
-TEST_CASE("a world without old edits is not touched by a compaction", "[store][compact]") {
+TEST_CASE("a compaction leaves a world without old edits unchanged", "[store][compact]") {
   const TempFolder folder;
   make_world(folder.path());
   const std::string nothing = "nothing to compact: no edit of the log is older than 30 days\n";
@@ -201,7 +203,7 @@ TEST_CASE("a world without old edits is not touched by a compaction", "[store][c
   CHECK(held->compact(0).error().what == "is not there");
 }
 
-TEST_CASE("a compaction that power cuts loses nothing and can be done again",
+TEST_CASE("a compaction that a power failure interrupts loses nothing and can be repeated",
           "[store][compact][power-loss]") {
   std::size_t before = 0, after = 0;
   for (std::uint64_t cut = 1; cut < 400; cut += 1 + cut / 8) {
@@ -232,7 +234,7 @@ TEST_CASE("a compaction that power cuts loses nothing and can be done again",
   CHECK(after > 3);
 }
 
-TEST_CASE("a compaction that finds the disk full says so and loses nothing",
+TEST_CASE("a compaction that fills the disk reports it and loses nothing",
           "[store][compact][power-loss]") {
   std::size_t full = 0, shrunk_too_late = 0;
   for (std::uint64_t room = 1; room < 300; room += 1 + room / 6) {

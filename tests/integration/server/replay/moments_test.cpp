@@ -1,4 +1,5 @@
-// The subcommands of runstone-replay that take moments of a world: verify --at, copy, diff; keyframes; reports.
+// The subcommands of runstone-replay that take moments of a world: verify --at, copy, diff;
+// keyframes; reports.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -156,7 +157,7 @@ TEST_CASE("a difference is reported in a table and as JSON", "[store][replay]") 
                  "seq=30 is behind seq=20"));
 }
 
-TEST_CASE("a verifying replay compares every chunk of every keyframe", "[store][replay]") {
+TEST_CASE("verify compares every chunk of every keyframe", "[store][replay]") {
   const TempFolder folder;
   make_world(folder.path());
   // The edits are too scattered for a keyframe to be due. Two are made by hand, at 50 and 100.

@@ -1,6 +1,7 @@
-// The promise of append(): what it returned for is on disk, whatever the power does, and the log has no gap,
-// no double and no half of a batch. Each run appends random batches until the power fails at a random
-// operation, opens the world again and compares it with what was promised.
+// Power loss while the store writes. Every edit for which append() returned is on disk afterwards,
+// and the log has no gap, no edit twice and no part of a batch. Each run appends random batches
+// until the power fails at a random operation, opens the world again and compares it with the edits
+// that were appended.
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -14,17 +15,16 @@ using namespace runstone::test;
 
 namespace {
 
-/// What the test knows about a world: all it ever tried, and how much of it was promised.
+/// The edits that the test appended to a world, and how many of them append() returned for.
 struct Promise {
   std::vector<EditRecord> tried;  // record i has sequence i + 1
   Sequence durable = 0;
-  std::size_t batch_begin = 0;  // of the batch in flight: it is there wholly or not at all
   Epoch epoch = 0;
   std::map<ChunkKey, ChunkPtr> snapshots;  // durable ones
   Sequence checkpoint = 0;
 };
 
-/// The first broken promise; empty if all are kept. Forgets tried records that did not make it.
+/// Returns the first broken promise, or "" if all are kept. Removes tried records that were lost.
 std::string broken_promise(const std::string& folder, const SqliteOptions& options,
                            Promise& promise) {
   auto opened = open_sqlite_world(folder, StoreAccess::read_only, options);
@@ -45,8 +45,8 @@ std::string broken_promise(const std::string& folder, const SqliteOptions& optio
   const auto read = store.read_log(1, *last, [&](const EditRecord& record) {
     if (record != promise.tried[record.version.seq - 1])
       difference = "holds another edit than was appended";
-    marks[{record.op.author, record.op.instance}] =
-        record.op.seq;  // sample client sequences rise with the log
+    // The client sequences of sample records ascend with the log.
+    marks[{record.op.author, record.op.instance}] = record.op.seq;
     return difference.empty();
   });
   if (!read) return read.error().message();
@@ -75,7 +75,8 @@ std::string broken_promise(const std::string& folder, const SqliteOptions& optio
   return "";
 }
 
-/// Opens and writes until the power fails, or the store is closed on purpose (sometimes cut while it closes).
+/// Opens the world and writes until the power fails or the jobs are done. The power may also fail
+/// while the store closes.
 void write_until_cut(const std::string& folder, const SqliteOptions& options, PowerLossVfs& vfs,
                      SplitMix64& rng, Promise& promise) {
   vfs.cut_after(1 + rng.below(rng.below(4) == 0 ? 20 : 1500));
@@ -92,7 +93,8 @@ void write_until_cut(const std::string& folder, const SqliteOptions& options, Po
       const Version version = promise.tried[promise.durable - 1].version;
       for (std::uint32_t i = rng.below(30); i > 0; --i) {
         const ChunkKey key{0, {rng.between(-3, 3), 0, rng.between(-3, 3)}};
-        // As in a real world, key and version decide the voxels: a job that was cut may be there or not.
+        // As in a real world, key and version decide the voxels, because an interrupted job may
+        // have been written or not.
         SplitMix64 voxels(mix64(version.seq) ^
                           static_cast<std::uint64_t>(16 * key.at.x + key.at.z));
         chunks.emplace_back(key, sample_chunk(voxels, version));
@@ -115,14 +117,14 @@ struct Outcome {
   int worlds_broken = 0;
   int cuts = 0;
   std::uint64_t durable = 0;
-  std::string first;  // what broke first, with its seed
+  std::string first;  // the first broken promise, with its seed
 };
 
 Outcome run(bool sync, std::uint64_t seeds, int lives) {
   Outcome outcome;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SplitMix64 rng(seed);
-    const TempFolder folder;  // only the lock file lies there
+    const TempFolder folder;  // holds the lock file only
     PowerLossVfs vfs;
     const SqliteOptions options{vfs.name(), sync};
     REQUIRE(create_sqlite_world(folder.path(), sample_meta(), options).has_value());
@@ -135,7 +137,7 @@ Outcome run(bool sync, std::uint64_t seeds, int lives) {
       if (broken.empty()) continue;
       ++outcome.worlds_broken;
       if (outcome.first.empty()) outcome.first = "seed " + std::to_string(seed) + ": " + broken;
-      break;  // this world is no longer what the test thinks it is
+      break;  // the test no longer knows the content of this world
     }
     outcome.durable += promise.durable;
   }
@@ -144,7 +146,7 @@ Outcome run(bool sync, std::uint64_t seeds, int lives) {
 
 }  // namespace
 
-TEST_CASE("every edit that append returned for survives power loss, and no batch by half",
+TEST_CASE("every edit that append returned for survives power loss, and batches are atomic",
           "[store][power-loss]") {
   const Outcome outcome = run(true, 30, 6);
   INFO(outcome.first);
@@ -159,7 +161,8 @@ TEST_CASE("the power-loss test notices a store that does not sync", "[store][pow
   CHECK_FALSE(outcome.first.empty());
 }
 
-TEST_CASE("a world whose creation was cut is either whole or no world", "[store][power-loss]") {
+TEST_CASE("a world whose creation is interrupted is complete or does not exist",
+          "[store][power-loss]") {
   int whole = 0, none = 0;
   for (std::uint64_t cut = 1; cut < 60; ++cut) {
     SplitMix64 rng(cut);
@@ -199,7 +202,8 @@ TEST_CASE("a commit whose sync fails is reported and ends all writing", "[store]
   const auto failed = store->append({}, sample_records(rng, 1, 4, 3));
   REQUIRE_FALSE(failed.has_value());
   CHECK(failed.error().kind == StoreError::Kind::io);
-  // The kernel may have dropped the pages that failed: trying again and succeeding would prove nothing.
+  // The kernel may have dropped the pages that failed: trying again and succeeding would prove
+  // nothing.
   const auto after = store->append({}, sample_records(rng, 1, 4, 3));
   REQUIRE_FALSE(after.has_value());
   CHECK(after.error().what == "an earlier commit failed; open the world again");

@@ -1,5 +1,5 @@
-// Replay against a world that was edited live, edit by edit, and against a dense oracle that shares no code
-// with it.
+// Replay against a world that was edited live, edit by edit, and against a dense oracle that shares
+// no code with it.
 #include "server/replay/replayer.hpp"
 
 #include <catch2/catch.hpp>
@@ -57,7 +57,7 @@ bool oracle_admits(const Mask& mask, Material present) {
   }
 }
 
-/// A world on disk and, beside it, what live editing made of it.
+/// A world on disk, and its chunks as live editing made them.
 struct LiveWorld {
   TempFolder folder;
   GroundGenerator generator;
@@ -145,7 +145,7 @@ struct LiveWorld {
     REQUIRE(store->save_snapshots(chunks, std::nullopt).has_value());
   }
 
-  /// What a replica that saw everything would write down at `seq`.
+  /// Returns the digest list that a replica of all chunks would write at `seq`.
   DigestList list_at(Sequence seq) const {
     DigestList list{store->meta().world_id, seq, {}};
     for (const auto& [key, entry] : history[seq]) list.chunks.push_back(entry);
@@ -215,7 +215,8 @@ TEST_CASE("replay to an earlier sequence gives the world of that moment", "[stor
     CHECK(report.listed_compared == list.chunks.size());
     CHECK(report.snapshots_compared + report.not_compared == world.store->snapshot_keys()->size());
   }
-  // A list of an earlier moment is compared on the way, chunk by chunk, while the replay goes on to the end.
+  // A list of an earlier moment is compared on the way, chunk by chunk, while the replay goes on to
+  // the end.
   const DigestList early = world.list_at(60);
   const ReplayReport report = world.replay(kAll, &early);
   CHECK(report.differences == 0);
@@ -253,7 +254,7 @@ TEST_CASE("replay notices a snapshot with other voxels than the log makes", "[st
   const std::vector<std::pair<ChunkKey, ChunkPtr>> chunks = {
       {key, std::make_shared<const Chunk>(tampered)}};
   REQUIRE(world.store->save_snapshots(chunks, std::nullopt).has_value());
-  REQUIRE(world.store->check().has_value());  // a sound row with a wrong content
+  REQUIRE(world.store->check().has_value());  // the row is sound, its content is wrong
   const ReplayReport report = world.replay();
   CHECK(report.differences == 1);
   REQUIRE(report.first.has_value());
@@ -270,7 +271,7 @@ TEST_CASE("replay notices one changed edit in the log", "[store][replay]") {
   world.edit(rng, 40);
   auto records = world.log;
   records[19].edit = {SetVoxel{{3, 3, 3}}, {}, 4};
-  // Everything as in the first world but for one record, which is sound by itself.
+  // The world equals the first one except for one record, which is sound by itself.
   REQUIRE(forged.store->append({}, records).has_value());
   const DigestList honest = world.list_at(40);
   const ReplayReport report = forged.replay(kAll, &honest);
@@ -285,14 +286,14 @@ TEST_CASE("a version that the log never gave a chunk is a difference", "[store][
   DigestList list = world.list_at(30);
   const DigestCheckEntry last = list.chunks.back();
   list.chunks = {last};
-  list.chunks[0].version.epoch += 1;  // an edit that a crash took away
+  list.chunks[0].version.epoch += 1;  // as if a crash had lost the edit
   const ReplayReport report = world.replay(kAll, &list);
   CHECK(report.differences == 1);
   REQUIRE(report.first.has_value());
   CHECK(report.first->expected_version == list.chunks[0].version);
   CHECK(report.first->rebuilt_version == last.version);
   CHECK(report.first->message().find("is not in the log") != std::string::npos);
-  list.chunks[0].version = {1, 31};  // beyond the end: nothing to compare with yet
+  list.chunks[0].version = {1, 31};  // newer than the end of the replay
   CHECK(world.replay(kAll, &list).differences == 0);
   CHECK(world.replay(kAll, &list).not_compared == 1);
 }
@@ -332,7 +333,7 @@ TEST_CASE("a world whose log was compacted replays from its newer base", "[store
   if (report.first) FAIL(report.first->message());
   CHECK(report.edits == 40);
   CHECK(report.seq == 100);
-  CHECK(report.listed_compared == list.chunks.size());  // also chunks that only the base has
+  CHECK(report.listed_compared == list.chunks.size());  // includes chunks that only the base has
   CHECK(report.snapshots_compared == base.size());
   CHECK(world.replay(60).edits == 0);
   const auto before = Replayer(*world.store, world.generator).run(59);

@@ -1,4 +1,5 @@
-// A world's log to an .rlog and back: by the program, as people run it, and damaged on the way.
+// A world's log, exported to an .rlog file and imported again: by the program, and with damaged
+// files.
 #include "server/replay/rlog_file.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,7 +20,7 @@ using namespace runstone::test;
 
 namespace {
 
-/// The line of the table that a replay prints about the world's digest.
+/// Returns the line with the world's digest from the table that verify prints.
 std::string digest_of_world(const std::string& folder) {
   const ReplayOutcome replay = run_replay({"verify", "--world", folder});
   INFO(replay.out << replay.err);
@@ -35,7 +36,7 @@ std::unique_ptr<Store> opened(const std::string& folder,
   return *std::move(store);
 }
 
-/// Two starts of a server on generated terrain, `count` edits each.
+/// Makes a world of generated terrain with two epochs of `count` edits each.
 void make_world(const std::string& folder, std::size_t count) {
   WorldMeta meta = sample_meta();
   meta.generator = {"terrain", 1, 77, ""};
@@ -97,7 +98,8 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   CHECK(digest_of_world(copy) == digest_of_world(world));
   auto a = opened(world), b = opened(copy);
   CHECK(a->meta().world_id == b->meta().world_id);
-  CHECK(a->meta().server_key_seed != b->meta().server_key_seed);  // a secret does not travel
+  CHECK(a->meta().server_key_seed !=
+        b->meta().server_key_seed);  // the file does not hold the secret key
   CHECK(a->epoch() == b->epoch());
   CHECK(*a->log_range() == *b->log_range());
   const auto players = *b->players();
@@ -117,7 +119,7 @@ TEST_CASE("a world made from its exported log is the same world", "[store][rlog]
   CHECK(bytes_of(second) == bytes_of(file));
 }
 
-TEST_CASE("a log exported up to a sequence gives the world of that moment, and goes on later",
+TEST_CASE("a log exported up to a sequence gives the world of that moment, and the rest can follow",
           "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", copy = folder / "copy", file = folder / "log.rlog";
@@ -133,7 +135,7 @@ TEST_CASE("a log exported up to a sequence gives the world of that moment, and g
 }
 
 TEST_CASE(
-    "an imported log stops at the first bad block: named, and what stands before is in the world",
+    "an import stops at the first bad block and names it, and the edits before it are in the world",
     "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", file = folder / "log.rlog";
@@ -177,7 +179,7 @@ TEST_CASE(
     const auto stands = log_of(copy);
     CHECK(stands == std::vector<EditRecord>(
                         log.begin(), log.begin() + static_cast<std::ptrdiff_t>(damage.edits)));
-    // The sound file mends it.
+    // An import of the sound file completes the world.
     CHECK(run_replay({"import", file, "--world", copy}).code == 0);
     CHECK(log_of(copy) == log);
   }
@@ -212,10 +214,11 @@ TEST_CASE("a log is not imported into another world or another history of it", "
   CHECK(refused(folder / "fork").find("edit 26 is another one than in") != std::string::npos);
 
   auto writer = opened(world, StoreAccess::read_write);
-  CHECK(run_replay({"import", file, "--world", world}).code == 2);  // a server holds it
+  CHECK(run_replay({"import", file, "--world", world}).code == 2);  // a server runs it
 }
 
-TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", "[store][rlog]") {
+TEST_CASE("the log of a world with base chunks can be imported into a copy of its folder",
+          "[store][rlog]") {
   const TempFolder folder;
   const std::string world = folder / "world", file = folder / "log.rlog";
   SplitMix64 rng(8);
@@ -236,20 +239,20 @@ TEST_CASE("the log of a world with base chunks goes onto a copy of its folder", 
   export_small_blocks(world, file);
   const ReplayOutcome alone = run_replay({"import", file, "--world", folder / "new"});
   CHECK(alone.code == 2);
-  CHECK(alone.err.find("holds not all of its world") != std::string::npos);
+  CHECK(alone.err.find("does not hold its whole world") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "new"));
   const ReplayOutcome onto = run_replay({"import", file, "--world", folder / "copy"});
   CHECK(onto.out.find("edits       30 added, 10 known") != std::string::npos);
   CHECK(digest_of_world(folder / "copy") == digest_of_world(world));
 
-  // Compacted, the log begins later, and goes onto copies that reach as far.
+  // The log of a compacted world begins later. It can be imported into copies that reach that far.
   compact_by_hand(world + "/world.sqlite", {records[19].version, records[19].time_us}, {});
   export_small_blocks(world, file);
   CHECK(read_rlog(bytes_of(file)).records.size() == 20);
   CHECK(run_replay({"import", file, "--world", folder / "copy"}).code == 0);
 }
 
-TEST_CASE("files that cannot be had are named", "[store][rlog]") {
+TEST_CASE("files that cannot be read or written are named", "[store][rlog]") {
   const TempFolder folder;
   make_world(folder / "world", 3);
   CHECK(run_replay({"import", folder / "none.rlog", "--world", folder / "new"}).code == 2);

@@ -24,7 +24,7 @@ constexpr int kEdge = kSampleEdge;
 
 }  // namespace
 
-TEST_CASE("the replay program answers with its exit code, a table and a list", "[store][replay]") {
+TEST_CASE("verify answers with an exit code, a table and a list", "[store][replay]") {
   const TempFolder folder;
   const std::string world = folder / "world", json = folder / "out.json",
                     other = folder / "other.json";
@@ -95,8 +95,9 @@ std::string bytes_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A closed world of the generator "empty" in `folder`: one edit in each of two chunks, with snapshots.
-/// `tamper` may change a snapshot's voxels before it is stored, digest and checksums included.
+/// A closed world of the generator "empty" in `folder`: one edit in each of two chunks, with
+/// snapshots. `tamper` may change a snapshot's voxels before it is stored, digest and checksums
+/// included.
 void make_small_world(const std::string& folder,
                       const std::function<void(const ChunkKey&, RunChunk&)>& tamper) {
   const auto store = *create_world(folder, sample_meta());
@@ -125,7 +126,7 @@ void make_small_world(const std::string& folder,
 
 }  // namespace
 
-TEST_CASE("a snapshot that is sound by itself but not what the log makes exits with 1 and is named",
+TEST_CASE("a sound snapshot that differs from the log exits with 1 and is named",
           "[store][replay]") {
   const TempFolder folder;
   const std::string honest = folder / "honest", tampered = folder / "tampered";
@@ -140,7 +141,7 @@ TEST_CASE("a snapshot that is sound by itself but not what the log makes exits w
     if (key.at.x != 3) return;
     replayed = digest_of(voxels);
     fill(voxels, index_of({7, 7, 7}, voxels.extent, voxels.order), 1,
-         2);  // a block that nobody placed
+         2);  // a voxel that no edit set
     stored = digest_of(voxels);
   });
   const ReplayOutcome different = run_replay({"verify", "--world", tampered});
@@ -161,7 +162,7 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
                     json = folder / "out.json";
   make_small_world(world, [](const ChunkKey&, RunChunk&) {});
   REQUIRE(run_replay({"verify", "--world", world, "--json", json}).code == 0);
-  // The journal is part of the file afterwards, so that its bytes can be compared.
+  // The checkpoint moves the write-ahead log into the file, so that its bytes can be compared.
   REQUIRE(raw_sql(file,
                   "UPDATE edit_log SET descriptor = zeroblob(9) WHERE seq = 2; "
                   "PRAGMA wal_checkpoint(TRUNCATE)") == "0");
@@ -183,7 +184,7 @@ TEST_CASE("a damaged log row exits with 2, names file and row, and nothing is ov
   CHECK(bytes_of(json) == report);
 }
 
-TEST_CASE("a world whose generator this program lacks is not replayed", "[store][replay]") {
+TEST_CASE("verify cannot read a world whose generator this program lacks", "[store][replay]") {
   const TempFolder folder;
   WorldMeta meta = sample_meta();
   meta.generator.name = "atlantis";

@@ -4,7 +4,7 @@
 
 using namespace runstone;
 
-TEST_CASE("authors have names, and a name means one author or nobody", "[server]") {
+TEST_CASE("a name finds its author, or nobody if several authors have it", "[server]") {
   const AuthorNames names({{3, {}, "ana"}, {4, {}, "bob"}, {9, {}, "bob"}, {12, {}, "bob"}});
   CHECK(names.of(0) == "the server");
   CHECK(names.of(3) == "ana #3");

@@ -26,7 +26,7 @@ std::string mistake(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("commands without words are read", "[admin][command]") {
+TEST_CASE("commands without arguments are parsed", "[admin][command]") {
   parsed<HelpCommand>("help");
   parsed<StatusCommand>("  status ");
   parsed<PlayersCommand>("players");
@@ -38,7 +38,7 @@ TEST_CASE("commands without words are read", "[admin][command]") {
   parsed<RollbackListCommand>("rollback list");
 }
 
-TEST_CASE("a filter says whose, when, where and why", "[admin][command]") {
+TEST_CASE("a filter selects by author, time, place and cause", "[admin][command]") {
   const auto preview = parsed<RollbackPreviewCommand>(
       "rollback preview author #3 author \"the mole\" since 1h until 2001-09-09T01:46:40Z box 5 60 "
       "-3 -4 70 "
@@ -60,7 +60,7 @@ TEST_CASE("a filter says whose, when, where and why", "[admin][command]") {
   CHECK(parsed<LogCommand>("log limit 7 cause undo").limit == 7);
 }
 
-TEST_CASE("rollbacks are named by one id", "[admin][command]") {
+TEST_CASE("a rollback command takes one id", "[admin][command]") {
   CHECK(parsed<RollbackCommand>("rollback apply p1") ==
         RollbackCommand{RollbackCommand::Verb::apply, "p1"});
   CHECK(parsed<RollbackCommand>("rollback cancel p1") ==
@@ -69,7 +69,7 @@ TEST_CASE("rollbacks are named by one id", "[admin][command]") {
         RollbackCommand{RollbackCommand::Verb::undo, "9120"});
 }
 
-TEST_CASE("a mistake names the word and what is allowed", "[admin][command]") {
+TEST_CASE("an error names the wrong word and what is allowed", "[admin][command]") {
   CHECK(mistake("") == "no command: `help` names them");
   CHECK(mistake("rolback") == "\"rolback\" is no command: `help` names them");
   CHECK(mistake("rollback") == "rollback: preview, apply, cancel, undo or list is missing");
@@ -117,7 +117,7 @@ TEST_CASE("everybody may undo, redo, list materials and ask for help; the rest i
   CHECK(command_help(false).find("rollback") == std::string::npos);
 }
 
-TEST_CASE("causes are spelt as filters take them", "[admin][command]") {
+TEST_CASE("answers and filters use the same names of causes", "[admin][command]") {
   for (const Cause cause :
        {Cause::player, Cause::console, Cause::rollback, Cause::undo, Cause::redo, Cause::import}) {
     CHECK(parsed<LogCommand>("log cause " + std::string(name_of(cause))).filter.cause == cause);

@@ -1,4 +1,4 @@
-// The console on a pipe.
+// The console, reading from a pipe.
 #include "server/admin/console.hpp"
 
 #include <unistd.h>
@@ -36,7 +36,7 @@ class Pipe {
   int ends_[2] = {-1, -1};
 };
 
-/// A console and what it said.
+/// A console and its output.
 struct ConsoleBench {
   explicit ConsoleBench(int descriptor) {
     const auto handler = [this](const std::string& line, const CommandReply& reply) {
@@ -64,8 +64,7 @@ const std::string kTooLong =
 
 }  // namespace
 
-TEST_CASE("the console takes lines in whatever pieces they come, and answers",
-          "[server][console]") {
+TEST_CASE("the console answers lines whatever pieces they arrive in", "[server][console]") {
   Pipe pipe;
   ConsoleBench bench(pipe.out());
   pipe.write("status\n   \n\npla");
@@ -77,20 +76,21 @@ TEST_CASE("the console takes lines in whatever pieces they come, and answers",
   pipe.write("rollback apply p1");
   pipe.hang_up();
   bench.turn();
-  CHECK(bench.lines.size() == 3);  // it might have been p12
+  CHECK(bench.lines.size() == 3);  // the whole line might have been p12
   CHECK(bench.out.str() ==
         "did status\ndid players\ndid log\nthe last line has no end, and is left out\n");
   CHECK(bench.failures.empty());
 }
 
-TEST_CASE("a line that is too long is left out, and those behind it are not", "[server][console]") {
+TEST_CASE("a line that is too long is rejected, and the lines after it are carried out",
+          "[server][console]") {
   Pipe pipe;
   ConsoleBench bench(pipe.out());
   const std::string longest(kCommandBytesMax, 'x');
   pipe.write(longest + "\n" + longest + "y\nstatus\n");
   bench.turn();
   CHECK(bench.lines == std::vector<std::string>{longest, "status"});
-  for (int i = 0; i < 40; ++i) {  // much longer than what is read at a time
+  for (int i = 0; i < 40; ++i) {  // much longer than one read
     pipe.write(std::string(1000, 'z'));
     bench.turn();
   }
@@ -104,9 +104,9 @@ TEST_CASE("a line that is too long is left out, and those behind it are not", "[
   CHECK(bench.failures.empty());
 }
 
-TEST_CASE("a console that cannot be read says why", "[server][console]") {
+TEST_CASE("a console that cannot be read reports why", "[server][console]") {
   Pipe pipe;
-  ConsoleBench bench(pipe.in());  // the wrong end
+  ConsoleBench bench(pipe.in());  // the end that is for writing
   bench.turn();
   CHECK(bench.failures ==
         std::vector<std::string>{
@@ -115,7 +115,7 @@ TEST_CASE("a console that cannot be read says why", "[server][console]") {
   CHECK(bench.failures.size() == 1);
 }
 
-TEST_CASE("a console that was closed is silent", "[server][console]") {
+TEST_CASE("a closed console prints nothing", "[server][console]") {
   Pipe pipe;
   ConsoleBench bench(pipe.out());
   pipe.write("status");

@@ -7,7 +7,7 @@
 
 using namespace runstone;
 
-TEST_CASE("a line of the log says when, who, why, what, where and of which material", "[server]") {
+TEST_CASE("a line of the log has time, author, cause, kind, place and material", "[server]") {
   const MaterialTable materials = default_material_table();
   const auto stone = materials.find("stone");
   REQUIRE(stone);
@@ -22,8 +22,8 @@ TEST_CASE("a line of the log says when, who, why, what, where and of which mater
   CHECK(log_line(record, "#5", materials) == "9120 2026-11-21T23:57:42Z #5 player voxel 7 8 9");
 }
 
-TEST_CASE("a line of the log calls what an undo, redo or rollback writes restored", "[server]") {
-  // The kind of such an edit is paste, whatever the edit was that it takes back.
+TEST_CASE("the edit of an undo, redo or rollback is called restored in the log", "[server]") {
+  // Such an edit is a paste, whatever the kind of the edit that it takes back.
   const MaterialTable materials = default_material_table();
   EditRecord record;
   record.version = {2, 9120};

@@ -16,7 +16,7 @@ ParsedServerOptions parse(std::vector<const char*> arguments) {
 
 }  // namespace
 
-TEST_CASE("of two equal flags the last one counts", "[server_options]") {
+TEST_CASE("the last one of two equal flags wins", "[server_options]") {
   const auto parsed =
       parse({"--world", "/world", "--listen", "0.0.0.0:4747", "--listen", "127.0.0.1:5000"});
   REQUIRE(parsed.options);
@@ -29,7 +29,8 @@ TEST_CASE("of two equal flags the last one counts", "[server_options]") {
   CHECK(import.options->import->world == "c");
 }
 
-TEST_CASE("what follows control is the command, whatever it looks like", "[server_options]") {
+TEST_CASE("the arguments after control are the command, whatever they look like",
+          "[server_options]") {
   const auto parsed =
       parse({"control", "--world", "valley", "log", "box", "-1", "2", "3", "-4", "5", "6"});
   REQUIRE(parsed.options);

@@ -52,7 +52,9 @@ TEST_CASE("a clean stop lists chunks from memory and the others from their snaps
                                    world_digest_term(kThere, world.there->digest));
 }
 
-TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and named", "[server]") {
+TEST_CASE(
+    "a chunk in memory that differs from its snapshot is listed as it was in memory, and named",
+    "[server]") {
   const StoppedWorld world;
   Chunk live = *world.here;
   ChunkKey key = kHere;
@@ -66,7 +68,7 @@ TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and na
   }
   SECTION("another version") {
     live.version = {1, 3};
-    error = "stands at version=1:2, the server stood at version=1:3";
+    error = "has version=1:2, the server had version=1:3";
   }
   SECTION("no snapshot at all") {
     key = kFar;
@@ -77,7 +79,8 @@ TEST_CASE("a chunk in memory that is not its snapshot is listed as it was and na
                             ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
   const DigestCheckEntry entry{key, live.version, digest_of(live.voxels)};
   CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
-  // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to complain of.
+  // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to
+  // complain of.
   CHECK(world.with(key, live, false).error.empty());
 }
 
@@ -105,7 +108,7 @@ TEST_CASE(
   CHECK(parse_digests_json(to_json(clean.digests), "d.json").has_value());
 }
 
-TEST_CASE("a snapshot that cannot be read is named, and the sum goes on", "[server]") {
+TEST_CASE("a snapshot that cannot be read is named, and the others are summed up", "[server]") {
   const StoppedWorld world;
   REQUIRE(
       raw_sql(world.folder / "world.sqlite", "UPDATE snapshot SET data = zeroblob(40) WHERE x = 1")

@@ -20,8 +20,8 @@ Vec unit(const Vec& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// Where the picture has a point: -1 .. 1 each way, and its depth. As the renderer looks: forward from yaw and
-/// pitch, y up.
+/// Where the picture has a point: -1 .. 1 each way, and its depth. As the renderer looks: forward
+/// from yaw and pitch, y up.
 Vec seen_at(const DrawCamera& c, PictureSize size, const Vec& point) {
   const Vec forward{std::sin(c.yaw) * std::cos(c.pitch), std::sin(c.pitch),
                     std::cos(c.yaw) * std::cos(c.pitch)};
@@ -45,7 +45,7 @@ std::vector<Vec> corners(const VoxelBox& box) {
 
 }  // namespace
 
-TEST_CASE("an oblique camera sees the whole box, and no more than the margin around it",
+TEST_CASE("an oblique camera sees the whole box with no more than the margin around it",
           "[server]") {
   const VoxelBox box =
       GENERATE(VoxelBox{{0, 0, 0}, {32, 32, 32}}, VoxelBox{{-500, -20, 300}, {400, 60, 340}},

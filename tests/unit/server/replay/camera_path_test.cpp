@@ -23,7 +23,7 @@ std::string refused(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a camera goes straight from station to station", "[server]") {
+TEST_CASE("a camera moves in a straight line from station to station", "[server]") {
   const CameraPath path = read(
       "# a comment, and an empty line\n\n"
       "100 0 10 -20 0 0\r\n"
@@ -41,18 +41,18 @@ TEST_CASE("a camera goes straight from station to station", "[server]") {
   CHECK(half.pitch == Approx(-22.5 * kDegree));
   CHECK(path.at(200).pitch == Approx(-45 * kDegree));
   CHECK(path.at(300).pitch == Approx(0).margin(1e-9));
-  // It stands still before and after.
+  // The camera stands still before the first station and after the last.
   CHECK(path.at(0) == start);
   CHECK(path.at(400) == path.at(4000));
 }
 
-TEST_CASE("yaw turns the short way", "[server]") {
+TEST_CASE("yaw turns the shorter way", "[server]") {
   CHECK(read("0 0 0 0 350 0\n100 0 0 0 10 0").at(50).yaw == Approx(360 * kDegree));
   CHECK(read("0 0 0 0 10 0\n100 0 0 0 350 0").at(50).yaw == Approx(0).margin(1e-9));
   CHECK(read("0 0 0 0 -170 0\n100 0 0 0 170 0").at(25).yaw == Approx(-175 * kDegree));
 }
 
-TEST_CASE("a share of the timelapse is a moment, also between two edits", "[server]") {
+TEST_CASE("a percentage of the timelapse is a moment, also between two edits", "[server]") {
   const CameraPath path = read("0% 0 0 0 0 0\n50% 100 0 0 0 0\n1011 200 0 0 0 0", 1000, 1011);
   CHECK(path.at(1000).x == 0);
   CHECK(path.at(1005).x == Approx(100 * 5 / 5.5));
@@ -60,7 +60,7 @@ TEST_CASE("a share of the timelapse is a moment, also between two edits", "[serv
   CHECK(path.at(1011).x == 200);
 }
 
-TEST_CASE("a camera path that is wrong says in which line and how", "[server]") {
+TEST_CASE("the error of a camera path names the line and the reason", "[server]") {
   CHECK(refused("") == "path.txt: has no station");
   CHECK(refused("# nothing\n") == "path.txt: has no station");
   CHECK(refused("\nten 0 0 0 0 0").find("path.txt:2: the moment is no sequence number") == 0);

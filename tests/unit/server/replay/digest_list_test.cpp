@@ -21,7 +21,7 @@ DigestList sample_list() {
   return list;
 }
 
-// Frozen: clients and servers of other builds write and read it.
+// These bytes are frozen: clients and servers of other builds write and read them.
 constexpr const char* kGolden =
     R"({"world_id":"00112233445566778899aabbccddeeff","seq":9120,"chunks":[
 {"lod":0,"x":-2,"y":5,"z":7,"epoch":1,"seq":3,"digest":"00000000000000010000000000000002"},
@@ -47,7 +47,8 @@ std::string with(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("a digest list has golden bytes, chunks in order of their keys", "[store][digest-list]") {
+TEST_CASE("a digest list has golden bytes, with the chunks in the order of their keys",
+          "[store][digest-list]") {
   CHECK(to_json(sample_list()) == kGolden);
   const auto read = parse_digests_json(kGolden, "list.json");
   REQUIRE(read.has_value());
@@ -71,7 +72,7 @@ TEST_CASE("the extremes of every field survive a round trip", "[store][digest-li
   CHECK(parse_digests_json(to_json(DigestList{}), "").has_value());
 }
 
-TEST_CASE("every truncation of a digest list and every extra byte is refused",
+TEST_CASE("every truncation of a digest list and every extra byte is rejected",
           "[store][digest-list]") {
   const std::string json = kGolden;
   for (std::size_t length = 0; length + 1 < json.size(); ++length) {
@@ -82,7 +83,7 @@ TEST_CASE("every truncation of a digest list and every extra byte is refused",
     CHECK_FALSE(parse_digests_json(json + extra, "").has_value());
 }
 
-TEST_CASE("a wrong field of a digest list is named", "[store][digest-list]") {
+TEST_CASE("the error names the wrong field of a digest list", "[store][digest-list]") {
   CHECK(key_of_error("[]").empty());
   CHECK(key_of_error(with("\"world_id\"", "\"world\"")) == "world_id");
   CHECK(key_of_error(with("0011", "001")) == "world_id");
@@ -97,12 +98,12 @@ TEST_CASE("a wrong field of a digest list is named", "[store][digest-list]") {
   CHECK(key_of_error(with("\"epoch\":1", "\"epoch\":4294967296")) == "chunks[0]");
   CHECK(key_of_error(with("\"epoch\":1", "\"epoch\":null")) == "chunks[0]");
   CHECK(key_of_error(with("1ffffffffffffffe", "1fffffffffffffff")) ==
-        "chunks[1]");  // not below the prime
+        "chunks[1]");  // a lane is not below 2^61 - 1
   CHECK(key_of_error(with("1ffffffffffffffe", "1FFFFFFFFFFFFFFE")) == "chunks[1]");
   CHECK(key_of_error(with("0002\"", "002\"")) == "chunks[0]");
 }
 
-TEST_CASE("a digest list file is replaced whole and other keys in it are ignored",
+TEST_CASE("a digest list file is replaced as a whole, and unknown keys in it are ignored",
           "[store][digest-list]") {
   const TempFolder folder;
   const std::string file = folder / "list.json";

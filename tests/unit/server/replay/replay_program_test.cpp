@@ -16,7 +16,8 @@ using namespace runstone::test;
 
 namespace {
 
-/// Returns true if the arguments, behind --world w, are a valid command line. They are stored in `options`.
+/// Returns true if the arguments, behind --world w, are a valid command line. They are stored in
+/// `options`.
 template <class Options>
 bool parses(void (*declare)(SubcommandOptions&, Options&), std::vector<std::string> arguments,
             Options& options) {

@@ -1,4 +1,4 @@
-// The part of a world that a timelapse shows, moment by moment, against the dense oracle.
+// The part of a world that a timelapse shows, compared with the dense oracle moment by moment.
 #include "server/replay/timelapse_world.hpp"
 
 #include <catch2/catch.hpp>
@@ -48,7 +48,7 @@ struct Grown {
   }
 };
 
-/// What a program that draws holds.
+/// The chunks of a program that draws.
 struct Drawn {
   std::map<ChunkKey, RunChunk> chunks;
   std::size_t taken = 0;
@@ -63,7 +63,7 @@ struct Drawn {
   }
 };
 
-/// The chunks in which the edits lie, and those beside them.
+/// Returns the chunks that the edits touch, and their neighbours.
 std::vector<ChunkKey> near() {
   std::vector<ChunkKey> keys;
   for (int i = 0; i < 27; ++i) keys.push_back({0, {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}});
@@ -82,7 +82,7 @@ void compare(const Grown& grown, const Drawn& held, Sequence seq) {
 
 }  // namespace
 
-TEST_CASE("who takes what a timelapse world hands out holds the world of each moment", "[server]") {
+TEST_CASE("the chunks of a timelapse world are those of the world at each moment", "[server]") {
   Grown grown(1);
   const Sequence from = GENERATE(Sequence{0}, Sequence{40});
   TimelapseWorld world = grown.open(from, kEdits);
@@ -116,7 +116,7 @@ TEST_CASE("the stage holds all edits and the ground around them", "[server]") {
   CHECK(wide.stage().max.x >= edits.max.x + 3 * kEdge);
   CHECK(wide.stage().min.z <= edits.min.z - 3 * kEdge);
   CHECK(wide.chunk_count() > narrow.chunk_count());
-  // The ground is there: the chunk with the surface, far from every edit.
+  // The chunk with the surface is on the stage, although it is far from every edit.
   Drawn held;
   TimelapseWorld world = grown.open(0, kEdits, 4);
   REQUIRE(world.begin(held.each).has_value());
@@ -125,14 +125,14 @@ TEST_CASE("the stage holds all edits and the ground around them", "[server]") {
   CHECK(held.chunks.contains({0, {x, y, 0}}));
 }
 
-TEST_CASE("from where is looked there is ground, too", "[server]") {
+TEST_CASE("the stage has the ground around the camera", "[server]") {
   Grown grown(3);
   const std::vector<ChunkCoord> eyes = {{100, 7, 100}};
   const TimelapseWorld world = grown.open(0, kEdits, 1, eyes);
   CHECK(world.stage().max.x == 102 * kEdge);
 }
 
-TEST_CASE("an imported world's ground is found where it lies", "[server]") {
+TEST_CASE("the stage has the ground of an imported world", "[server]") {
   Grown grown(4, true);
   TimelapseWorld world = grown.open(0, 1, 3);
   Drawn held;
@@ -140,7 +140,7 @@ TEST_CASE("an imported world's ground is found where it lies", "[server]") {
   CHECK(held.chunks.contains(kImported));
 }
 
-TEST_CASE("where nothing is edited on the way, what was edited before is shown", "[server]") {
+TEST_CASE("a timelapse without edits shows what was edited before", "[server]") {
   Grown grown(5);
   TimelapseWorld world = grown.open(kEdits, kEdits);
   CHECK_FALSE(world.edited().empty());
@@ -149,7 +149,7 @@ TEST_CASE("where nothing is edited on the way, what was edited before is shown",
   compare(grown, held, kEdits);
 }
 
-TEST_CASE("a stage that no picture could show is refused", "[server]") {
+TEST_CASE("a stage of too many chunks is rejected", "[server]") {
   Grown grown(6);
   std::vector<ChunkCoord> eyes;
   for (std::int32_t i = 0; i < 40; ++i) eyes.push_back({i * 100, 0, 0});
