@@ -1,5 +1,5 @@
-// The thesis' 37 scenarios at every edge, with the same checks as random chunks.
-// tests/golden/reference pins the number of quads; these tests check that the quads are correct.
+// The thesis' 37 scenarios at every edge, before the same jury as random chunks: how many quads a mesher
+// needs is in tests/golden/scenarios, whether they are the right ones is here.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -9,8 +9,7 @@
 namespace runstone::test {
 namespace {
 
-TEST_CASE("scenarios alone mesh to the faces required of each mesher",
-          "[mesh][property][scenarios]") {
+TEST_CASE("scenarios alone mesh to the faces each mesher owes", "[mesh][property][scenarios]") {
   MesherJury jury;
   for (const unsigned edge : {8u, 16u, 32u}) {
     for (unsigned number = 1; number <= 37; ++number) {
@@ -27,7 +26,7 @@ TEST_CASE("scenarios alone mesh to the faces required of each mesher",
   }
 }
 
-TEST_CASE("scenarios in their world of 27 chunks mesh to the faces required of each mesher",
+TEST_CASE("scenarios in their world of 27 chunks mesh to the faces each mesher owes",
           "[mesh][property][scenarios]") {
   // One chunk of each kind of place: in the middle, on a side, on an edge, in a corner.
   MesherJury jury;
@@ -46,7 +45,7 @@ TEST_CASE("scenarios in their world of 27 chunks mesh to the faces required of e
   }
 }
 
-/// Checks RDM and the reference meshers that `fault` covers.
+/// Of ours and of those before the jury (`fault`, a member of it).
 void judge_large_scenarios(unsigned edge, std::string (MesherJury::*fault)(const MeshScene&)) {
   MesherJury jury;
   for (unsigned number = 1; number <= 37; ++number) {
@@ -64,13 +63,13 @@ void judge_large_scenarios(unsigned edge, std::string (MesherJury::*fault)(const
   }
 }
 
-TEST_CASE("scenarios of edge 64 alone mesh to the faces required of each mesher",
+TEST_CASE("scenarios of edge 64 alone mesh to the faces each mesher owes",
           "[mesh][property][scenarios]") {
   judge_large_scenarios(64, &MesherJury::fault);
 }
 
 TEST_CASE("scenarios of edge 128 alone mesh to their faces", "[mesh][property][scenarios]") {
-  // Meshers that draw hidden faces are checked at smaller edges: they take a minute here.
+  // The meshers that show hidden faces were held to theirs at smaller edges: they take a minute here.
   judge_large_scenarios(128, &MesherJury::fault_of_exposed);
 }
 
