@@ -84,26 +84,15 @@ class Sweep {
   /// Finds the faces of layer s: those across the middle and the fastest axis, and those between
   /// this layer and the previous one. Returns by side the rows that differ from their previous row.
   SideRows find_faces(std::uint32_t s) {
-    SideRows rows = compare_rows(builder_.hide_fast(Side::fast_neg, s, layers_.current),
-                                 builder_.hide_fast(Side::fast_pos, s, layers_.current));
-    // Rows behind the last row of the layer have no faces. The first of them would close open
-    // strips.
-    const Row valid = bits_below<Row>(e_.m);
-    for (RowSet& set : rows) set &= valid;
-    return rows;
-  }
-
-  /// Writes the faces of the current layer. `hide_neg` and `hide_pos` hide the faces of the fast
-  /// sides: bit m is row m. The result also has bits for rows behind the last row.
-  HWY_INLINE SideRows compare_rows(Row hide_neg, Row hide_pos) {
+    const std::uint32_t count = e_.m;
     const Row* const solid = st_.solid[layers_.current].data();
     const Row* const hiding = st_.hiding[layers_.current].data();
-    const Row* const solid_previous = st_.solid[layers_.previous].data();
-    const Row* const hiding_previous = st_.hiding[layers_.previous].data();
+    const Row* const solid_then = st_.solid[layers_.previous].data();
+    const Row* const hiding_then = st_.hiding[layers_.previous].data();
     const Row* const cut_fast = st_.cut_fast[layers_.current].data();
-    const Row* const cut_fast_previous = st_.cut_fast[layers_.previous].data();
+    const Row* const cut_fast_then = st_.cut_fast[layers_.previous].data();
     const Row* const cut_mid = st_.cut_mid[layers_.current].data();
-    const Row* const cut_mid_previous = st_.cut_mid[layers_.previous].data();
+    const Row* const cut_mid_then = st_.cut_mid[layers_.previous].data();
     const Row* const cut_slow = st_.cut_slow.data();
     const auto face = [this](Side side, unsigned slot) { return st_.face[at(side)][slot].data(); };
     Row *const slow_neg = face(Side::slow_neg, 0), *const slow_pos = face(Side::slow_pos, 0);
@@ -111,13 +100,15 @@ class Sweep {
     Row* const mid_pos = face(Side::mid_pos, layers_.current);
     Row* const fast_neg = face(Side::fast_neg, layers_.current);
     Row* const fast_pos = face(Side::fast_pos, layers_.current);
-    const Row* const mid_neg_before = face(Side::mid_neg, layers_.previous);
-    const Row* const mid_pos_before = face(Side::mid_pos, layers_.previous);
-    const Row* const fast_neg_before = face(Side::fast_neg, layers_.previous);
-    const Row* const fast_pos_before = face(Side::fast_pos, layers_.previous);
+    const Row* const mid_neg_then = face(Side::mid_neg, layers_.previous);
+    const Row* const mid_pos_then = face(Side::mid_pos, layers_.previous);
+    const Row* const fast_neg_then = face(Side::fast_neg, layers_.previous);
+    const Row* const fast_pos_then = face(Side::fast_pos, layers_.previous);
+    const Row hide_neg = builder_.hide_fast(Side::fast_neg, s, layers_.current);
+    const Row hide_pos = builder_.hide_fast(Side::fast_pos, s, layers_.current);
     const Row last = Row{1} << (e_.f - 1);
     SideRows rows{};
-    for (std::uint32_t m = 0; m < e_.m; m += Lanes::kLanes) {
+    for (std::uint32_t m = 0; m < count; m += Lanes::kLanes) {
       const V voxels = Lanes::load(solid + m);
       const V hide = Lanes::load(hiding + m);
       V f_mid_neg = Lanes::without(voxels, Lanes::load(hiding + m - 1));
@@ -126,13 +117,11 @@ class Sweep {
           voxels, Lanes::either(Lanes::up(hide), Lanes::where(low_lanes(hide_neg, m), Row{1})));
       V f_fast_pos = Lanes::without(
           voxels, Lanes::either(Lanes::down(hide), Lanes::where(low_lanes(hide_pos, m), last)));
-      V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_previous + m));
-      V f_slow_pos = Lanes::without(Lanes::load(solid_previous + m), hide);
+      V f_slow_neg = Lanes::without(voxels, Lanes::load(hiding_then + m));
+      V f_slow_pos = Lanes::without(Lanes::load(solid_then + m), hide);
       // The same faces of the previous row, for the slow sides.
-      V g_slow_neg =
-          Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_previous + m - 1));
-      V g_slow_pos =
-          Lanes::without(Lanes::load(solid_previous + m - 1), Lanes::load(hiding + m - 1));
+      V g_slow_neg = Lanes::without(Lanes::load(solid + m - 1), Lanes::load(hiding_then + m - 1));
+      V g_slow_pos = Lanes::without(Lanes::load(solid_then + m - 1), Lanes::load(hiding + m - 1));
       // `along`: bits at which strips along a row are cut differently than in the previous layer.
       // `between`: voxels whose material differs from that of the previous layer.
       V along = voxels, between = voxels, along_neg = voxels, along_pos = voxels;
@@ -141,8 +130,8 @@ class Sweep {
         const V mid = Lanes::load(cut_mid + m);
         between = Lanes::load(cut_slow + m);
         const V slow_before = Lanes::load(cut_slow + m - 1);
-        const V fast_previous = Lanes::load(cut_fast_previous + m);
-        const V mid_previous = Lanes::load(cut_mid_previous + m);
+        const V fast_then = Lanes::load(cut_fast_then + m);
+        const V mid_then = Lanes::load(cut_mid_then + m);
         f_mid_neg = Lanes::both(f_mid_neg, mid);
         f_mid_pos = Lanes::both(f_mid_pos, Lanes::load(cut_mid + m + 1));
         f_fast_neg = Lanes::both(f_fast_neg, fast);
@@ -151,10 +140,10 @@ class Sweep {
         f_slow_pos = Lanes::both(f_slow_pos, between);
         g_slow_neg = Lanes::both(g_slow_neg, slow_before);
         g_slow_pos = Lanes::both(g_slow_pos, slow_before);
-        along = Lanes::either(between, Lanes::differing(fast, fast_previous));
+        along = Lanes::either(between, Lanes::differing(fast, fast_then));
         along_neg = Lanes::either(mid, Lanes::differing(fast, Lanes::load(cut_fast + m - 1)));
-        along_pos = Lanes::either(
-            mid_previous, Lanes::differing(fast_previous, Lanes::load(cut_fast_previous + m - 1)));
+        along_pos = Lanes::either(mid_then,
+                                  Lanes::differing(fast_then, Lanes::load(cut_fast_then + m - 1)));
       }
       Lanes::store(f_slow_neg, slow_neg + m);
       Lanes::store(f_slow_pos, slow_pos + m);
@@ -162,17 +151,16 @@ class Sweep {
       Lanes::store(f_mid_pos, mid_pos + m);
       Lanes::store(f_fast_neg, fast_neg + m);
       Lanes::store(f_fast_pos, fast_pos + m);
-      add_rows(rows[at(Side::slow_neg)], differ(f_slow_neg, g_slow_neg, along_neg), m);
-      add_rows(rows[at(Side::slow_pos)], differ(f_slow_pos, g_slow_pos, along_pos), m);
-      add_rows(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_before + m), along),
-               m);
-      add_rows(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_before + m), along),
-               m);
-      add_rows(rows[at(Side::fast_neg)],
-               differ(f_fast_neg, Lanes::load(fast_neg_before + m), between), m);
-      add_rows(rows[at(Side::fast_pos)],
-               differ(f_fast_pos, Lanes::load(fast_pos_before + m), between), m);
+      add(rows[at(Side::slow_neg)], differ(f_slow_neg, g_slow_neg, along_neg), m);
+      add(rows[at(Side::slow_pos)], differ(f_slow_pos, g_slow_pos, along_pos), m);
+      add(rows[at(Side::mid_neg)], differ(f_mid_neg, Lanes::load(mid_neg_then + m), along), m);
+      add(rows[at(Side::mid_pos)], differ(f_mid_pos, Lanes::load(mid_pos_then + m), along), m);
+      add(rows[at(Side::fast_neg)], differ(f_fast_neg, Lanes::load(fast_neg_then + m), between), m);
+      add(rows[at(Side::fast_pos)], differ(f_fast_pos, Lanes::load(fast_pos_then + m), between), m);
     }
+    // Rows behind the last row of the layer have no faces. The first of them would close open strips.
+    const Row valid = bits_below<Row>(count);
+    for (RowSet& set : rows) set &= valid;
     return rows;
   }
 
@@ -185,7 +173,7 @@ class Sweep {
     if constexpr (kManyMaterials) x = Lanes::either(x, Lanes::both(now, cut));
     return Lanes::any(x);
   }
-  static HWY_INLINE void add_rows(RowSet& set, std::uint64_t lanes, std::uint32_t m) {
+  static HWY_INLINE void add(RowSet& set, std::uint64_t lanes, std::uint32_t m) {
     set |= Row{lanes} << m;
   }
 

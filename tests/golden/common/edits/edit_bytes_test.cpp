@@ -4,6 +4,7 @@
 #include "common/edits/descriptor/edit_descriptor.hpp"
 #include "common/edits/descriptor/edit_record.hpp"
 #include "tests/support/edit_oracle.hpp"
+#include "tests/support/pinned_record.hpp"
 
 // Bytes derived by hand from docs/edit-log.md. They are stored in logs: a change here is a new kind
 // or version.
@@ -82,14 +83,7 @@ TEST_CASE("descriptor bytes of a paste are pinned", "[edits][golden]") {
 }
 
 TEST_CASE("record bytes are pinned", "[edits][golden]") {
-  EditRecord record;
-  record.version = {2, 300};
-  record.op = {7, 0x0123456789abcdefULL, 5};
-  record.time_us = 1'700'000'000'000'000;
-  record.cause = Cause::rollback;
-  record.edit = {FillSphere{{0, 64, -64}, 3}, {MaskKind::only_solid, 0}, 7};
-  record.subject = 299;
-  record.log = 1;
+  const EditRecord record = pinned_record();
   const Bytes golden = {
       0x01,                                            // record version
       0x01,                                            // log

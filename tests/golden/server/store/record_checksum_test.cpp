@@ -4,23 +4,10 @@
 #include <functional>
 #include <vector>
 
+#include "tests/support/pinned_record.hpp"
+
 using namespace runstone;
-
-namespace {
-
-EditRecord pinned_record() {
-  EditRecord record;
-  record.version = {2, 300};
-  record.op = {7, 0x0123456789abcdefULL, 5};
-  record.time_us = 1'700'000'000'000'000;
-  record.cause = Cause::rollback;
-  record.edit = {FillSphere{{0, 64, -64}, 3}, {MaskKind::only_solid, 0}, 7};
-  record.subject = 299;
-  record.log = 1;
-  return record;
-}
-
-}  // namespace
+using namespace runstone::test;
 
 TEST_CASE("the checksum of a record is pinned", "[store][golden]") {
   CHECK(record_checksum(pinned_record()) == 0x4a2777c5df689b9fULL);
