@@ -248,6 +248,30 @@ TEST_CASE_METHOD(SessionBench, "a chunk with a gap is requested with the next ti
   CHECK(requests[0].keys == std::vector<ChunkKey>{{0, {0, 0, 0}}});
 }
 
+TEST_CASE_METHOD(SessionBench,
+                 "an edit rejected as bad_edit is not offered again, not even after a reconnection",
+                 "[replica]") {
+  static_cast<void>(open());
+  pong();
+  REQUIRE(session.submit(set({1, 2, 3}, 4), now, now).has_value());
+  auto out = sent();
+  REQUIRE(take<EditRequest>(out).size() == 1);
+  receive(Reject{1, RejectReason::bad_edit, "unknown edit kind (at byte 0)", 0});
+  now += 10 * kAnswerUsMax;
+  pong();
+  session.tick(now);
+  out = sent();
+  CHECK(take<EditRequest>(out).empty());
+  session.disconnected();
+  server.resolved = 0;  // a restarted server has forgotten the rejection
+  out = open();
+  CHECK(take<EditRequest>(out).empty());
+  pong();
+  session.tick(now + kOffsetWaitUsMax);
+  out = sent();
+  CHECK(take<EditRequest>(out).empty());
+}
+
 TEST_CASE_METHOD(SessionBench, "an edit without an answer is sent again once per kAnswerUsMax",
                  "[replica]") {
   static_cast<void>(open());
