@@ -230,7 +230,7 @@ std::int64_t ChunkCache::enter(const CachedWorld& world) {
 }
 
 std::optional<KeyedChunk> ChunkCache::read(const CachedWorld& world, std::int64_t row,
-                                          const ChunkKey& key) {
+                                           const ChunkKey& key) {
   Tables& t = *tables_;
   t.find.bind(1, row)
       .bind(2, std::int64_t{key.at.x})
