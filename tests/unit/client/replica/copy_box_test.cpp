@@ -96,8 +96,8 @@ TEST_CASE_METHOD(Fixture, "a copy that cannot be made returns the reason", "[rep
   CHECK(copy_box(Replica{}, {{0, 0, 0}, {1, 1, 1}}, CopyEmpty::as_empty).error().what ==
         std::string("no world is open"));
   load();
-  CHECK(error_of({{0, 0, 0}, {32, 32, 33}}) == "a chunk of the box to copy is not here");
-  CHECK(error_of({{-33, 0, 0}, {1, 1, 1}}) == "a chunk of the box to copy is not here");
+  CHECK(error_of({{0, 0, 0}, {32, 32, 33}}) == "a chunk of the box to copy is not loaded");
+  CHECK(error_of({{-33, 0, 0}, {1, 1, 1}}) == "a chunk of the box to copy is not loaded");
   CHECK(error_of({{0, 0, 0}, {129, 1, 1}}) == "box to copy is longer than 128 voxels");
   CHECK(error_of({{0, 0, 0}, {0, 1, 1}}) == "box to copy is empty");
   CHECK(error_of({{INT32_MIN, 0, 0}, {INT32_MAX, 1, 1}}) ==
