@@ -20,7 +20,8 @@ struct Output {
 /// Runs the client with these arguments and returns its standard output.
 Output run_client(const std::string& arguments) {
   Output out;
-  const std::string command = std::string(RUNSTONE_CLIENT_PROGRAM) + " " + arguments + " 2>/dev/null";
+  const std::string command =
+      std::string(RUNSTONE_CLIENT_PROGRAM) + " " + arguments + " 2>/dev/null";
   std::FILE* const pipe = ::popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::array<char, 4096> buffer{};
