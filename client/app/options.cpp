@@ -119,7 +119,8 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   ClientOptions out;
   RawOptions raw;
   CLI::App app{"Runstone client: shows a world, and plays scripts.", "runstone-client"};
-  // The last value wins, so that a user can append options to the fixed command line of a container.
+  // The last value wins, so that a user can append options to the fixed command line of a
+  // container.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version",
                        std::string("runstone-client protocol ") + std::to_string(kProtocolVersion));
