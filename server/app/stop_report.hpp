@@ -30,6 +30,7 @@ std::string stop_line(const StopReport& report);
 /// Makes the report. `live` are the edited chunks that were in memory, ascending. After a clean
 /// stop each must have an equal snapshot; after any other stop they may be newer. Cost: reads every
 /// snapshot.
-StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live, bool is_clean);
+StopReport sum_up(WorldReader& store, std::span<const std::pair<ChunkKey, ChunkPtr>> live,
+                  bool is_clean);
 
 }  // namespace runstone

@@ -20,8 +20,8 @@ struct RlogExport {
 /// Writes the log up to min(at, last). The file gets its name when it is complete and on disk, and
 /// replaces an old one. The store may be open for reading only while a server writes it. The error
 /// is one line.
-Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file, Sequence at,
-                                            RlogOptions options = {});
+Result<RlogExport, std::string> export_rlog(WorldReader& store, const std::string& file,
+                                            Sequence at, RlogOptions options = {});
 
 struct RlogImport {
   bool made_world = false;  // the folder held no world

@@ -31,8 +31,8 @@ class TimelapseWorld {
   /// chunks and around `eyes`. Requires from <= to. Fails with the store's error if a row cannot be
   /// read, and with bad_request if the log does not reach back to `from` or the stage has more than
   /// kChunksMax chunks.
-  static StoreResult<TimelapseWorld> open(WorldReader& reader, const Generator& generator, Sequence from,
-                                          Sequence to, std::uint32_t radius,
+  static StoreResult<TimelapseWorld> open(WorldReader& reader, const Generator& generator,
+                                          Sequence from, Sequence to, std::uint32_t radius,
                                           std::span<const ChunkCoord> eyes);
 
   /// Returns the smallest box around all edits between `from` and `to`. If there are none, returns

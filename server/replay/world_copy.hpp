@@ -19,8 +19,8 @@ struct WorldCopy {
 /// base holds the source's base chunks and all edited chunks, as they were at `at`. Memory: one
 /// slice of chunks. Until the copy is complete, the folder's name ends with ".unfinished". The
 /// error is one line.
-Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator, Sequence at,
-                                          const std::string& folder,
+Result<WorldCopy, std::string> copy_world(WorldReader& source, const Generator& generator,
+                                          Sequence at, const std::string& folder,
                                           const WorldAt::Progress& progress = {});
 
 }  // namespace runstone

@@ -70,7 +70,8 @@ class RollbackBench : public RollbackService::Workers {
       write_log();
       tick();
       while (work()) service.tick(bench.now());
-      if (works.empty() && service.running() == 0 && written == bench.environment.records.size() && i > 2)
+      if (works.empty() && service.running() == 0 && written == bench.environment.records.size() &&
+          i > 2)
         return;
     }
     FAIL("the service does not come to rest");
