@@ -1,6 +1,6 @@
-// Any bytes as draw orders, split by the bytes themselves: the first byte seeds the split, the rest is the
-// stream. However it is split, the same orders come out; each is inside its limits, and what is written of it
-// again reads the same.
+// Reads any bytes as draw orders. Input: 1 byte that seeds the split, then the stream. The stream
+// must give the same orders however it is split. Each order must be inside its limits and come back
+// unchanged when it is encoded again.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ using namespace runstone;
 namespace {
 
 struct Outcome {
-  Bytes again;  // the orders, written anew
+  Bytes again;  // the orders, encoded again
   std::size_t orders = 0;
   bool failed = false;
   friend bool operator==(const Outcome&, const Outcome&) = default;
