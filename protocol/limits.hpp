@@ -1,6 +1,7 @@
-// The limits of messages and frames. The decoder, the verifier and the queues take them from here. Limits of what messages
-// carry are defined with their types: descriptors in common/edits/descriptor/edit_descriptor.hpp, materials in
-// common/materials/material_table.hpp, chunk volumes in common/runs/extent.hpp.
+// The limits of messages and frames. The decoder, the verifier and the queues take them from here.
+// Limits of what messages carry are defined with their types: descriptors in
+// common/edits/descriptor/edit_descriptor.hpp, materials in common/materials/material_table.hpp,
+// chunk volumes in common/runs/extent.hpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,13 +15,13 @@ namespace runstone {
 inline constexpr std::uint32_t kProtocolVersion = 2;
 
 // Features: optional parts of the protocol, a bit each.
-inline constexpr std::uint64_t kFeatureCommands = 1;  // CommandRequest and CommandOutput
-inline constexpr std::uint64_t kFeatureReceiveAck =
-    2;  // ReceiveAck: the server paces terrain by it
+inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and CommandOutput
+inline constexpr std::uint64_t kFeatureReceiveAck = 2;  // ReceiveAck, by which terrain is paced
 inline constexpr std::uint64_t kFeaturesKnown = kFeatureCommands | kFeatureReceiveAck;
 
-// When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after kReceiveAckEveryBytes,
-// whichever comes first, but never within kReceiveAckUsMin. That stays below the server's limit of messages a second.
+// When a client acknowledges terrain: kReceiveAckEveryUs after the last acknowledgement or after
+// kReceiveAckEveryBytes, whichever comes first, but never within kReceiveAckUsMin. That stays below
+// the server's limit of messages a second.
 inline constexpr std::int64_t kReceiveAckEveryUs = 10'000;
 inline constexpr std::size_t kReceiveAckEveryBytes = 64 * 1024;
 inline constexpr std::int64_t kReceiveAckUsMin = 1'000;
@@ -56,8 +57,8 @@ inline constexpr std::size_t kWorldIdBytes = 16;
 inline constexpr std::size_t kPlayerNameBytesMax = 32;
 inline constexpr std::int64_t kHandshakeMsMax = 10'000;  // then a silent peer loses its slot
 
-/// Bound of clock readings, in microseconds, in both directions. A reader can subtract any two of them without an
-/// overflow.
+/// Bound of clock readings, in microseconds, in both directions. A reader can subtract any two of
+/// them without an overflow.
 inline constexpr std::int64_t kWireTimeUsMax = 1LL << 53;
 
 // World.

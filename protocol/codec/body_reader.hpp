@@ -1,5 +1,6 @@
-// BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier cannot check. Internal to
-// the message decoder. The readers are in session_bodies.cpp, chunk_bodies.cpp and edit_bodies.cpp.
+// BodyReader: reads the body of each kind of message and checks what the FlatBuffers verifier
+// cannot check. Internal to the message decoder. The readers are in session_bodies.cpp,
+// chunk_bodies.cpp and edit_bodies.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,9 @@ inline Unexpected<Error> bad(const char* what) { return fail(ErrorCode::bad_valu
 /// Returns true if a reader can subtract this time from another one without an overflow.
 inline bool is_time(TimeUs t) { return t >= -kWireTimeUsMax && t <= kWireTimeUsMax; }
 
-/// Returns the message in these bytes, which must be 8-aligned. Fails if they exceed the limit of the class, do not
-/// verify, or hold a kind of message that this build does not know or that the sender may not send in this class.
+/// Returns the message in these bytes, which must be 8-aligned. Fails if they exceed the limit of
+/// the class, do not verify, or hold a kind of message that this build does not know or that the
+/// sender may not send in this class.
 Result<const wire::Message*> open_message(Sender sender, FrameClass frame_class, ByteView bytes);
 
 struct BodyReader {
@@ -62,12 +64,14 @@ struct BodyReader {
   Result<Message> read(const wire::Durable& t) const;
 
   using TakeEdit = std::function<Result<void>(Sequence)>;
-  /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then calls `take` with its
-  /// sequence. `take` may move from both. Before Welcome, `touched` stays empty and `previous` is not compared with it.
+  /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then
+  /// calls `take` with its sequence. `take` may move from both. Before Welcome, `touched` stays
+  /// empty and `previous` is not compared with it.
   Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit,
                           std::vector<ChunkCoord>& touched, const TakeEdit& take) const;
 
-  /// Returns the chunk edge that bounds keys: before Welcome, the largest one allows the fewest coordinates.
+  /// Returns the chunk edge that bounds keys: before Welcome, the largest one allows the fewest
+  /// coordinates.
   std::int32_t key_edge() const {
     return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax);
   }

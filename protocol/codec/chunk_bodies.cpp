@@ -7,7 +7,8 @@
 namespace runstone {
 namespace {
 
-/// Copies 1 .. count_max keys. Returns false if there are too few or too many, or if one lies outside the world.
+/// Copies 1 .. count_max keys. Returns false if there are too few or too many, or if one lies
+/// outside the world.
 bool take_keys(const flatbuffers::Vector<const wire::Key*>* from, std::size_t count_max,
                std::int32_t edge, std::vector<ChunkKey>& to) {
   const auto count = count_of(from, count_max);

@@ -138,8 +138,8 @@ Result<RunChunk> decode_raw(ByteReader& r, const Extent* expected) {
       {head.extent, head.order, RunList::of_wide(std::move(ends), std::move(materials))});
 }
 
-/// Reads at most `colours_max` ids. Allocates only after it has checked that their bytes are present. The result is valid
-/// if r.ok().
+/// Reads at most `colours_max` ids. Allocates only after it has checked that their bytes are
+/// present. The result is valid if r.ok().
 std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   const auto colours = r.varint_max(kMaterialCountMax, "palette exceeds 65536 materials");
   if (colours > colours_max) r.reject(ErrorCode::bad_value, "palette larger than the run count");
@@ -157,8 +157,8 @@ std::vector<Material> read_palette(ByteReader& r, std::uint64_t colours_max) {
   return palette;
 }
 
-/// Returns the validated chunk of unpacked runs. Errors of runs keep their run index; other offsets are moved by `body_at`,
-/// the offset of the body.
+/// Returns the validated chunk of unpacked runs. Errors of runs keep their run index; other offsets
+/// are moved by `body_at`, the offset of the body.
 Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_t body_at) {
   if (!runs) {
     const Error& e = runs.error();

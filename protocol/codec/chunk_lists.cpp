@@ -60,7 +60,8 @@ void put_cached_chunk(ByteWriter& out, KeyWriter& keys, const CachedChunk& chunk
   out.u64(chunk.digest);
 }
 
-/// Calls `take` for each entry until the bytes end. Requires at least one entry; fails if there are more than `count_max`.
+/// Calls `take` for each entry until the bytes end. Requires at least one entry; fails if there are
+/// more than `count_max`.
 template <class Entry, class Take>
 Result<std::vector<Entry>> entries_of(ByteView bytes, std::size_t count_max, Take&& take) {
   std::vector<Entry> out;

@@ -22,8 +22,8 @@ struct IndexRun {
   std::uint32_t index = 0;
 };
 
-/// Models of a number below 2^21, written in a given number of bits, high bits first. A number of few bits has a model for
-/// every prefix.
+/// Models of a number below 2^21, written in a given number of bits, high bits first. A number of
+/// few bits has a model for every prefix.
 struct NumberModel {
   static constexpr unsigned kTreeBitsMax = 5;
   std::array<AdaptiveBit, 2u << kTreeBitsMax> tree;
@@ -77,8 +77,8 @@ struct Unknown {
   static void next() {}
 };
 
-/// Encodes or decodes one chunk: `Coder` takes each bit from `Truth` or from bytes. So both directions have the same models
-/// and the same list of runs.
+/// Encodes or decodes one chunk: `Coder` takes each bit from `Truth` or from bytes. So both
+/// directions have the same models and the same list of runs.
 template <class Coder, class Truth>
 class RunCoder {
  public:
@@ -144,7 +144,8 @@ class RunCoder {
 
  private:
   static std::uint32_t same(std::uint32_t a, std::uint32_t b) { return a == b ? 1 : 0; }
-  /// Returns the error, or truncated if the coder read beyond the body: then the runs are arbitrary.
+  /// Returns the error, or truncated if the coder read beyond the body: then the runs are
+  /// arbitrary.
   Result<void> broken(const char* what) const {
     return coder_overrun() ? cut() : fail(ErrorCode::not_canonical, what);
   }
@@ -155,8 +156,9 @@ class RunCoder {
     return false;
   }
 
-  /// Finds the materials above and behind voxel `at`, one line and one layer before it. In the first line, the one above is
-  /// the first material. In the first layer, the one behind is the one above.
+  /// Finds the materials above and behind voxel `at`, one line and one layer before it. In the
+  /// first line, the one above is the first material. In the first layer, the one behind is the one
+  /// above.
   void look(std::uint32_t at) {
     above_ = first_;
     if (at >= line_) {
@@ -171,8 +173,8 @@ class RunCoder {
     at_ = at;
   }
 
-  /// Returns the first position at which the material above or behind may change, or the volume. The open run has no end
-  /// yet and counts as endless.
+  /// Returns the first position at which the material above or behind may change, or the volume.
+  /// The open run has no end yet and counts as endless.
   std::uint32_t stretch_end() {
     above_end_ = at_ < line_ ? line_ : runs_[above_run_].end + line_;
     behind_end_ = at_ < layer_ ? layer_ : runs_[behind_run_].end + layer_;

@@ -1,5 +1,6 @@
-// CommitWalk: reads a commit edit by edit and keeps none of them. It serves clients without voxels, such as bots, that
-// verify thousands of edits. It makes the checks of decode_message() with the same code, but allocates nothing per edit.
+// CommitWalk: reads a commit edit by edit and keeps none of them. It serves clients without voxels,
+// such as bots, that verify thousands of edits. It makes the checks of decode_message() with the
+// same code, but allocates nothing per edit.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -25,9 +26,10 @@ class CommitWalk {
  public:
   using OnEdit = std::function<Result<void>(const WalkedEdit&)>;
 
-  /// Reads a server's message of the class edits, 8-aligned as FrameReader's are. Returns false if it is no commit; such
-  /// a message is for decode_message(). An error of the message or of `on_edit` ends the walk; the edits before the bad one
-  /// have been delivered by then. Requires a chunk_edge of 16, 32, 64 or 128.
+  /// Reads a server's message of the class edits, 8-aligned as FrameReader's are. Returns false if
+  /// it is no commit; such a message is for decode_message(). An error of the message or of
+  /// `on_edit` ends the walk; the edits before the bad one have been delivered by then. Requires a
+  /// chunk_edge of 16, 32, 64 or 128.
   Result<bool> read(ByteView bytes, std::uint16_t chunk_edge, const OnEdit& on_edit);
 
  private:

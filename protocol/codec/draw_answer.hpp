@@ -1,8 +1,8 @@
-// Draw answers: lines that `runstone-client --draw` writes to its standard output, so that the sender of draw orders
-// (draw_order.hpp) can wait for its pictures:
+// Draw answers: lines that `runstone-client --draw` writes to its standard output, so that the
+// sender of draw orders (draw_order.hpp) can wait for its pictures:
 //   ready VERSION RENDERER                     once, when there is OpenGL
 //   drawn quads=N chunks=N us=N FILE           a picture is on disk
-//   unwritten FILE                             the picture could not be written; the next one may succeed
+//   unwritten FILE the picture could not be written; the next one may succeed
 //   error TEXT                                 no OpenGL, or an invalid order: the program ends
 // Any other line is no answer.
 #pragma once
@@ -39,9 +39,11 @@ struct DrawFailed {
 };
 using DrawAnswer = std::variant<DrawReady, PictureDrawn, PictureUnwritten, DrawFailed>;
 
-/// Returns the line with its line feed. Bytes that are not printable become blanks; a line that is too long is cut.
+/// Returns the line with its line feed. Bytes that are not printable become blanks; a line that is
+/// too long is cut.
 std::string to_line(const DrawAnswer& answer);
-/// Parses a line without its line feed. Returns nullopt if it is no answer or has control characters.
+/// Parses a line without its line feed. Returns nullopt if it is no answer or has control
+/// characters.
 std::optional<DrawAnswer> parse_draw_answer(std::string_view line);
 
 }  // namespace runstone

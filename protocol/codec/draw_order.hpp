@@ -1,8 +1,10 @@
-// Draw orders: a program without OpenGL writes them to the standard input of a child process, `runstone-client --draw`,
-// which draws pictures of a world (docs/client.md). Little-endian:
+// Draw orders: a program without OpenGL writes them to the standard input of a child process,
+// `runstone-client --draw`, which draws pictures of a world (docs/client.md). Little-endian:
 //   frame   u32 body bytes | u8 kind | body
-//   world   1: u8 version (1) | u8 chunk edge | material table as TOML, without generation. First, and once
-//   chunk   2: u8 lod (0) | i32 x, y, z | chunk bytes in any encoding (chunk_codec.hpp). Stored from now on
+//   world   1: u8 version (1) | u8 chunk edge | material table as TOML, without generation. First,
+//           and once
+//   chunk   2: u8 lod (0) | i32 x, y, z | chunk bytes in any encoding (chunk_codec.hpp). Stored
+//           from now on
 //   forget  3: u8 lod (0) | i32 x, y, z. Removes the chunk
 //   picture 4: f64 x, y, z, yaw, pitch, fov_y, near, far | u16 width, height | file name, UTF-8
 //   end     5: empty. Nothing follows
@@ -34,8 +36,8 @@ inline constexpr std::uint16_t kDrawSideMin = 16, kDrawSideMax = 8192;    // pix
 inline constexpr double kDrawDistanceMin = 0.01, kDrawDistanceMax = 1e6;  // voxels, of near and far
 inline constexpr double kDrawAngleMax = 628;  // radians in both directions: a hundred turns
 
-/// The camera of a picture. Right-handed, y up. yaw 0 looks along +z and grows towards +x; pitch is positive upward. Angles
-/// are in radians, lengths in voxels.
+/// The camera of a picture. Right-handed, y up. yaw 0 looks along +z and grows towards +x; pitch is
+/// positive upward. Angles are in radians, lengths in voxels.
 struct DrawCamera {
   double x = 0, y = 0, z = 0;  // eye, within +-2 kWorldLimit
   double yaw = 0, pitch = 0;
@@ -80,9 +82,9 @@ void append_draw_forget(const ChunkKey& key, Bytes& out);
 void append_draw_picture(const DrawPicture& picture, Bytes& out);
 void append_draw_end(Bytes& out);
 
-/// Reads the stream in pieces of any size and delivers one order after another. Holds at most one body. After an error of
-/// its own or of on_order, every call returns that error. Offsets of errors count bytes since the stream began and name
-/// the first byte of the frame. Thread: one.
+/// Reads the stream in pieces of any size and delivers one order after another. Holds at most one
+/// body. After an error of its own or of on_order, every call returns that error. Offsets of errors
+/// count bytes since the stream began and name the first byte of the frame. Thread: one.
 class DrawOrderReader {
  public:
   using OnOrder = std::function<Result<void>(DrawOrder)>;

@@ -93,7 +93,8 @@ Result<void> BodyReader::read_previous(ByteView bytes, Sequence seq, OrderedEdit
   }
   if (!in.ok()) return Unexpected<Error>{in.error()};
   if (chunk_edge == 0) return {};
-  // The bound comes before the list: a hostile box may touch millions of chunks. Servers reject by the same bound.
+  // The bound comes before the list: a hostile box may touch millions of chunks. Servers reject by
+  // the same bound.
   if (touched_chunks_bound(out.edit, chunk_edge) > kTouchedChunksMax) {
     return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
   }

@@ -1,7 +1,8 @@
-// Frames: they carry messages in a byte stream. One stream carries three classes. Fragments of different classes may
-// interleave, so that an edit overtakes terrain. Within a class, messages keep their order. A frame is a header of 12
-// bytes, little-endian, and a body:
-//   u32 bytes of the body (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this message follow) |
+// Frames: they carry messages in a byte stream. One stream carries three classes. Fragments of
+// different classes may interleave, so that an edit overtakes terrain. Within a class, messages
+// keep their order. A frame is a header of 12 bytes, little-endian, and a body:
+//   u32 bytes of the body (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this
+//   message follow) |
 //   u16 zero | u32 counter (frames sent in this direction before this one, modulo 2^32)
 // The counter detects lost, repeated and invented frames before their bytes reach the decoder.
 #pragma once
@@ -38,8 +39,8 @@ using FrameHeader = std::array<std::uint8_t, kFrameHeaderBytes>;
 /// Makes the frames of one direction of a session and counts them. Thread: one.
 class FrameWriter {
  public:
-  /// Returns the header of the next fragment. `more` says that the message continues in another fragment. Requires
-  /// body_bytes in 1 .. kFragmentBytesMax.
+  /// Returns the header of the next fragment. `more` says that the message continues in another
+  /// fragment. Requires body_bytes in 1 .. kFragmentBytesMax.
   FrameHeader next(FrameClass frame_class, std::size_t body_bytes, bool more);
   /// Appends a whole message as consecutive frames, for senders that do not interleave classes.
   void append(const EncodedMessage& message, Bytes& out);
@@ -48,15 +49,16 @@ class FrameWriter {
   std::uint32_t counter_ = 0;
 };
 
-/// Reads frames and assembles messages. Accepts the stream in pieces of any size and delivers messages in the order in
-/// which they become complete. Holds at most one unfinished message per class, each below its limit. After an error of its
-/// own or of on_message, every call returns that error. Offsets of its own errors count bytes since the stream began and
-/// name the first byte of the frame. Thread: one.
+/// Reads frames and assembles messages. Accepts the stream in pieces of any size and delivers
+/// messages in the order in which they become complete. Holds at most one unfinished message per
+/// class, each below its limit. After an error of its own or of on_message, every call returns that
+/// error. Offsets of its own errors count bytes since the stream began and name the first byte of
+/// the frame. Thread: one.
 class FrameReader {
  public:
   explicit FrameReader(Sender sender) : sender_(sender) {}
-  /// Gets the class and the bytes of a message. The bytes are 16-aligned and live until the call returns. It must not feed
-  /// the same reader.
+  /// Gets the class and the bytes of a message. The bytes are 16-aligned and live until the call
+  /// returns. It must not feed the same reader.
   using OnMessage = std::function<Result<void>(FrameClass, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
   /// Returns the bytes read of frames of this class, headers and unfinished frames included.

@@ -1,11 +1,12 @@
-// Handshake: each side proves that it has the secret key of its Ed25519 identity (libsodium). Randomness is an argument, so
-// that tests are repeatable.
+// Handshake: each side proves that it has the secret key of its Ed25519 identity (libsodium).
+// Randomness is an argument, so that tests are repeatable.
 //   client -> Hello(key, nonce)
 //   server -> Welcome(server key, challenge, signature over the server transcript)
 //   client -> ClientAuth(signature over the client transcript)
 //   server -> SessionAccepted(author)
-// A transcript contains both keys, both random values, the world, the epoch, the protocol version and the role of its
-// signer. So a signature cannot be replayed in another session or serve as the other side's.
+// A transcript contains both keys, both random values, the world, the epoch, the protocol version
+// and the role of its signer. So a signature cannot be replayed in another session or serve as the
+// other side's.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,10 +23,12 @@ struct KeyPair {
   std::array<std::uint8_t, 64> secret_key{};
 };
 
-/// Returns the key pair of a seed. It is deterministic: the seed is the identity and must stay secret.
+/// Returns the key pair of a seed. It is deterministic: the seed is the identity and must stay
+/// secret.
 KeyPair key_pair_of(const KeySeed& seed);
 
-/// Returns "runstone server v1" and all fields that both sides know after Welcome, without the signature.
+/// Returns "runstone server v1" and all fields that both sides know after Welcome, without the
+/// signature.
 Bytes server_transcript(const Hello& hello, const Welcome& welcome);
 /// Returns "runstone client v1" and the same fields.
 Bytes client_transcript(const Hello& hello, const Welcome& welcome);

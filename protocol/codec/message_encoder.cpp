@@ -214,7 +214,8 @@ struct BodyBuilder {
     std::transform(list.begin(), list.end(), keys.begin(), key_of);
     return b.CreateVectorOfStructs(keys);
   }
-  /// Returns the line with "?" for each byte that is not printable: a line may name a file, and file names hold any bytes.
+  /// Returns the line with "?" for each byte that is not printable: a line may name a file, and
+  /// file names hold any bytes.
   static std::string shown_line(const std::string& line) {
     std::string shown = line;
     if (!is_printable_utf8(shown)) {

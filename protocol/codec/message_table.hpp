@@ -1,5 +1,5 @@
-// The table of messages: everything that is known of a message by its kind alone. The decoder, the frames, the sessions of
-// both sides and the table in docs/protocol.md follow from it.
+// The table of messages: everything that is known of a message by its kind alone. The decoder, the
+// frames, the sessions of both sides and the table in docs/protocol.md follow from it.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace runstone {
 
-/// Index of a message's type in Message, in kMessageTable and, less one, in the union Body of the schema.
+/// Index of a message's type in Message, in kMessageTable and, less one, in the union Body of the
+/// schema.
 using MessageKind = std::size_t;
 inline constexpr std::size_t kMessageKindCount = std::variant_size_v<Message>;
 
@@ -34,7 +35,8 @@ struct MessageInfo {
 
 /// Each class keeps the order of its messages, and this decides what travels where:
 ///   - edits: SessionAccepted comes first, and Durable never overtakes the commits that it covers;
-///   - chunks: the last message about a chunk arrives last, and HistoryState precedes the chunks of its view;
+///   - chunks: the last message about a chunk arrives last, and HistoryState precedes the chunks of
+///     its view;
 ///   - control: the rest.
 inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
   using enum SentBy;
@@ -78,7 +80,8 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
 constexpr const MessageInfo& info_of(MessageKind kind) { return kMessageTable[kind]; }
 inline const MessageInfo& info_of(const Message& message) { return info_of(message.index()); }
 
-/// Returns the kind of a message that encode_message() made or decode_message() accepted. Verifies nothing. Cost: O(1).
+/// Returns the kind of a message that encode_message() made or decode_message() accepted. Verifies
+/// nothing. Cost: O(1).
 MessageKind kind_of(ByteView message);
 
 /// Returns true if this side may send the message.
@@ -93,12 +96,12 @@ struct Refusal {
   const char* text;
 };
 
-/// Returns nullopt if a session at `stage` with these features in force accepts the message from `sender`, otherwise
-/// the goodbye that ends it:
+/// Returns nullopt if a session at `stage` with these features in force accepts the message from
+/// `sender`, otherwise the goodbye that ends it:
 ///   - not_authenticated if a client sends a message of the open session too early;
 ///   - unexpected_message if the sender, the stage or the feature is wrong.
-/// A client accepts messages of the open session while it is authenticating: there is no order between classes, so they
-/// may overtake SessionAccepted.
+/// A client accepts messages of the open session while it is authenticating: there is no order
+/// between classes, so they may overtake SessionAccepted.
 std::optional<Refusal> refusal_of(const MessageInfo& info, Sender sender, SessionStage stage,
                                   std::uint64_t features);
 

@@ -1,5 +1,6 @@
-// Messages as plain structs, with the functions that encode and decode them. A decoded struct is valid: sizes, ranges,
-// enum values, descriptor bytes and chunk runs were checked. The one exception is EditRequest::fault.
+// Messages as plain structs, with the functions that encode and decode them. A decoded struct is
+// valid: sizes, ranges, enum values, descriptor bytes and chunk runs were checked. The one
+// exception is EditRequest::fault.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -80,14 +81,15 @@ struct SessionAccepted {
   friend bool operator==(const SessionAccepted&, const SessionAccepted&) = default;
 };
 
-/// The chunks that a client wants: those with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around `centre`. The
-/// direction is a hint: the server sends what lies in the cone first.
+/// The chunks that a client wants: those with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around
+/// `centre`. The direction is a hint: the server sends what lies in the cone first.
 struct View {
   ChunkCoord centre;
   std::uint8_t radius_h = 0, radius_v = 0;
   std::uint16_t yaw = 0;   // as in Pose
   std::int16_t pitch = 0;  // as in Pose
-  /// Half the opening angle of the cone that the client sees; 65536 is a turn. 0 .. kViewConeMax; 0 means all around.
+  /// Half the opening angle of the cone that the client sees; 65536 is a turn. 0 .. kViewConeMax; 0
+  /// means all around.
   std::uint16_t cone = 0;
   friend bool operator==(const View&, const View&) = default;
   bool contains(ChunkCoord c) const {
@@ -106,7 +108,8 @@ struct ChunkRequest {
   std::vector<ChunkKey> keys;
   friend bool operator==(const ChunkRequest&, const ChunkRequest&) = default;
 };
-/// The schema's table Chunk. Clients decode it to this struct. Servers use encode_snapshot() instead, once per chunk.
+/// The schema's table Chunk. Clients decode it to this struct. Servers use encode_snapshot()
+/// instead, once per chunk.
 struct ChunkSnapshot {
   ChunkKey key;
   Chunk chunk;
@@ -129,10 +132,11 @@ constexpr bool is_before_in_list(const ChunkCoord& a, const ChunkCoord& b) {
   return a.x != b.x ? a.x < b.x : a.z != b.z ? a.z < b.z : a.y < b.y;
 }
 
-/// Why the server cannot send a chunk. Values are on the wire. Readers accept values that they do not know.
+/// Why the server cannot send a chunk. Values are on the wire. Readers accept values that they do
+/// not know.
 enum class UnavailableReason : std::uint8_t {
-  /// The row of the chunk in the server's database is damaged. It stays so until the row is repaired and the server
-  /// restarts.
+  /// The row of the chunk in the server's database is damaged. It stays so until the row is
+  /// repaired and the server restarts.
   damaged = 1,
 };
 /// Returns the name in docs/protocol.md, or "unknown".
@@ -151,17 +155,19 @@ struct CachedChunk {
   std::uint64_t digest = 0;  // claim_digest() of the voxels
   friend bool operator==(const CachedChunk&, const CachedChunk&) = default;
 };
-/// Returns lane 0 of a digest. Its 61 bits find a copy that differs by accident, but for one in 2^61. A copy that differs
-/// on purpose harms only the client that claims it, and only until the next DigestCheck.
+/// Returns lane 0 of a digest. Its 61 bits find a copy that differs by accident, but for one in
+/// 2^61. A copy that differs on purpose harms only the client that claims it, and only until the
+/// next DigestCheck.
 inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
 
-/// Claims for chunks of the view in force or of the next view, so that the server need not send them. Strictly ascending
-/// by key; level of detail 0.
+/// Claims for chunks of the view in force or of the next view, so that the server need not send
+/// them. Strictly ascending by key; level of detail 0.
 struct CachedChunks {
   std::vector<CachedChunk> chunks;
   friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
 };
-/// The client's copy at this sequence equals the chunk at the moment when the session was subscribed to it.
+/// The client's copy at this sequence equals the chunk at the moment when the session was
+/// subscribed to it.
 struct UnmodifiedChunk {
   ChunkKey key;
   Sequence seq = 0;
@@ -177,8 +183,8 @@ struct MissingEdit {
   EditDescriptor edit;
   friend bool operator==(const MissingEdit&, const MissingEdit&) = default;
 };
-/// Replaces a snapshot at `to`: all edits with from < seq <= to.seq that touch the chunk by geometry, in ascending order.
-/// The last one is at to.seq.
+/// Replaces a snapshot at `to`: all edits with from < seq <= to.seq that touch the chunk by
+/// geometry, in ascending order. The last one is at to.seq.
 struct ChunkEdits {
   ChunkKey key;
   Sequence from = 0;
@@ -203,7 +209,8 @@ struct HistoryRequest {
 
 /// Values are on the wire.
 ///   - begins: the chunks that follow show this state of the world;
-///   - complete: all chunks of the view that differ from the client's were sent; of past states only;
+///   - complete: all chunks of the view that differ from the client's were sent; of past states
+///     only;
 ///   - refused: nothing changed, and `text` gives the reason.
 enum class HistoryPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
 inline constexpr std::uint8_t kHistoryPhaseMax = 3;
@@ -221,10 +228,12 @@ struct EditRequest {
   ClientSequence client_seq = 0;
   TimeUs submitted_us = 0;
   EditDescriptor edit;
-  /// Why the descriptor's bytes are not a valid descriptor; `edit` then has no meaning. Such a request is answered with
-  /// Reject bad_edit. It does not end the session, or a client that offers its pending edits again would never get in.
+  /// Why the descriptor's bytes are not a valid descriptor; `edit` then has no meaning. Such a
+  /// request is answered with Reject bad_edit. It does not end the session, or a client that offers
+  /// its pending edits again would never get in.
   std::optional<Error> fault = std::nullopt;
-  /// Two requests with faults are equal whatever the faults are: encode_message() does not keep the bytes.
+  /// Two requests with faults are equal whatever the faults are: encode_message() does not keep the
+  /// bytes.
   friend bool operator==(const EditRequest& a, const EditRequest& b) {
     return a.client_seq == b.client_seq && a.submitted_us == b.submitted_us && a.edit == b.edit &&
            a.fault.has_value() == b.fault.has_value();
@@ -235,9 +244,9 @@ struct OrderedEdit {
   Cause cause = Cause::player;
   TimeUs submitted_us = 0, ordered_us = 0;  // on the server's steady clock
   EditDescriptor edit;
-  std::vector<Sequence>
-      previous;          // of each touched chunk before this edit, in touched_chunks() order
-  Sequence subject = 0;  // the earlier edit that this one undoes or redoes; 0: none
+  /// Of each touched chunk, the sequence before this edit. In touched_chunks() order.
+  std::vector<Sequence> previous;
+  Sequence subject = 0;  // the earlier edit that a rollback, undo or redo answers; 0: none
   friend bool operator==(const OrderedEdit&, const OrderedEdit&) = default;
 };
 struct Commit {
@@ -247,8 +256,8 @@ struct Commit {
   friend bool operator==(const Commit&, const Commit&) = default;
 };
 
-/// Values are on the wire. Every reason but already_resolved uses up the client sequence: another attempt takes a new
-/// one.
+/// Values are on the wire. Every reason but already_resolved uses up the client sequence: another
+/// attempt takes a new one.
 enum class RejectReason : std::uint8_t {
   busy = 1,              // the log is full, or the server is stopping
   already_resolved = 2,  // the client sequence was applied or rejected before
@@ -268,8 +277,8 @@ struct Reject {
   ClientSequence client_seq = 0;
   RejectReason reason = RejectReason::busy;
   std::string detail;
-  Sequence seq =
-      0;  // for already_resolved: if the edit was applied, then at this sequence or before
+  /// For already_resolved: if the edit was applied, then at this sequence or before.
+  Sequence seq = 0;
   friend bool operator==(const Reject&, const Reject&) = default;
 };
 struct Durable {
@@ -345,7 +354,8 @@ struct Goodbye {
   friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
-/// One line for the server to execute. A session has one command at a time: the next request follows the last output.
+/// One line for the server to execute. A session has one command at a time: the next request
+/// follows the last output.
 struct CommandRequest {
   std::uint32_t id = 0;  // chosen by the client; the outputs carry it
   std::string text;      // 1 .. kCommandBytesMax bytes
@@ -353,8 +363,8 @@ struct CommandRequest {
 };
 struct CommandOutput {
   std::uint32_t id = 0;
-  std::vector<std::string>
-      lines;             // at most kCommandLinesMax, each at most kCommandLineBytesMax bytes
+  /// At most kCommandLinesMax lines, each of at most kCommandLineBytesMax bytes.
+  std::vector<std::string> lines;
   bool is_done = false;  // the last output of its request
   bool is_ok = false;    // valid if is_done: the command succeeded
   friend bool operator==(const CommandOutput&, const CommandOutput&) = default;
@@ -380,27 +390,30 @@ inline bool digest_matches(const ChunkSnapshot& snapshot) {
   return digest_of(snapshot.chunk.voxels) == snapshot.chunk.digest;
 }
 
-/// Serialises a message as a FlatBuffers buffer of protocol/schema/runstone.fbs. Chunk snapshots are `raw`; see
-/// encode_snapshot() for the other encodings. Requires what decode_message() demands, with these exceptions:
+/// Serialises a message as a FlatBuffers buffer of protocol/schema/runstone.fbs. Chunk snapshots
+/// are `raw`; see encode_snapshot() for the other encodings. Requires what decode_message()
+/// demands, with these exceptions:
 ///   - reject details, goodbye texts and lines of command output that are too long are cut;
 ///   - in lines of command output, bytes that are not printable become "?";
 ///   - a request with a fault gets empty descriptor bytes.
 /// Thread: any.
 EncodedMessage encode_message(const Message& message);
 
-/// Serialises a snapshot in the given encoding. Reads runs and makes no dense copy. Cost: O(runs). Thread: any.
+/// Serialises a snapshot in the given encoding. Reads runs and makes no dense copy. Cost: O(runs).
+/// Thread: any.
 EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
 
-/// Returns the claims as messages, each within the limits of a client's control message. Requires chunks strictly
-/// ascending by key.
+/// Returns the claims as messages, each within the limits of a client's control message. Requires
+/// chunks strictly ascending by key.
 std::vector<Message> cached_chunks_messages(std::span<const CachedChunk> chunks);
 
-/// Decodes one message of a class from a sender. `bytes` must be 8-aligned, as FrameReader's are. `chunk_edge` is the
-/// edge of the world's chunks, 0 before Welcome. With an edge, the function also rejects snapshots of another size, keys
-/// outside the world, and lists of `previous` that do not fit the chunks touched by their edits. Of a snapshot's digest
-/// it checks only the range; see digest_matches(). A Hello or Welcome of another protocol version yields only that
-/// version, because its other fields may have another meaning. Memory is bounded by a small multiple of the bytes; for
-/// chunks see decode_chunk(). Thread: any.
+/// Decodes one message of a class from a sender. `bytes` must be 8-aligned, as FrameReader's are.
+/// `chunk_edge` is the edge of the world's chunks, 0 before Welcome. With an edge, the function
+/// also rejects snapshots of another size, keys outside the world, and lists of `previous` that do
+/// not fit the chunks touched by their edits. Of a snapshot's digest it checks only the range; see
+/// digest_matches(). A Hello or Welcome of another protocol version yields only that version,
+/// because its other fields may have another meaning. Memory is bounded by a small multiple of the
+/// bytes; for chunks see decode_chunk(). Thread: any.
 Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
                                std::uint16_t chunk_edge);
 

@@ -29,13 +29,14 @@ static_assert(ZSTD_MAGICNUMBER == 0xfd2fb528);
 // Tokens of the plane of lengths.
 constexpr std::uint32_t kLongLength = 0;   // a varint of the last plane is the length
 constexpr std::uint32_t kLengthEnd = 192;  // a token below is the length itself
-// The run ends with the line in which it begins. A token one less ends with the next line, and so on.
+// The run ends with the line in which it begins. A token one less ends with the next line, and so
+// on.
 constexpr std::uint32_t kToLineEnd = 255;
 constexpr std::uint32_t kLineEndTokens = 64;
 static_assert(kLengthEnd + kLineEndTokens == kToLineEnd + 1);
 
-/// A line, as tokens count it, has 2^bits voxels: the largest power of two that divides the side. So positions need shifts
-/// only and no division.
+/// A line, as tokens count it, has 2^bits voxels: the largest power of two that divides the side.
+/// So positions need shifts only and no division.
 struct Line {
   explicit Line(std::uint32_t side)
       : bits(static_cast<unsigned>(std::countr_zero(side))), mask((1u << bits) - 1) {}
@@ -108,7 +109,8 @@ void write_planes(const Runs& runs, Line line, Scratch& s) {
   s.body.insert(s.body.end(), s.long_lengths.begin(), s.long_lengths.end());
 }
 
-/// Returns the body as one zstd frame without its magic number, or an empty view if that is not smaller.
+/// Returns the body as one zstd frame without its magic number, or an empty view if that is not
+/// smaller.
 ByteView compress(Scratch& s) {
   if (s.body.size() < kZstdBodyBytesMin) return {};
   if (!s.compressor) s.compressor.reset(ZSTD_createCCtx());

@@ -1,6 +1,6 @@
-// The body of packed chunks of version 1: a plane of palette indices and a plane of lengths as varints, plain or in a zstd
-// frame. Worlds of formats 1 to 3 contain it; nothing writes it. docs/edit-log.md specifies the bytes. Internal to the
-// chunk codec.
+// The body of packed chunks of version 1: a plane of palette indices and a plane of lengths as
+// varints, plain or in a zstd frame. Worlds of formats 1 to 3 contain it; nothing writes it.
+// docs/edit-log.md specifies the bytes. Internal to the chunk codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace runstone {
 struct PackedShapeV1 {
   std::size_t runs = 0;
   std::size_t body_bytes = 0;  // before compression
-  /// Returns true if this number of runs can fill the body. Each run has an index, and each but the last a length of one to
-  /// three bytes, because lengths are below 2^21.
+  /// Returns true if this number of runs can fill the body. Each run has an index, and each but the
+  /// last a length of one to three bytes, because lengths are below 2^21.
   bool plausible(std::size_t palette) const {
     const std::size_t indices = runs * (palette > 256 ? 2 : 1);
     return runs >= 1 && body_bytes >= indices + (runs - 1) &&

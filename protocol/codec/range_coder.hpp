@@ -1,6 +1,7 @@
-// Adaptive binary range coder: it codes bits with probabilities that follow the bits before. docs/protocol.md has the
-// arithmetic step by step. A sequence of bits has exactly one spelling; the decoder rejects every other one.
-// Source: Martin 1979; the carry and the shifts as in LZMA (Pavlov).
+// Adaptive binary range coder: it codes bits with probabilities that follow the bits before.
+// docs/protocol.md has the arithmetic step by step. A sequence of bits has exactly one spelling;
+// the decoder rejects every other one. Source: Martin 1979; the carry and the shifts as in LZMA
+// (Pavlov).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace runstone {
 
-/// The probability that a bit is 1, in 65536ths, and the shift of its updates. The first bits move it most.
+/// The probability that a bit is 1, in 65536ths, and the shift of its updates. The first bits move
+/// it most.
 struct AdaptiveBit {
   std::uint16_t one = 1u << 15;
   std::uint16_t shift = 1;
@@ -55,7 +57,8 @@ class RangeEncoder {
  private:
   static constexpr std::uint32_t kRangeMin = 1u << 24;
 
-  /// Adds one to the bytes written. They are a fraction below 1, so the carry stops at a byte of this encoder.
+  /// Adds one to the bytes written. They are a fraction below 1, so the carry stops at a byte of
+  /// this encoder.
   void carry() {
     std::size_t at = out_.size();
     while (++out_[--at] == 0) {
@@ -86,7 +89,8 @@ class RangeDecoder {
     return bit;
   }
 
-  /// Returns true if more bytes were read than there are. The bits decoded since then are arbitrary.
+  /// Returns true if more bytes were read than there are. The bits decoded since then are
+  /// arbitrary.
   bool overrun() const { return zeros_ > kZeros; }
 
   /// Fails unless the input is exactly what an encoder writes for the decoded bits.

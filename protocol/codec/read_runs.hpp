@@ -1,4 +1,5 @@
-// Makes a RunList, narrow or wide by the volume, from decoded ends and materials. Internal to the chunk codec.
+// Makes a RunList, narrow or wide by the volume, from decoded ends and materials. Internal to the
+// chunk codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +11,8 @@
 
 namespace runstone {
 
-/// Returns the runs that `read` delivers. `read(put)` calls put(i, end, material) for each i below `count`, or returns an
-/// error, which the function returns.
+/// Returns the runs that `read` delivers. `read(put)` calls put(i, end, material) for each i below
+/// `count`, or returns an error, which the function returns.
 template <class Read>
 Result<RunList> read_runs(std::uint32_t volume, std::size_t count, Read&& read) {
   if (volume <= kNarrowVolumeMax) {

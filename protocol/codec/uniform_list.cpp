@@ -3,7 +3,8 @@
 namespace runstone {
 
 // An entry:
-//   svarint x, z, y of the lowest chunk, each minus that of the entry before, of the first entry minus 0 |
+//   svarint x, z, y of the lowest chunk, each minus that of the entry before, of the first entry
+//   minus 0 |
 //   varint chunks - 1 | varint material | varint epoch | varint seq, if the epoch is not 0
 Bytes encode_uniform(const std::vector<UniformChunk>& chunks) {
   RUNSTONE_ASSERT(!chunks.empty() && chunks.size() <= kUniformChunksMax);

@@ -1,5 +1,6 @@
-// Fields of the wire schema and the checks that messages share. Internal to the message decoder. The FlatBuffers verifier has
-// found each field inside the buffer. Each take_ function copies one and returns true if its value is valid.
+// Fields of the wire schema and the checks that messages share. Internal to the message decoder.
+// The FlatBuffers verifier has found each field inside the buffer. Each take_ function copies one
+// and returns true if its value is valid.
 #pragma once
 #include <flatbuffers/flatbuffers.h>
 
@@ -83,7 +84,8 @@ inline bool take_pose(const wire::Pose* from, Pose& to) {
   return true;
 }
 
-/// Returns the number of entries of a vector that may be absent, or nullopt if it exceeds `count_max`.
+/// Returns the number of entries of a vector that may be absent, or nullopt if it exceeds
+/// `count_max`.
 template <class Vector>
 std::optional<std::uint32_t> count_of(const Vector* vector, std::size_t count_max) {
   const std::uint32_t count = vector == nullptr ? 0 : vector->size();

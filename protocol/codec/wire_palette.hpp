@@ -1,5 +1,5 @@
-// WirePalette: the materials of a run list in ascending order, and the index of each. Internal to the chunk codec. It reuses
-// its memory from call to call.
+// WirePalette: the materials of a run list in ascending order, and the index of each. Internal to
+// the chunk codec. It reuses its memory from call to call.
 #pragma once
 #include <algorithm>
 #include <array>

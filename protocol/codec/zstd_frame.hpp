@@ -7,8 +7,8 @@
 
 namespace runstone {
 
-/// Unpacks `frame` into scratch of this thread. The view lives until the thread's next call. Allocates `bytes`, which the
-/// caller must have bounded. Offsets of errors are 0. Fails with
+/// Unpacks `frame` into scratch of this thread. The view lives until the thread's next call.
+/// Allocates `bytes`, which the caller must have bounded. Offsets of errors are 0. Fails with
 ///   - bad_value if the frame does not announce exactly `bytes` bytes;
 ///   - trailing_bytes if it is truncated or bytes follow it;
 ///   - bad_checksum if it is damaged.

@@ -1,6 +1,6 @@
-// Reads any bytes as draw orders, in pieces that the bytes determine: the first byte seeds the
-// split, the rest is the stream. Every split gives the same orders. Each order is within its
-// limits, and reads the same after it is written again.
+// Reads any bytes as draw orders. Input: 1 byte that seeds the split, then the stream. The stream
+// must give the same orders however it is split. Each order must be inside its limits and come back
+// unchanged when it is encoded again.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

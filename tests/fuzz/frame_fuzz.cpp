@@ -1,6 +1,6 @@
-// Reads any bytes as a stream from either side, in pieces that the bytes determine. Input: 1 byte
-// sender and pieces (bit 0: sender; the rest seeds the split), then the stream. Every split must
-// give the same messages and the same result, and no message may exceed its limit.
+// Reads any bytes as a stream from either side. Input: 1 byte (bit 0: sender; the other bits seed
+// the split), then the stream. The stream must give the same messages and the same result however
+// it is split. No message may exceed its limit.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

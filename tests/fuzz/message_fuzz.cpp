@@ -1,6 +1,6 @@
-// Decodes any bytes as a message. Input: 1 byte (bit 0 sender, bits 1-2 class, bit 3 whether the
-// world's edge of 16 is known), then the message. A decoded message is equal after it is encoded
-// and decoded again.
+// Decodes any bytes as a message. Input: 1 byte (bit 0: sender; bits 1-2: class; bit 3: the edge of
+// the world is known and 16), then the message. A message that decodes is encoded again and must
+// decode to the same message.
 #include <cstdint>
 
 #include "protocol/codec/messages.hpp"
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes aligned(data + 1, data + size);
   const auto message = decode_message(sender, frame_class, aligned, edge);
   if (!message) return 0;
-  // A Hello or Welcome of another protocol contains only its version.
+  // A Hello or Welcome of another protocol decodes to its version alone.
   const auto* hello = std::get_if<Hello>(&*message);
   if (hello != nullptr && hello->protocol != kProtocolVersion) return 0;
   const auto* welcome = std::get_if<Welcome>(&*message);

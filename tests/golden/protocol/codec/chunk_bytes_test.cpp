@@ -6,8 +6,9 @@
 #include "protocol/codec/chunk_codec.hpp"
 #include "tests/support/hex.hpp"
 
-// The bytes were computed by hand from docs/protocol.md, coded bodies by a second decoder that was written from it. They
-// are on the wire and in stores: a change here is a new version of chunk bytes.
+// The bytes were computed by hand from docs/protocol.md, coded bodies by a second decoder that was
+// written from it. They are on the wire and in stores: a change here is a new version of chunk
+// bytes.
 namespace runstone::test {
 namespace {
 
@@ -83,8 +84,8 @@ TEST_CASE("coded chunk bytes are pinned", "[protocol][golden]") {
 }
 
 TEST_CASE("a packed chunk under zstd still decodes", "[protocol][golden]") {
-  // 64 times 40 voxels of material 1 and 24 of air. Other releases of zstd may make other bytes, so only decoding
-  // is pinned.
+  // 64 times 40 voxels of material 1 and 24 of air. Other releases of zstd may make other bytes, so
+  // only decoding is pinned.
   RunBuilder builder({16, 16, 16}, AxisOrder::zyx);
   for (int i = 0; i < 64; ++i) {
     builder.append(40, 1);

@@ -2,8 +2,8 @@
 
 #include "common/runs/run_chunk.hpp"
 
-// The check values of docs/protocol.md, computed from its formulas by another program. Peers compare digests,
-// so they are part of the protocol.
+// The check values of docs/protocol.md, computed from its formulas by another program. Peers
+// compare digests, so they are part of the protocol.
 namespace runstone::test {
 
 TEST_CASE("digests are those of the protocol page", "[protocol][golden]") {

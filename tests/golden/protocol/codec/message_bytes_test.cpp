@@ -8,9 +8,9 @@
 #include "protocol/codec/messages.hpp"
 #include "tests/support/hex.hpp"
 
-// Messages as versions 1 and 2 of the protocol wrote them; they differ only in the version of Hello and Welcome. How they are
-// decoded must never change. Releases of FlatBuffers may arrange fields differently, so the encoder's bytes are not
-// pinned.
+// Messages as versions 1 and 2 of the protocol wrote them; they differ only in the version of Hello
+// and Welcome. How they are decoded must never change. Releases of FlatBuffers may arrange fields
+// differently, so the encoder's bytes are not pinned.
 namespace runstone::test {
 namespace {
 
@@ -65,7 +65,8 @@ Welcome a_welcome() {
   return m;
 }
 
-/// Returns the hexadecimal digits of the example in docs/protocol.md. A comment follows two blanks or more.
+/// Returns the hexadecimal digits of the example in docs/protocol.md. A comment follows two blanks
+/// or more.
 std::string transcript_of_the_page() {
   std::ifstream file(RUNSTONE_SOURCE_DIR "/docs/protocol.md");
   std::string digits;
@@ -298,8 +299,9 @@ TEST_CASE("handshake transcripts and signatures are pinned", "[protocol][golden]
           "04000000 02000000"                              // hello.protocol
           "20000000 8139770ea87d175f56a35466c34c7ecccb8d8a91b4ee37a25df60f5b8fc9b394"  // hello.key
           "08000000 efcdab8967452301"  // hello.instance
-          "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"  // hello.nonce
-          "05000000 52656ec3a9"                                                        // hello.name
+          // hello.nonce
+          "20000000 808182838485868788898a8b8c8d8e8f909192939495969798999a9b9c9d9e9f"
+          "05000000 52656ec3a9"                        // hello.name
           "01000000 03"                                // hello.encodings
           "08000000 0500000000000080"                  // hello.features
           "04000000 02000000"                          // welcome.protocol

@@ -31,7 +31,8 @@ TEST_CASE("packed is larger than raw by its palette at most", "[protocol][proper
   SplitMix64 rng{Catch::rngSeed() + 1};
   for (int step = 0; step < 100; ++step) {
     const RunChunk chunk = random_chunk(rng);
-    // Worst case: every run has another material (3 bytes in the palette, 2 in the plane) and a length of 3 bytes.
+    // Worst case: every run has another material (3 bytes in the palette, 2 in the plane) and a
+    // length of 3 bytes.
     CHECK(encode_chunk(chunk, ChunkEncoding::packed).size() <= 20 + 8 * chunk.runs.size());
   }
 }

@@ -1,4 +1,5 @@
-// Compares the walk over a commit with the decoder that makes a struct: both must have the same result on every input.
+// Compares the walk over a commit with the decoder that makes a struct: both must have the same
+// result on every input.
 #include "protocol/codec/commit_walk.hpp"
 
 #include <catch2/catch.hpp>

@@ -14,8 +14,8 @@ bool of_other_protocol(const Message& message) {
   return false;
 }
 
-/// Decodes altered bytes on both sides and in every class. Each gives an error, or a struct that encodes to bytes which decode
-/// to it again.
+/// Decodes altered bytes on both sides and in every class. Each gives an error, or a struct that
+/// encodes to bytes which decode to it again.
 void survives(const Bytes& bytes) {
   for (const Sender sender : {Sender::client, Sender::server}) {
     for (const FrameClass c : {FrameClass::control, FrameClass::edits, FrameClass::chunks}) {

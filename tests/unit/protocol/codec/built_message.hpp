@@ -45,7 +45,8 @@ bool passes_from_server(Build&& build, FrameClass frame_class = FrameClass::cont
   return received(Sender::server, frame_class, build).has_value();
 }
 
-/// Checks that unchanged fields decode, and that no message decodes whose fields one of `bends` changed.
+/// Checks that unchanged fields decode, and that no message decodes whose fields one of `bends`
+/// changed.
 template <class Fields>
 void refuses(Sender sender, FrameClass frame_class,
              const std::vector<std::function<void(Fields&)>>& bends) {

@@ -55,11 +55,12 @@ TEST_CASE("a zstd bomb allocates what its run count allows, whatever its content
   REQUIRE(bomb.stored->size() < 10'000);
   CHECK(cost_of_refusing(bomb.bytes()).bytes < 10'000);
 
-  // The worst body whose announced sizes are accepted: every voxel is a run. It is refused when the runs
-  // exceed the volume.
+  // The worst body whose announced sizes are accepted: every voxel is a run. It is refused when the
+  // runs exceed the volume.
   bomb.sides = {128, 128, 128};
   bomb.runs = 128 * 128 * 128;
-  // The indices, then a token for each run but the last: to the end of the line, so the runs exceed the volume.
+  // The indices, then a token for each run but the last: to the end of the line, so the runs exceed
+  // the volume.
   Bytes body(bomb.runs, std::uint8_t{0});
   body.resize(2 * bomb.runs - 1, std::uint8_t{255});
   bomb.stored = zstd_frame(body);

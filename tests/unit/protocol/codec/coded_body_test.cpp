@@ -76,7 +76,8 @@ TEST_CASE("bits come back from a range coder, whatever their probability", "[pro
 }
 
 TEST_CASE("a carry passes through bytes of 255", "[protocol]") {
-  // Every ninth bit contradicts a model that has learnt the other value, so many sums end with a carry.
+  // Every ninth bit contradicts a model that has learnt the other value, so many sums end with a
+  // carry.
   for (int period = 2; period < 40; ++period) {
     CAPTURE(period);
     Bytes bytes;
