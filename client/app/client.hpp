@@ -95,7 +95,9 @@ class Client final : private ScriptHost {
   bool durable() const override { return session_.replica().local_edits().all().empty(); }
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
-  void travel(const HistoryRequest& travel) override { static_cast<void>(session_.request_history(travel)); }
+  void travel(const HistoryRequest& travel) override {
+    static_cast<void>(session_.request_history(travel));
+  }
   bool travelling() const override { return session_.loading_history(); }
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }

@@ -45,7 +45,7 @@ class LinkedSession final : private LinkEvents {
   }
   /// Everything in view is here, and nothing of ours is open.
   void settle() {
-    until([&] { return session_.loaded() && replica().own_edits().all().empty(); });
+    until([&] { return session_.loaded() && replica().local_edits().all().empty(); });
   }
   void edit(const EditDescriptor& edit) {
     REQUIRE(session_.submit(edit, steady_now_us(), steady_now_us()).has_value());
