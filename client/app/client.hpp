@@ -59,46 +59,7 @@ class Client {
   /// kExitFailed where that is greater and a file cannot be written.
   int finish(int code);
   ClientReport report() const;
-<<<<<<< HEAD
   bool drift_found() const { return session_.replica().counters().drifted != 0; }
-=======
-  std::string screenshot_path(const std::string& file) const;
-  void click(bool place, TimeUs now_us);
-  /// A step earlier or later in time; beyond the newest edit lies the live world.
-  void scrub(int steps);
-
-  // ScriptHost.
-  bool ready() const override { return session_.connect_count() != 0; }
-  WorldPos eye() const override { return player_.eye(); }
-  void move_to(const WorldPos& eye) override;
-  void look(double yaw, double pitch) override;
-  std::optional<Material> material(std::string_view name) const override;
-  std::optional<Material> shown_at(VoxelPos at) const override {
-    return session_.replica().shown_at(at);
-  }
-  Result<std::shared_ptr<const Clipboard> > copy(const VoxelBox& box, bool solid) const override {
-    return copy_box(session_.replica(), box, solid ? CopyEmpty::as_untouched : CopyEmpty::as_empty);
-  }
-  std::optional<RayHit> pick() const override;
-  std::optional<std::int32_t> surface(std::int32_t x, std::int32_t z) const override;
-  bool submit(const EditDescriptor& edit, TimeUs due_us, TimeUs now_us) override;
-  bool loaded() const override;
-  bool durable() const override { return session_.replica().local_edits().all().empty(); }
-  std::uint64_t sync_mark() const override { return session_.pongs(); }
-  bool synced(std::uint64_t mark) const override;
-  void travel(const HistoryRequest& travel) override {
-    static_cast<void>(session_.request_history(travel));
-  }
-  bool travelling() const override { return session_.loading_history(); }
-  std::string command(const std::string& text) override;
-  bool commanding() const override { return session_.commanding(); }
-  bool show_answer() override;
-  std::string travel_refusal() const override { return session_.history_refusal(); }
-  TimeUs utc_now_us() const override;
-  bool screenshot(const std::string& file) override;
-  std::optional<bool> screenshot_written() const override;
-  bool digests(const std::string& file) override { return write_digests(file, session_); }
->>>>>>> h-replica
 
   const ClientOptions options_;
   WakeUp wake_;

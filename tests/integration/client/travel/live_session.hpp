@@ -43,13 +43,8 @@ class LiveSession final : private LinkEvents {
       REQUIRE(steady_now_us() < end_us);
     }
   }
-<<<<<<< HEAD:tests/integration/client/travel/live_session.hpp
   /// Waits until all of the view is here and no local edit is left.
   void catch_up() {
-=======
-  /// Everything in view is here, and nothing of ours is open.
-  void settle() {
->>>>>>> h-replica:tests/integration/client/travel/linked_session.hpp
     until([&] { return session_.loaded() && replica().local_edits().all().empty(); });
   }
   void edit(const EditDescriptor& edit) {
