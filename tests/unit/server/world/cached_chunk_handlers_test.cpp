@@ -133,7 +133,7 @@ TEST_CASE_METHOD(Fixture, "answers that do not fit the queue are sent later", "[
   CHECK(snapshots_to(2).size() == 4);
 }
 
-TEST_CASE_METHOD(Fixture, "" not modified " is sent before a session goes to the past", "[world]") {
+TEST_CASE_METHOD(Fixture, "not modified is sent before a session goes to the past", "[world]") {
   join(2, 2);
   claim(2, kHere, {1, 1}, digest_at(*this, kHere));
   server.received(2, View{{0, 0, 0}, 2, 0}, now());  // the answer waits for other chunks that load
