@@ -152,7 +152,7 @@ void Client::scrub(int steps) {
     request.to = HistoryTarget::sequence;
     request.seq = scrubbed_to_ = to;
   }
-  static_cast<void>(session_.travel(request));
+  static_cast<void>(session_.request_history(request));
 }
 
 void Client::follow_player(TimeUs now_us) {

@@ -136,8 +136,8 @@ void NetworkSession::flush() {
 
 void NetworkSession::step_cache(TimeUs now_us) {
   if (!cache_) return;
-  for (auto& found : cache_->take_answers()) session_.answer(std::move(found), now_us);
-  while (auto question = session_.take_question()) cache_->ask(*std::move(question));
+  for (auto& found : cache_->take_answers()) session_.receive_cached(std::move(found), now_us);
+  while (auto question = session_.take_cache_lookup()) cache_->ask(*std::move(question));
   if (now_us - kept_us_ >= kKeepUs) {
     kept_us_ = now_us;
     keep_chunks(cache_->room());
@@ -149,7 +149,7 @@ void NetworkSession::step_cache(TimeUs now_us) {
 void NetworkSession::keep_chunks(std::size_t count_max) {
   if (!cache_) return;
   if (const auto world = session_.cached_world())
-    cache_->keep(*world, session_.replica().take_unkept(count_max));
+    cache_->keep(*world, session_.replica().take_for_cache(count_max));
 }
 
 void NetworkSession::finish() {

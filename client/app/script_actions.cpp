@@ -60,7 +60,7 @@ bool ScriptActions::synced(std::uint64_t mark) const {
 }
 
 void ScriptActions::travel(const HistoryRequest& request) {
-  static_cast<void>(session_.travel(request));
+  static_cast<void>(session_.request_history(request));
 }
 
 std::string ScriptActions::command(const std::string& text) {

@@ -43,8 +43,8 @@ class ScriptActions final : public ScriptHost {
   std::uint64_t sync_mark() const override { return session_.pongs(); }
   bool synced(std::uint64_t mark) const override;
   void travel(const HistoryRequest& request) override;
-  bool travelling() const override { return session_.travelling(); }
-  std::string travel_refusal() const override { return session_.travel_refusal(); }
+  bool travelling() const override { return session_.loading_history(); }
+  std::string travel_refusal() const override { return session_.history_refusal(); }
   std::string command(const std::string& text) override;
   bool commanding() const override { return session_.commanding(); }
   bool show_answer() override;

@@ -170,7 +170,7 @@ struct BehaviourFleet::Parts {
 };
 
 void BehaviourFleet::Parts::play(FleetReport& report, const volatile std::sig_atomic_t& stop) {
-  const auto is_settled = [](FleetBot& bot) { return bot.bot().settled(); };
+  const auto is_done = [](FleetBot& bot) { return bot.bot().is_done(); };
   const Meter before = meter();
   lag_us = {};
   const TimeUs start_us = steady_now_us();
@@ -179,7 +179,7 @@ void BehaviourFleet::Parts::play(FleetReport& report, const volatile std::sig_at
   // The bots' next steps were scheduled for pings, which come after their first edits are due.
   scheduler.bring_forward(start_us);
   // Ends early when no bot has an edit left to make.
-  play_until([&] { return options.edits && all(is_settled); }, options.seconds, stop);
+  play_until([&] { return options.edits && all(is_done); }, options.seconds, stop);
   for (const auto& bot : bots) bot->bot().end();
   report.seconds = static_cast<double>(steady_now_us() - start_us) / 1e6;
   const Meter after = meter();
@@ -189,8 +189,8 @@ void BehaviourFleet::Parts::play(FleetReport& report, const volatile std::sig_at
     report.class_bytes[i] = after.class_bytes[i] - before.class_bytes[i];
   }
   report.lag_us = lag_us;
-  if (!play_until([&] { return all(is_settled); }, options.load_seconds, stop, 2))
-    report.failure = explain("has edits without an answer", is_settled);
+  if (!play_until([&] { return all(is_done); }, options.load_seconds, stop, 2))
+    report.failure = explain("has edits without an answer", is_done);
 }
 
 BehaviourFleet::BehaviourFleet(const BotOptions& options)

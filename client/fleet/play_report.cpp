@@ -11,13 +11,13 @@ namespace runstone {
 void add_to(PlayCounts& sum, const PlayCounts& one) {
   sum.due += one.due;
   sum.submitted += one.submitted;
-  sum.again += one.again;
+  sum.retried += one.retried;
   sum.confirmed += one.confirmed;
   sum.durable += one.durable;
   sum.unseen += one.unseen;
   for (const auto& [reason, count] : one.rejected) sum.rejected[reason] += count;
   for (const auto& [reason, count] : one.refused) sum.refused[reason] += count;
-  sum.own_us.merge(one.own_us);
+  sum.confirm_us.merge(one.confirm_us);
 }
 
 std::uint64_t sum_of(const std::map<std::string, std::uint64_t>& by_reason) {
@@ -35,13 +35,13 @@ std::string to_json(const PlayReport& report) {
                                         {{"recorded", report.edits},
                                          {"due", c.due},
                                          {"submitted", c.submitted},
-                                         {"again", c.again},
+                                         {"again", c.retried},
                                          {"confirmed", c.confirmed},
                                          {"rejected", c.rejected},
                                          {"refused", c.refused},
                                          {"unseen", c.unseen},
                                          {"durable", c.durable}}},
-                                       {"own_us", histogram_json(c.own_us)},
+                                       {"own_us", histogram_json(c.confirm_us)},
                                        {"traffic", traffic_json(report.traffic)}};
   return json.dump(1) + "\n";
 }
@@ -52,8 +52,8 @@ std::string to_table(const PlayReport& report) {
       "bots {}: {} recorded edits, {} due in {:.1f} s, {} submitted, {} confirmed, {} durable; {} "
       "offered again, {} rejected, {} refused here, {} without an answer\n{}",
       report.bots, report.edits, c.due, report.seconds, c.submitted, c.confirmed, c.durable,
-      c.again, sum_of(c.rejected), sum_of(c.refused), c.unseen,
-      histogram_line("due to confirmed", c.own_us));
+      c.retried, sum_of(c.rejected), sum_of(c.refused), c.unseen,
+      histogram_line("due to confirmed", c.confirm_us));
   for (const auto& [reason, count] : c.rejected)
     table += fmt::format("rejected: {} {}\n", count, reason);
   for (const auto& [reason, count] : c.refused)

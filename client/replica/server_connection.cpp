@@ -48,7 +48,7 @@ ServerConnection::Dispatch ServerConnection::receive(Message& message, const Arr
     return Dispatch::handled;
   }
   if (auto* welcome = std::get_if<Welcome>(&message)) return on_welcome(std::move(*welcome));
-  if (const auto* ready = std::get_if<SessionAccepted>(&message)) {
+  if (const auto* accepted = std::get_if<SessionAccepted>(&message)) {
     on_session_accepted(*accepted, arrival.now_us);
     return Dispatch::session_accepted;
   }

@@ -6,7 +6,7 @@
 
 namespace runstone {
 
-DurableLog::DurableLog(WorldStrand& strand, Store& store, const std::string& folder,
+DurableLog::DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
                        const Generator& generator, const Options& options, Events events)
     : strand_(strand), events_(std::move(events)), durable_(options.durable) {
   LogWriter::Callbacks callbacks;

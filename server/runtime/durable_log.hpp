@@ -14,6 +14,7 @@
 #include "server/runtime/keyframe_thread.hpp"
 #include "server/runtime/world_strand.hpp"
 #include "server/store/log_writer.hpp"
+#include "server/store/world_sink.hpp"
 
 namespace runstone {
 
@@ -38,7 +39,7 @@ class DurableLog {
   /// Starts the threads. `strand`, `store` and `generator` must outlive the object. Only the writer
   /// uses `store` until stop() has returned. `folder`: of the world; the keyframe thread opens its
   /// own reader there.
-  DurableLog(WorldStrand& strand, Store& store, const std::string& folder,
+  DurableLog(WorldStrand& strand, WorldSink& store, const std::string& folder,
              const Generator& generator, const Options& options, Events events);
 
   LogWriter& writer() { return *writer_; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/runtime/logging.hpp"
+#include "server/store/store.hpp"
 
 namespace runstone {
 

@@ -75,7 +75,7 @@ TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted un
 
 TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is in no percentile",
                  "[client_app]") {
-  REQUIRE(session.travel({}).has_value());
+  REQUIRE(session.request_history({}).has_value());
   HistoryState past;
   past.past = true;
   receive(past);

@@ -116,7 +116,7 @@ struct Run {
   }
   void acknowledge() {
     if (!is_acknowledging || !report.is_due(read, now_us)) return;
-    report.told(read, now_us);
+    report.sent(read, now_us);
     at(up.push(100, now_us), Event::Kind::told, read);
   }
   void edit() {

@@ -33,13 +33,11 @@ TEST_CASE("settings reach the world strand in its units", "[server]") {
 
 TEST_CASE("the configured encoding is the preferred one", "[server]") {
   ServerConfig config;
-  const auto encoding = [&](const char* name) {
-    config.encoding = name;
-    return world_config_of(config, sample_meta()).preferred_encoding;
-  };
-  CHECK(encoding("raw") == ChunkEncoding::raw);
-  CHECK(encoding("packed") == ChunkEncoding::packed);
-  CHECK(encoding("coded") == ChunkEncoding::coded);
+  for (const ChunkEncoding encoding :
+       {ChunkEncoding::raw, ChunkEncoding::packed, ChunkEncoding::coded}) {
+    config.encoding = encoding;
+    CHECK(world_config_of(config, sample_meta()).preferred_encoding == encoding);
+  }
 }
 
 TEST_CASE("settings reach the network in bytes, with room for handshakes", "[server]") {

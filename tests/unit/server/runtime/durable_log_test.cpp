@@ -18,7 +18,7 @@ namespace {
 /// now.
 struct LogBench {
   LogBench() {
-    start_logging("error");
+    start_logging(LogLevel::error);
     WorldCreation creation;
     creation.generator = "flat";
     creation.edge = kSampleEdge;

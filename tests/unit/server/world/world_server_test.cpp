@@ -220,7 +220,7 @@ TEST_CASE("a command in a session without the feature ends it, and the server do
   hello.features = kFeatureCommands;
   bench.server.received(2, hello, bench.now());
   const Welcome welcome = bench.environment.messages<Welcome>(2, 0).at(0);
-  bench.server.received(2, bench.proof(2, hello, welcome), bench.now());
+  bench.server.received(2, bench.client_auth(2, hello, welcome), bench.now());
   bench.server.received(2, CommandRequest{7, "undo"}, bench.now());
   CHECK(bench.environment.commands == std::vector<std::string>{"undo"});
   CHECK(bench.environment.closed.size() == 1);
