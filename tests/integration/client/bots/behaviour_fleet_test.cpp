@@ -138,7 +138,7 @@ TEST_CASE("with all bots in one place, every bot verifies every edit", "[bots]")
   CHECK(report.replicas == 5);
   CHECK(report.counts.confirmed == 500);
   CHECK(report.counts.durable == 500);
-  CHECK(report.counts.own_us.count() == 500);
+  CHECK(report.counts.confirm_us.count() == 500);
   // The 45 bots without a replica receive each edit once, also the author.
   CHECK(report.commit_edits == 45 * 500);
   CHECK(report.seen_us.count() >= 45 * 500);
