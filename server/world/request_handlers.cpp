@@ -50,6 +50,9 @@ void on_edit(WorldState& world, SessionId session, const EditRequest& request, c
   } else if (!mine.edits.take(tokens, now.steady_us)) {
     refusal = RejectReason::rate_limited;
     world.authority.reject(op, *refusal);
+  } else if (request.fault) {
+    refusal = RejectReason::bad_edit;
+    world.authority.reject(op, *refusal);
   } else if (reach > 0 && !within_reach(request.edit, mine.pose.at, reach)) {
     refusal = RejectReason::out_of_reach;
     world.authority.reject(op, *refusal);

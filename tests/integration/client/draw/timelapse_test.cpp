@@ -199,11 +199,14 @@ TEST_CASE("a camera follows its path while the world grows", "[integration][draw
 TEST_CASE("an impossible timelapse is refused with the reason before a frame is drawn",
           "[integration][draw]") {
   const RedCarpet carpet;
-  const auto refused = [&](std::vector<std::string> more) {
-    const ReplayOutcome outcome = carpet.run(std::move(more));
+  const auto refused_into = [&](const std::string& folder, std::vector<std::string> more) {
+    const ReplayOutcome outcome = carpet.run_into(folder, std::move(more));
     CHECK(outcome.code == 2);
     CHECK((!std::filesystem::exists(carpet.frames()) || carpet.frame_count() == 0));
     return outcome.err;
+  };
+  const auto refused = [&](std::vector<std::string> more) {
+    return refused_into(carpet.frames(), std::move(more));
   };
   CHECK(contains(refused({"--client", carpet / "nothing"}),
                  carpet / "nothing" + ": cannot be started: No such file"));
@@ -212,7 +215,7 @@ TEST_CASE("an impossible timelapse is refused with the reason before a frame is 
   CHECK(contains(refused({"--camera", carpet / "none.txt"}), "none.txt"));
   std::ofstream(carpet / "bad.txt") << "0% 1 2 3 4 5\n50% 1 2 3 4\n";
   CHECK(contains(refused({"--camera", carpet / "bad.txt"}), "bad.txt:2: PITCH is missing"));
-  CHECK(contains(refused({"--timelapse", "/proc/nowhere"}), "/proc/nowhere: cannot be made"));
+  CHECK(contains(refused_into("/proc/nowhere", {}), "/proc/nowhere: cannot be made"));
   CHECK(contains(refused({"--verify"}), "--verify"));
   CHECK(contains(refused({"--every", "0"}), "--every"));
   CHECK(contains(refused({"--size", "9x9"}), "WIDTHxHEIGHT"));
@@ -220,8 +223,7 @@ TEST_CASE("an impossible timelapse is refused with the reason before a frame is 
   CHECK(run_replay({"timelapse", "--world", carpet.world(), "--every", "3"}).code == 2);
   std::filesystem::create_directories(carpet / "used");
   std::ofstream(carpet / "used/frame-000007.png") << "old";
-  CHECK(contains(refused({"--timelapse", carpet / "used"}),
-                 "holds frames already (frame-000007.png)"));
+  CHECK(contains(refused_into(carpet / "used", {}), "holds frames already (frame-000007.png)"));
 }
 
 TEST_CASE("a timelapse of a world without edits needs a camera path", "[integration][draw]") {
@@ -243,9 +245,7 @@ TEST_CASE("ffmpeg joins the frames if it is installed; otherwise its command is 
   const SearchPath path(carpet / "bin");
   const std::vector<std::string> few = {"--every", "10", "--fps", "12"};
   const auto with = [&](const std::string& folder) {
-    std::vector<std::string> more = few;
-    more.insert(more.end(), {"--timelapse", carpet / folder});
-    return carpet.run(more);
+    return carpet.run_into(carpet / folder, few);
   };
   const ReplayOutcome without = with("a");
   INFO(without.err);

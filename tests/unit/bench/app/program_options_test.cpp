@@ -62,7 +62,7 @@ TEST_CASE("each subcommand of runstone-bench has defaults of its own", "[options
   CHECK(options_of({"report", "--out", "x"}).command == Command::report);
 }
 
-TEST_CASE("--quick changes only what the command line does not name", "[options]") {
+TEST_CASE("the option --quick changes only what the command line does not name", "[options]") {
   const ProgramOptions mesh = options_of({"mesh", "--quick"});
   CHECK(mesh.bench.repetitions == 3);
   CHECK(mesh.bench.edges == Edges{16});

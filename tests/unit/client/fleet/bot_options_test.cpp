@@ -33,7 +33,7 @@ TEST_CASE("the speed of a play is a number or max", "[client_app][play]") {
   CHECK(parse({"--speed", "2"}).exit_code == 2);
 }
 
-TEST_CASE("--play excludes the options of behaviours", "[client_app][play]") {
+TEST_CASE("the option --play excludes the options of behaviours", "[client_app][play]") {
   for (const char* other :
        {"--count", "--rate", "--duration", "--edits", "--sites", "--seed", "--view"}) {
     CAPTURE(other);

@@ -99,6 +99,10 @@ class FakeEnvironment : public WorldEnvironment {
     records.insert(records.end(), new_records.begin(), new_records.end());
   }
   void load_chunk(const ChunkKey& key) override { loads.push_back(key); }
+  void command(SessionId /*session*/, AuthorId /*author*/, const PublicKey& /*key*/,
+               const std::string& text) override {
+    commands.push_back(text);
+  }
   void open_history(SessionId session, const HistoryRequest& request) override {
     history_requests.emplace_back(session, request);
   }
