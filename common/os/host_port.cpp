@@ -23,8 +23,9 @@ Parsed with_port(std::string_view host, std::optional<std::string_view> port,
                  std::uint16_t default_port) {
   HostPort out{std::string(host), default_port};
   if (!port) return out;
-  const char* const end = port->data() + port->size();
-  const auto [rest, error] = std::from_chars(port->data(), end, out.port);
+  const char* const begin = port->data();
+  const char* const end = begin + port->size();
+  const auto [rest, error] = std::from_chars(begin, end, out.port);
   if (error != std::errc() || rest != end || out.port == 0) {
     return Unexpected<std::string>{"the port is not a number from 1 to 65535"};
   }

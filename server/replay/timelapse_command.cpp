@@ -20,8 +20,9 @@ Unexpected<std::string> failure(std::string why) { return {std::move(why)}; }
 
 /// Parses one side of a frame. Returns false if the text is no number within the bounds.
 bool parse_side(std::string_view text, std::uint16_t& out) {
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, out);
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto [rest, error] = std::from_chars(begin, end, out);
   return error == std::errc{} && rest == end && out >= kDrawSideMin && out <= kDrawSideMax;
 }
 

@@ -114,8 +114,8 @@ void ServerCore::write_counters() {
 
 std::future<bool> ServerCore::begin_stop() {
   listener_->stop();
-  std::promise<bool> promise;
-  std::future<bool> answer = promise.get_future();
+  auto promise = std::make_shared<std::promise<bool>>();
+  std::future<bool> answer = promise->get_future();
   strand_.post([this, promise = std::move(promise)]() mutable {
     stopping_ = std::move(promise);
     commands_->stop();

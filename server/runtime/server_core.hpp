@@ -10,7 +10,6 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,7 +103,7 @@ class ServerCore final : public NetEvents {
   CommitScheduler commits_;
   PeriodicTask ticks_, counters_;
   // On the world strand: set while begin_stop() waits for its answer.
-  std::optional<std::promise<bool>> stopping_;
+  std::shared_ptr<std::promise<bool>> stopping_;
 
   // From recover() on.
   std::unique_ptr<WorldServer> world_;
