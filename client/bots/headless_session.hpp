@@ -85,7 +85,7 @@ class HeadlessSession {
   VersionTracker versions_;
   CommitWalk walk_;
   CommitWalk::OnEdit on_walked_;
-  // Of the commit that is being read.
+  // These members describe the commit that is being read.
   TimeUs walked_us_ = 0;                     // when it was received
   std::vector<TimeUs> walked_due_us_;        // due times of its edits
   std::vector<TimeUs> walked_local_due_us_;  // due times of its local edits

@@ -97,7 +97,8 @@ void PlayBot::drain_changes(TimeUs now_us) {
   for (const EditChange& edit : changes.edits) {
     if (edit.predicted || !edit.is_local) continue;
     const auto open = close(edit.op.seq);
-    // Not open: a server that had lost the edit ordered it again.
+    // The edit is not open if it was confirmed before and the server, which had lost it, ordered
+    // it again.
     if (!open) continue;
     counts_.confirm_us.add(edit.applied_us - open->due.due_us);
     ++counts_.confirmed;

@@ -105,7 +105,7 @@ class MeshPipeline {
   MaterialTable materials_;
   Histogram whole_ns_, layers_ns_;
   FrameStats frames_;
-  // What happened since the last frame was ordered:
+  // These flags are set by events since the last frame was ordered.
   bool changed_ = true;           // the camera, a marker or a mesh changed
   bool uploads_waiting_ = false;  // a mesh was queued for upload
   bool edits_waiting_ = false;    // a mesh with edits was queued for upload

@@ -23,9 +23,10 @@ struct FleetReport {
   std::vector<TimeUs> seen_worst_us;  // the slowest edit of those due in each second
   std::uint64_t unattributed = 0;     // edits received that no bot of the fleet made
   EditLedger::Standing standing;      // of the bots with a replica
-  // Of the bots with a replica: chunk digests compared with the server's, and those that differed.
+  // Counts of the bots with a replica: chunk digests that were compared with the server's, and
+  // digests that differed.
   std::uint64_t audited = 0, drifted = 0;
-  // Of the bots without a replica.
+  // Counts of the bots without a replica.
   std::uint64_t commits = 0, commit_edits = 0;
   VersionCounts versions;
   Violations violations;

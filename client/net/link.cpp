@@ -28,7 +28,7 @@ struct Link::State {
   State(asio::io_context& context, NetConfig net_config, LinkEvents& link_events)
       : io(context), config(std::move(net_config)), events(link_events) {}
 
-  // Of the current connection.
+  // These functions act on the current connection.
   Result<void> take_message(FrameReader& reader, ByteView bytes, TimeUs received_us);
   void send_receive_ack();
   void enqueue(ConnectionNumber to, const EncodedMessage& message);

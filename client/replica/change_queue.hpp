@@ -16,7 +16,7 @@ class ChangeQueue {
  public:
   /// Returns the entry of a chunk. Adds it if there is none.
   ChunkChange& chunk(const ChunkKey& key);
-  /// Nothing of this chunk is shown any more. Replaces what was noted of it before.
+  /// Queues that the chunk is not shown any more. Replaces earlier entries of the chunk.
   void removed(const ChunkKey& key);
   /// Returns the entry of a confirmed edit. Adds it if there is none. The reference holds until
   /// drain().
