@@ -8,8 +8,8 @@ bool ChunkUpdater::take_snapshot(TrackedChunk& chunk, Chunk snapshot, TimeUs now
   const bool was_vouched = is_vouched(chunk.state());
   chunks_.answer(chunk);
   if (chunk.confirmed() && !is_needed(chunk, snapshot, was_vouched)) {
-    // The snapshot has the same version as the confirmed chunk. Both contain the local edits whose
-    // answers were missed, so these edits are removed.
+    // The snapshot brings nothing new. The confirmed chunk contains the local edits whose answers
+    // were missed, so these edits are removed.
     const bool has_dropped = chunk.drop_answered(0) != 0;
     if (chunk.is_current()) {
       advance(chunk, true, now_us);
