@@ -12,7 +12,7 @@
 
 namespace runstone {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 1;
 
 // Features: optional parts of the protocol, a bit each.
 inline constexpr std::uint64_t kFeatureCommands = 1;    // CommandRequest and CommandOutput
@@ -27,7 +27,7 @@ inline constexpr std::size_t kReceiveAckEveryBytes = 64 * 1024;
 inline constexpr std::int64_t kReceiveAckUsMin = 1'000;
 
 // Frames. A fragment is small, so that an edit never waits behind much terrain in a send buffer.
-inline constexpr std::size_t kFrameHeaderBytes = 12;
+inline constexpr std::size_t kFrameHeaderBytes = 8;
 inline constexpr std::size_t kFragmentBytesMax = 16 * 1024;
 
 // Whole messages by class. They bound the memory that a peer can make us hold per session.
@@ -67,6 +67,8 @@ inline constexpr std::size_t kViewRadiusMax = 64;     // chunks
 inline constexpr std::uint16_t kViewConeMax = 32768;  // half a turn: the cone is the whole sphere
 
 // Counts per message. They bound what a few bytes can unpack to, and the work of one request.
+inline constexpr std::size_t kChunksPerMessageMax = 256;
+inline constexpr std::size_t kRunsPerMessageMax = 65'536;  // of several chunks in one message
 inline constexpr std::size_t kUniformChunksMax = 4096;
 inline constexpr std::size_t kChunkRequestKeysMax = 64;
 inline constexpr std::size_t kUnavailableKeysMax = 64;

@@ -71,8 +71,8 @@ void ClientSession::receive(Message message, const Arrival& arrival) {
           replica_->receive(m, arrival.now_us);
         } else if constexpr (std::is_same_v<T, Durable>) {
           replica_->receive(m);
-        } else if constexpr (std::is_same_v<T, HistoryState>) {
-          on_history_state(m);
+        } else if constexpr (std::is_same_v<T, ViewState>) {
+          on_view_state(m);
         } else if constexpr (std::is_same_v<T, PlayerPoses>) {
           on_poses(m);
         } else if constexpr (std::is_same_v<T, PlayerList>) {
@@ -184,8 +184,8 @@ Result<void> ClientSession::request_history(const HistoryRequest& request) {
   return {};
 }
 
-void ClientSession::on_history_state(const HistoryState& state) {
-  if (state.phase == HistoryPhase::begins) {
+void ClientSession::on_view_state(const ViewState& state) {
+  if (state.phase == ViewPhase::begins) {
     replica_->show_moment(state.past ? std::optional(PastMoment{state.seq, state.utc_us})
                                      : std::nullopt);
   }

@@ -135,7 +135,7 @@ class ClientSession {
   void on_command_output(CommandOutput output);
   void on_player_list(const PlayerList& list);
   void on_poses(const PlayerPoses& poses);
-  void on_history_state(const HistoryState& state);
+  void on_view_state(const ViewState& state);
   /// Sends the view, or first looks up in the cache the chunks of it that are missing.
   void refresh_view();
   /// Sends the claims of what is held, and then the view.

@@ -18,12 +18,12 @@ class HistoryRequests {
     return request;
   }
   /// Takes an answer of the server. Answers to older requests change nothing.
-  void receive(const HistoryState& state) {
+  void receive(const ViewState& state) {
     if (state.request != newest_) return;
     // The chunks of the live world are counted as at the start of a session: no "complete" follows.
-    if (state.phase == HistoryPhase::begins && state.past) return;
+    if (state.phase == ViewPhase::begins && state.past) return;
     answered_ = newest_;
-    if (state.phase == HistoryPhase::refused) refusal_ = state.text;
+    if (state.phase == ViewPhase::refused) refusal_ = state.text;
   }
   void clear() { *this = {}; }
 

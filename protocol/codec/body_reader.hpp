@@ -20,14 +20,19 @@ inline Unexpected<Error> bad(const char* what) { return fail(ErrorCode::bad_valu
 /// Returns true if a reader can subtract this time from another one without an overflow.
 inline bool is_time(TimeUs t) { return t >= -kWireTimeUsMax && t <= kWireTimeUsMax; }
 
-/// Returns the message in these bytes, which must be 8-aligned. Fails if they exceed the limit of
-/// the class, do not verify, or hold a kind of message that this build does not know or that the
-/// sender may not send in this class.
-Result<const wire::Message*> open_message(Sender sender, FrameClass frame_class, ByteView bytes);
+/// Returns the table in these bytes, which must be 8-aligned. Fails if they do not verify.
+template <class Table>
+Result<const Table*> open_body(ByteView bytes) {
+  // The verifier checks alignment only relative to the first byte of the buffer.
+  RUNSTONE_ASSERT(reinterpret_cast<std::uintptr_t>(bytes.data()) % 8 == 0);
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size(), kVerifierDepthMax, kVerifierTablesMax);
+  if (!verifier.VerifyBuffer<Table>(nullptr))
+    return fail(ErrorCode::broken_invariant, "message does not verify");
+  return flatbuffers::GetRoot<Table>(bytes.data());
+}
 
 struct BodyReader {
-  std::int32_t chunk_edge;    // 0 before Welcome
-  std::size_t message_bytes;  // bounds the total size of lists that tables share
+  std::int32_t chunk_edge;  // 0 before Welcome
 
   // ---- session_bodies.cpp
   Result<Message> read(const wire::Hello& t) const;
@@ -48,13 +53,12 @@ struct BodyReader {
   Result<Message> read(const wire::View& t) const;
   Result<Message> read(const wire::ChunkRequest& t) const;
   Result<Message> read(const wire::CachedChunks& t) const;
-  Result<Message> read(const wire::Chunk& t) const;
+  Result<Message> read(const wire::Chunks& t) const;
   Result<Message> read(const wire::UniformChunks& t) const;
   Result<Message> read(const wire::ChunksNotModified& t) const;
-  Result<Message> read(const wire::ChunkEdits& t) const;
   Result<Message> read(const wire::ChunkUnavailable& t) const;
   Result<Message> read(const wire::HistoryRequest& t) const;
-  Result<Message> read(const wire::HistoryState& t) const;
+  Result<Message> read(const wire::ViewState& t) const;
   Result<Message> read(const wire::DigestCheck& t) const;
 
   // ---- edit_bodies.cpp
@@ -66,7 +70,7 @@ struct BodyReader {
   using TakeEdit = std::function<Result<void>(Sequence)>;
   /// Reads each edit of a commit into `edit` and the chunks that it touches into `touched`, then
   /// calls `take` with its sequence. `take` may move from both. Before Welcome, `touched` stays
-  /// empty and `previous` is not compared with it.
+  /// empty.
   Result<void> read_edits(const wire::Commit& t, OrderedEdit& edit,
                           std::vector<ChunkCoord>& touched, const TakeEdit& take) const;
 
@@ -75,11 +79,6 @@ struct BodyReader {
   std::int32_t key_edge() const {
     return chunk_edge != 0 ? chunk_edge : static_cast<std::int32_t>(kSideMax);
   }
-
- private:
-  Result<void> read_edit(const wire::OrderedEdit& e, Sequence seq, OrderedEdit& out) const;
-  Result<void> read_previous(ByteView bytes, Sequence seq, OrderedEdit& out,
-                             std::vector<ChunkCoord>& touched) const;
 };
 
 }  // namespace runstone

@@ -7,7 +7,6 @@
 
 #include "protocol/codec/coded_body.hpp"
 #include "protocol/codec/packed_body.hpp"
-#include "protocol/codec/packed_body_v1.hpp"
 #include "protocol/limits.hpp"
 
 namespace runstone {
@@ -17,10 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 static_assert(std::is_trivially_copyable_v<PackedRun> && offsetof(PackedRun, material) == 2);
 
-constexpr std::uint8_t version_of(ChunkEncoding encoding) {
-  return encoding == ChunkEncoding::packed ? 2 : 1;
-}
-constexpr std::uint8_t kPackedV1 = 1;  // read only: old worlds contain it
+constexpr std::uint8_t kChunkBytesVersion = 1;
 constexpr std::uint8_t kZstdFlag = 8;  // in the axis order byte of packed chunks
 
 void append_bytes(Bytes& out, const void* from, std::size_t count) {
@@ -38,7 +34,7 @@ void write_runs(Bytes& out, const WideRuns& runs) {
 
 void write_head(ByteWriter& w, const RunChunk& chunk, ChunkEncoding encoding, std::uint8_t flags) {
   w.u8(static_cast<std::uint8_t>(encoding));
-  w.u8(version_of(encoding));
+  w.u8(kChunkBytesVersion);
   w.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(chunk.order) | flags));
   if (encoding == ChunkEncoding::raw) w.u8(0);
   for (const std::uint8_t side : chunk.extent.sides()) w.u8(side);
@@ -82,7 +78,6 @@ void encode_coded(const RunChunk& chunk, Bytes& out) {
 
 // The fields that all encodings have before the runs.
 struct Head {
-  std::uint8_t version = 0;
   Extent extent;
   AxisOrder order{};
   bool zstd = false;
@@ -90,9 +85,7 @@ struct Head {
 
 Head read_head(ByteReader& r, ChunkEncoding encoding, const Extent* expected) {
   Head head;
-  head.version = r.u8();
-  const bool is_old = encoding == ChunkEncoding::packed && head.version == kPackedV1;
-  if (head.version != version_of(encoding) && !is_old)
+  if (r.u8() != kChunkBytesVersion)
     r.reject(ErrorCode::bad_version, "unknown version of chunk bytes");
   std::uint8_t order = r.u8();
   if (encoding == ChunkEncoding::packed) {
@@ -168,26 +161,10 @@ Result<RunChunk> packed_chunk(const Head& head, Result<RunList> runs, std::size_
   return validated({head.extent, head.order, *std::move(runs)});
 }
 
-Result<RunChunk> decode_packed_v1(ByteReader& r, const Head& head) {
-  const std::uint32_t volume = head.extent.volume();
-  PackedShapeV1 shape;
-  shape.runs = static_cast<std::size_t>(r.varint_max(volume, "more runs than voxels"));
-  const std::vector<Material> palette = read_palette(r, shape.runs);
-  shape.body_bytes =
-      static_cast<std::size_t>(r.varint_max(6ULL * kVolumeMax, "body larger than any chunk's"));
-  if (r.ok() && !shape.plausible(palette.size()))
-    r.reject(ErrorCode::bad_value, "body size does not fit the run count");
-  if (!r.ok()) return Unexpected<Error>{r.error()};
-  const std::size_t body_at = r.offset();
-  return packed_chunk(head, unpack_v1(r.bytes(r.left()), head.zstd, shape, palette, volume),
-                      body_at);
-}
-
 Result<RunChunk> decode_packed(ByteReader& r, const Extent* expected) {
   const Head head = read_head(r, ChunkEncoding::packed, expected);
   // Before the axis order is used.
   if (!r.ok()) return Unexpected<Error>{r.error()};
-  if (head.version == kPackedV1) return decode_packed_v1(r, head);
   PackedShape shape;
   shape.side = ordered(head.extent, head.order).f;
   shape.volume = head.extent.volume();

@@ -3,7 +3,7 @@
 //   raw:    u8 1 | u8 version 1 | u8 axis order | u8 0 | u8 x, y, z sides | u8 0 | u32 run count |
 //           runs as in memory: narrow: {u16 end, u16 material} each; wide: all u32 ends, then all
 //           u16 materials
-//   packed: u8 2 | u8 version 2 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint
+//   packed: u8 2 | u8 version 1 | u8 axis order + 8 if the body is zstd | u8 x, y, z sides | varint
 //           run count | varint palette size | palette (varint ids, ascending, the first as is, then
 //           differences - 1) | body to the end, plain or one zstd frame without its magic number.
 //           The body is a plane of palette indices (u8 each, u16 if the palette exceeds 256), a
@@ -13,7 +13,7 @@
 //           end: range-coded bits (coded_body.hpp); empty if the palette has one material
 // Decoding `packed` and `coded` is one linear pass over runs, never over voxels.
 // Each encoding is canonical but for the choices of zstd: the decoder rejects every other spelling
-// of a chunk. Version 1 of packed is read, never written.
+// of a chunk.
 // Thread: any. Scratch and zstd contexts are kept per thread and reused.
 #pragma once
 #include <cstddef>

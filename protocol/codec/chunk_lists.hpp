@@ -1,4 +1,4 @@
-// The byte lists of CachedChunks, ChunksNotModified and ChunkEdits. Keys are differences and
+// The byte lists of CachedChunks, ChunksNotModified and DigestCheck. Keys are differences and
 // numbers are varints, so a claim and its answer take about 20 bytes together. docs/protocol.md
 // specifies the layout. Decoding accepts only canonical lists within the limits.
 #pragma once
@@ -13,20 +13,18 @@
 
 namespace runstone {
 
-// The encoders require at least one entry, strictly ascending keys or sequences, and counts within
-// the limits.
+// The encoders require at least one entry, strictly ascending keys, and counts within the limits.
 
 Bytes encode_cached_chunks(std::span<const CachedChunk> chunks);
 Bytes encode_unmodified(std::span<const UnmodifiedChunk> chunks);
-/// `from` is a sequence below those of all edits.
-Bytes encode_missing_edits(std::span<const MissingEdit> edits, Sequence from);
+Bytes encode_digest_checks(std::span<const DigestCheckEntry> entries);
 
 // `edge` is that of the world's chunks, or the largest one. The decoders reject keys outside the
 // world.
 
 Result<std::vector<CachedChunk>> decode_cached_chunks(ByteView bytes, std::int32_t edge);
 Result<std::vector<UnmodifiedChunk>> decode_unmodified(ByteView bytes, std::int32_t edge);
-Result<std::vector<MissingEdit>> decode_missing_edits(ByteView bytes, Sequence from);
+Result<std::vector<DigestCheckEntry>> decode_digest_checks(ByteView bytes, std::int32_t edge);
 
 /// Returns how many of the first chunks fit one CachedChunks message. Requires at least one chunk.
 std::size_t cached_chunks_that_fit(std::span<const CachedChunk> chunks);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/codec/message_table.hpp"
+
 namespace runstone {
 namespace {
 
@@ -25,23 +27,15 @@ std::size_t message_bytes_max(Sender sender, FrameClass frame_class) {
   return 0;
 }
 
-FrameHeader FrameWriter::next(FrameClass frame_class, std::size_t body_bytes, bool more) {
+FrameHeader FrameWriter::next(MessageKind kind, std::size_t body_bytes, bool more) {
+  RUNSTONE_ASSERT(kind < kMessageKindCount);
   RUNSTONE_ASSERT(body_bytes > 0 && body_bytes <= kFragmentBytesMax);
-  const auto length = static_cast<std::uint32_t>(body_bytes);
   const std::uint32_t count = counter_++;
-  const auto byte = [](std::uint32_t v, int i) { return static_cast<std::uint8_t>(v >> (8 * i)); };
-  return {byte(length, 0),
-          byte(length, 1),
-          byte(length, 2),
-          byte(length, 3),
-          static_cast<std::uint8_t>(frame_class),
-          static_cast<std::uint8_t>(more ? kFlagMore : 0),
-          0,
-          0,
-          byte(count, 0),
-          byte(count, 1),
-          byte(count, 2),
-          byte(count, 3)};
+  const auto byte = [](std::size_t v, int i) { return static_cast<std::uint8_t>(v >> (8 * i)); };
+  return {byte(body_bytes, 0), byte(body_bytes, 1),
+          wire_number(kind),   static_cast<std::uint8_t>(more ? kFlagMore : 0),
+          byte(count, 0),      byte(count, 1),
+          byte(count, 2),      byte(count, 3)};
 }
 
 void FrameWriter::append(const EncodedMessage& message, Bytes& out) {
@@ -50,7 +44,7 @@ void FrameWriter::append(const EncodedMessage& message, Bytes& out) {
   while (!left.empty()) {
     const ByteView body = left.first(std::min(left.size(), kFragmentBytesMax));
     left = left.subspan(body.size());
-    const FrameHeader header = next(message.frame_class, body.size(), !left.empty());
+    const FrameHeader header = next(message.kind, body.size(), !left.empty());
     out.insert(out.end(), header.begin(), header.end());
     out.insert(out.end(), body.begin(), body.end());
   }
@@ -76,21 +70,22 @@ Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
       continue;
     }
     const std::size_t take = std::min(bytes.size(), body_left_);
-    Bytes& partial = partial_[header_[4]];
-    partial.insert(partial.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(take));
+    Partial& partial = partial_[class_];
+    partial.bytes.insert(partial.bytes.end(), bytes.begin(),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(take));
     offset_ += take;
-    frame_bytes_[header_[4]] += take;
+    frame_bytes_[class_] += take;
     body_left_ -= take;
     bytes = bytes.subspan(take);
     if (body_left_ > 0) return {};
     header_have_ = 0;
-    if ((header_[5] & kFlagMore) != 0) continue;
-    if (auto ok = on_message(static_cast<FrameClass>(header_[4]), partial); !ok) return ok;
+    if (more_) continue;
+    if (auto ok = on_message(partial.kind, partial.bytes); !ok) return ok;
     // After a large message the reader gives its memory back.
-    if (partial.capacity() > kMessageBytesKept) {
-      Bytes().swap(partial);
+    if (partial.bytes.capacity() > kMessageBytesKept) {
+      Bytes().swap(partial.bytes);
     } else {
-      partial.clear();
+      partial.bytes.clear();
     }
   }
   return {};
@@ -98,31 +93,33 @@ Result<void> FrameReader::advance(ByteView bytes, const OnMessage& on_message) {
 
 Result<void> FrameReader::open_frame() {
   ByteReader in(header_);
-  const std::uint32_t length = in.u32();
-  const std::uint8_t frame_class = in.u8();
+  const std::uint16_t length = in.u16();
+  const std::uint8_t number = in.u8();
   const std::uint8_t flags = in.u8();
-  const std::uint16_t reserved = in.u16();
   const std::uint32_t counter = in.u32();
   const std::uint64_t at = offset_ - kFrameHeaderBytes;
-  if (length == 0 || length > kFragmentBytesMax) {
+  if (length == 0 || length > kFragmentBytesMax)
     return fail(ErrorCode::limit_exceeded, "frame length outside 1..16384", at);
-  }
-  if (frame_class >= kFrameClassCount)
-    return fail(ErrorCode::unknown_kind, "unknown frame class", at);
+  if (number == 0 || number > kMessageKindCount)
+    return fail(ErrorCode::unknown_kind, "unknown kind of message", at);
+  const MessageKind kind = number - 1u;
+  const MessageInfo& info = info_of(kind);
+  if (!may_send(info, sender_))
+    return fail(ErrorCode::unknown_kind, "kind of message not allowed from this side", at);
   if ((flags & ~kFlagMore) != 0) return fail(ErrorCode::bad_value, "unknown frame flags", at);
-  if (reserved != 0)
-    return fail(ErrorCode::bad_value, "reserved bytes of a frame are not zero", at);
   if (counter != counter_)
     return fail(ErrorCode::broken_invariant, "frame counter is out of order", at);
-  const std::size_t bytes_max = message_bytes_max(sender_, static_cast<FrameClass>(frame_class));
-  if (bytes_max == 0)
-    return fail(ErrorCode::unknown_kind, "frame class not allowed from this side", at);
-  if (length > bytes_max - partial_[frame_class].size()) {
+  class_ = static_cast<std::size_t>(info.frame_class);
+  Partial& partial = partial_[class_];
+  if (!partial.bytes.empty() && partial.kind != kind)
+    return fail(ErrorCode::broken_invariant, "frame interrupts a message of its class", at);
+  if (length > message_bytes_max(sender_, info.frame_class) - partial.bytes.size())
     return fail(ErrorCode::limit_exceeded, "message exceeds the limit of its class", at);
-  }
+  partial.kind = kind;
+  more_ = (flags & kFlagMore) != 0;
   ++counter_;
-  frame_bytes_[frame_class] += kFrameHeaderBytes;
-  ++frames_[frame_class];
+  frame_bytes_[class_] += kFrameHeaderBytes;
+  ++frames_[class_];
   body_left_ = length;
   return {};
 }

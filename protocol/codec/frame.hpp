@@ -1,9 +1,9 @@
 // Frames: they carry messages in a byte stream. One stream carries three classes. Fragments of
 // different classes may interleave, so that an edit overtakes terrain. Within a class, messages
-// keep their order. A frame is a header of 12 bytes, little-endian, and a body:
-//   u32 bytes of the body (1 .. 16 KiB) | u8 class | u8 flags (bit 0: more fragments of this
-//   message follow) |
-//   u16 zero | u32 counter (frames sent in this direction before this one, modulo 2^32)
+// keep their order. A frame is a header of 8 bytes, little-endian, and a body:
+//   u16 bytes of the body (1 .. 16 KiB) | u8 kind of the message, which decides its class |
+//   u8 flags (bit 0: more fragments of this message follow) |
+//   u32 counter (frames sent in this direction before this one, modulo 2^32)
 // The counter detects lost, repeated and invented frames before their bytes reach the decoder.
 #pragma once
 #include <array>
@@ -19,18 +19,22 @@
 
 namespace runstone {
 
-/// Values are on the wire.
+/// Index of a message's type in Message (messages.hpp) and in kMessageTable. On the wire it is one
+/// more: the enum Kind of the schema begins with 1.
+using MessageKind = std::size_t;
+
+/// Kinds of one class keep their order. Kinds of different classes overtake each other.
 enum class FrameClass : std::uint8_t { control = 0, edits = 1, chunks = 2 };
 inline constexpr int kFrameClassCount = 3;
 
-/// The side that sent the bytes. It decides which classes, sizes and messages are allowed.
+/// The side that sent the bytes. It decides which kinds and sizes of messages are allowed.
 enum class Sender : std::uint8_t { client, server };
 /// Returns the limit of a whole message, or 0 if the sender may not use the class.
 std::size_t message_bytes_max(Sender sender, FrameClass frame_class);
 
 /// A serialised message. It is made once and shared by all sessions that send it.
 struct EncodedMessage {
-  FrameClass frame_class = FrameClass::control;
+  MessageKind kind = 0;
   std::shared_ptr<const Bytes> bytes;
 };
 
@@ -41,7 +45,7 @@ class FrameWriter {
  public:
   /// Returns the header of the next fragment. `more` says that the message continues in another
   /// fragment. Requires body_bytes in 1 .. kFragmentBytesMax.
-  FrameHeader next(FrameClass frame_class, std::size_t body_bytes, bool more);
+  FrameHeader next(MessageKind kind, std::size_t body_bytes, bool more);
   /// Appends a whole message as consecutive frames, for senders that do not interleave classes.
   void append(const EncodedMessage& message, Bytes& out);
 
@@ -57,9 +61,9 @@ class FrameWriter {
 class FrameReader {
  public:
   explicit FrameReader(Sender sender) : sender_(sender) {}
-  /// Gets the class and the bytes of a message. The bytes are 16-aligned and live until the call
-  /// returns. It must not feed the same reader.
-  using OnMessage = std::function<Result<void>(FrameClass, ByteView)>;
+  /// Gets the kind and the bytes of a message. The sender may send this kind. The bytes are
+  /// 16-aligned and live until the call returns. It must not feed the same reader.
+  using OnMessage = std::function<Result<void>(MessageKind, ByteView)>;
   Result<void> feed(ByteView bytes, const OnMessage& on_message);
   /// Returns the bytes read of frames of this class, headers and unfinished frames included.
   std::uint64_t frame_bytes(FrameClass frame_class) const {
@@ -71,6 +75,12 @@ class FrameReader {
   }
 
  private:
+  /// A message of which some fragments were read.
+  struct Partial {
+    MessageKind kind = 0;
+    Bytes bytes;
+  };
+
   Result<void> advance(ByteView bytes, const OnMessage& on_message);
   Result<void> open_frame();
 
@@ -80,8 +90,11 @@ class FrameReader {
   std::uint32_t counter_ = 0;
   std::array<std::uint8_t, kFrameHeaderBytes> header_{};
   std::size_t header_have_ = 0;
+  // Of the frame that is being read.
+  std::size_t class_ = 0;
+  bool more_ = false;
   std::size_t body_left_ = 0;
-  std::array<Bytes, kFrameClassCount> partial_;
+  std::array<Partial, kFrameClassCount> partial_;
   std::array<std::uint64_t, kFrameClassCount> frame_bytes_{}, frames_{};
 };
 

@@ -4,9 +4,12 @@
 #include <utility>
 
 #include "common/core/text.hpp"
+#include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/chunk_lists.hpp"
+#include "protocol/codec/key_list.hpp"
 #include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
+#include "protocol/codec/ordered_edits.hpp"
 #include "protocol/codec/uniform_list.hpp"
 #include "protocol/schema/runstone_generated.h"
 
@@ -25,13 +28,10 @@ auto bytes_of(FlatBufferBuilder& b, const std::array<std::uint8_t, N>& v) {
 }
 auto bytes_of(FlatBufferBuilder& b, const Bytes& v) { return b.CreateVector(v.data(), v.size()); }
 
-wire::Key key_of(const ChunkKey& key) { return {key.lod, key.at.x, key.at.y, key.at.z}; }
-wire::Version version_of(const Version& v) { return {v.epoch, v.seq}; }
-wire::Digest digest_bytes(const Digest& d) { return {d.lane[0], d.lane[1]}; }
 wire::Position position_of(const WorldPos& p) { return {p.x, p.y, p.z}; }
 wire::Pose pose_of(const Pose& p) { return {position_of(p.at), p.yaw, p.pitch}; }
 
-/// Builds the body table of each message. The type of the result names the member of the union.
+/// Builds the table of each message.
 struct BodyBuilder {
   FlatBufferBuilder& b;
 
@@ -71,42 +71,38 @@ struct BodyBuilder {
     return wire::CreateSessionAccepted(b, m.author, m.resolved);
   }
   Offset<wire::View> operator()(const View& m) {
-    return wire::CreateView(b, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v, m.yaw,
-                            m.pitch, m.cone);
+    RUNSTONE_ASSERT(m.number != 0);
+    return wire::CreateView(b, m.number, m.centre.x, m.centre.y, m.centre.z, m.radius_h, m.radius_v,
+                            m.yaw, m.pitch, m.cone);
   }
   Offset<wire::ChunkRequest> operator()(const ChunkRequest& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kChunkRequestKeysMax);
-    return wire::CreateChunkRequest(b, keys(m.keys));
+    return wire::CreateChunkRequest(b, bytes_of(b, encode_keys(m.keys)));
   }
-  Offset<wire::Chunk> operator()(const ChunkSnapshot& m) {
-    return snapshot(m.key, m.chunk, ChunkEncoding::raw);
+  Offset<wire::Chunks> operator()(const Chunks& m) {
+    std::vector<ChunkEntry> entries;
+    entries.reserve(m.chunks.size());
+    for (const ChunkAnswer& answer : m.chunks) entries.push_back(encode_answer(answer));
+    return chunks(m.view, entries);
   }
   Offset<wire::ChunkUnavailable> operator()(const ChunkUnavailable& m) {
     RUNSTONE_ASSERT(!m.keys.empty() && m.keys.size() <= kUnavailableKeysMax);
-    return wire::CreateChunkUnavailable(b, keys(m.keys), static_cast<std::uint8_t>(m.reason));
+    return wire::CreateChunkUnavailable(b, m.view, bytes_of(b, encode_keys(m.keys)),
+                                        static_cast<std::uint8_t>(m.reason));
   }
   Offset<wire::CachedChunks> operator()(const CachedChunks& m) {
     return wire::CreateCachedChunks(b, bytes_of(b, encode_cached_chunks(m.chunks)));
   }
   Offset<wire::ChunksNotModified> operator()(const ChunksNotModified& m) {
-    return wire::CreateChunksNotModified(b, bytes_of(b, encode_unmodified(m.chunks)));
-  }
-  Offset<wire::ChunkEdits> operator()(const ChunkEdits& m) {
-    RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kChunkEditsMax);
-    RUNSTONE_ASSERT(m.edits.back().seq == m.to.seq);
-    const auto edits = bytes_of(b, encode_missing_edits(m.edits, m.from));
-    const wire::Key key = key_of(m.key);
-    const wire::Version to = version_of(m.to);
-    const wire::Digest digest = digest_bytes(m.digest);
-    return wire::CreateChunkEdits(b, &key, m.from, &to, &digest, edits);
+    return wire::CreateChunksNotModified(b, m.view, bytes_of(b, encode_unmodified(m.chunks)));
   }
   Offset<wire::HistoryRequest> operator()(const HistoryRequest& m) {
     return wire::CreateHistoryRequest(b, m.request, static_cast<std::uint8_t>(m.to), m.seq,
                                       m.utc_us);
   }
-  Offset<wire::HistoryState> operator()(const HistoryState& m) {
-    return wire::CreateHistoryState(b, m.request, static_cast<std::uint8_t>(m.phase), m.past, m.seq,
-                                    m.utc_us, text(m.text));
+  Offset<wire::ViewState> operator()(const ViewState& m) {
+    return wire::CreateViewState(b, m.request, m.view, static_cast<std::uint8_t>(m.phase), m.past,
+                                 m.seq, m.utc_us, text(m.text));
   }
   Offset<wire::EditRequest> operator()(const EditRequest& m) {
     const Bytes edit = m.fault ? Bytes{} : encode(m.edit);
@@ -114,25 +110,7 @@ struct BodyBuilder {
   }
   Offset<wire::Commit> operator()(const Commit& m) {
     RUNSTONE_ASSERT(m.epoch != 0 && m.first != 0);
-    RUNSTONE_ASSERT(!m.edits.empty() && m.edits.size() <= kCommitEditsMax);
-    std::vector<Offset<wire::OrderedEdit>> edits;
-    edits.reserve(m.edits.size());
-    Bytes previous;
-    for (std::size_t i = 0; i < m.edits.size(); ++i) {
-      const OrderedEdit& e = m.edits[i];
-      previous.clear();
-      ByteWriter w(previous);
-      RUNSTONE_ASSERT(e.subject < m.first + i);
-      for (const Sequence seq : e.previous) {
-        RUNSTONE_ASSERT(seq < m.first + i);
-        w.varint(m.first + i - seq);
-      }
-      const auto edit = bytes_of(b, encode(e.edit));
-      edits.push_back(wire::CreateOrderedEdit(
-          b, e.op.author, e.op.instance, e.op.seq, static_cast<std::uint8_t>(e.cause),
-          e.submitted_us, e.ordered_us, edit, bytes_of(b, previous), e.subject));
-    }
-    return wire::CreateCommit(b, m.epoch, m.first, b.CreateVector(edits));
+    return wire::CreateCommit(b, m.epoch, m.first, bytes_of(b, encode_ordered_edits(m)));
   }
   Offset<wire::Reject> operator()(const Reject& m) {
     return wire::CreateReject(b, m.client_seq, static_cast<std::uint8_t>(m.reason), text(m.detail),
@@ -142,16 +120,7 @@ struct BodyBuilder {
     return wire::CreateDurable(b, m.epoch, m.seq);
   }
   Offset<wire::DigestCheck> operator()(const DigestCheck& m) {
-    RUNSTONE_ASSERT(m.entries.size() <= kDigestCheckEntriesMax);
-    std::vector<Offset<wire::DigestCheckEntry>> entries;
-    entries.reserve(m.entries.size());
-    for (const DigestCheckEntry& e : m.entries) {
-      const wire::Key key = key_of(e.key);
-      const wire::Version version = version_of(e.version);
-      const wire::Digest digest = digest_bytes(e.digest);
-      entries.push_back(wire::CreateDigestCheckEntry(b, &key, &version, &digest));
-    }
-    return wire::CreateDigestCheck(b, b.CreateVector(entries));
+    return wire::CreateDigestCheck(b, bytes_of(b, encode_digest_checks(m.entries)));
   }
   Offset<wire::Move> operator()(const Move& m) {
     const wire::Pose pose = pose_of(m.pose);
@@ -197,22 +166,12 @@ struct BodyBuilder {
     return wire::CreateReceiveAck(b, m.chunk_bytes);
   }
   Offset<wire::UniformChunks> operator()(const UniformChunks& m) {
-    return wire::CreateUniformChunks(b, bytes_of(b, encode_uniform(m.chunks)));
+    return wire::CreateUniformChunks(b, m.view, bytes_of(b, encode_uniform(m.chunks)));
   }
 
-  Offset<wire::Chunk> snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
-    const Bytes data = encode_chunk(chunk.voxels, encoding);
-    b.ForceVectorAlignment(data.size(), 1, 4);  // so that a reader can use raw runs in place
-    const auto bytes = bytes_of(b, data);
-    const wire::Key k = key_of(key);
-    const wire::Version v = version_of(chunk.version);
-    const wire::Digest d = digest_bytes(chunk.digest);
-    return wire::CreateChunk(b, &k, &v, &d, bytes);
-  }
-  Offset<flatbuffers::Vector<const wire::Key*>> keys(const std::vector<ChunkKey>& list) {
-    std::vector<wire::Key> keys(list.size());
-    std::transform(list.begin(), list.end(), keys.begin(), key_of);
-    return b.CreateVectorOfStructs(keys);
+  Offset<wire::Chunks> chunks(std::uint32_t view, std::span<const ChunkEntry> entries) {
+    RUNSTONE_ASSERT(view != 0);
+    return wire::CreateChunks(b, view, bytes_of(b, list_of(entries)));
   }
   /// Returns the line with "?" for each byte that is not printable: a line may name a file, and
   /// file names hold any bytes.
@@ -238,29 +197,28 @@ FlatBufferBuilder& cleared_builder() {
 }
 
 template <class Table>
-EncodedMessage finish(FlatBufferBuilder& b, Offset<Table> body) {
-  constexpr wire::Body kType = wire::BodyTraits<Table>::enum_value;
-  constexpr FrameClass kClass = info_of(static_cast<MessageKind>(kType) - 1).frame_class;
-  b.Finish(wire::CreateMessage(b, kType, body.Union()), wire::MessageIdentifier());
+EncodedMessage finish(FlatBufferBuilder& b, MessageKind kind, Offset<Table> body) {
+  b.Finish(body);
   // In each class the server's limit is the larger one.
-  RUNSTONE_ASSERT(b.GetSize() <= message_bytes_max(Sender::server, kClass));
+  RUNSTONE_ASSERT(b.GetSize() <= message_bytes_max(Sender::server, info_of(kind).frame_class));
   const std::uint8_t* first = b.GetBufferPointer();
   auto bytes = std::make_shared<const Bytes>(first, first + b.GetSize());
   // After a huge message the builder gives its memory back.
   if (bytes->size() > kBuilderBytesKept) b.Reset();
-  return {kClass, std::move(bytes)};
+  return {kind, std::move(bytes)};
 }
 
 }  // namespace
 
 EncodedMessage encode_message(const Message& message) {
   FlatBufferBuilder& b = cleared_builder();
-  return std::visit([&](const auto& m) { return finish(b, BodyBuilder{b}(m)); }, message);
+  return std::visit([&](const auto& m) { return finish(b, message.index(), BodyBuilder{b}(m)); },
+                    message);
 }
 
-EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding) {
+EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries) {
   FlatBufferBuilder& b = cleared_builder();
-  return finish(b, BodyBuilder{b}.snapshot(key, chunk, encoding));
+  return finish(b, kKindOf<Chunks>, BodyBuilder{b}.chunks(view, entries));
 }
 
 }  // namespace runstone

@@ -1,14 +1,12 @@
 #include "protocol/codec/message_table.hpp"
 
-#include "common/core/assert.hpp"
 #include "protocol/schema/runstone_generated.h"
 
 namespace runstone {
 namespace {
 
-// Message follows the order of the union, whose value 0 says that there is no body.
-constexpr std::size_t kFirst = static_cast<std::size_t>(wire::Body::NONE) + 1;
-static_assert(static_cast<std::size_t>(wire::Body::MAX) + 1 - kFirst == kMessageKindCount);
+static_assert(static_cast<std::size_t>(wire::Kind::MIN) == 1);
+static_assert(static_cast<std::size_t>(wire::Kind::MAX) == kMessageKindCount);
 
 bool is_stage_right(const MessageInfo& info, Sender sender, SessionStage stage) {
   if (!info.stage || *info.stage == stage) return true;
@@ -17,12 +15,6 @@ bool is_stage_right(const MessageInfo& info, Sender sender, SessionStage stage) 
 }
 
 }  // namespace
-
-MessageKind kind_of(ByteView message) {
-  const auto type = static_cast<std::size_t>(wire::GetMessage(message.data())->body_type());
-  RUNSTONE_ASSERT(type >= kFirst && type - kFirst < kMessageKindCount);
-  return type - kFirst;
-}
 
 std::optional<Refusal> refusal_of(const MessageInfo& info, Sender sender, SessionStage stage,
                                   std::uint64_t features) {

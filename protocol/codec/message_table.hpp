@@ -5,15 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 #include "protocol/codec/messages.hpp"
 
 namespace runstone {
 
-/// Index of a message's type in Message, in kMessageTable and, less one, in the union Body of the
-/// schema.
-using MessageKind = std::size_t;
 inline constexpr std::size_t kMessageKindCount = std::variant_size_v<Message>;
 
 /// How far the handshake has come, counted by each side for itself.
@@ -26,7 +24,7 @@ enum class SessionStage : std::uint8_t {
 enum class SentBy : std::uint8_t { client, server, both };
 
 struct MessageInfo {
-  const char* name;  // of the message's table in the schema
+  const char* name;  // of the message's table, and of its number in the enum Kind, in the schema
   SentBy sent_by;
   FrameClass frame_class;
   std::optional<SessionStage> stage;  // in which the receiver must be; nullopt: any
@@ -35,7 +33,7 @@ struct MessageInfo {
 
 /// Each class keeps the order of its messages, and this decides what travels where:
 ///   - edits: SessionAccepted comes first, and Durable never overtakes the commits that it covers;
-///   - chunks: the last message about a chunk arrives last, and HistoryState precedes the chunks of
+///   - chunks: the last message about a chunk arrives last, and ViewState precedes the chunks of
 ///     its view;
 ///   - control: the rest.
 inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
@@ -51,7 +49,7 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"SessionAccepted", server, kEdits, authenticating, 0},
       {"View", client, kControl, open, 0},
       {"ChunkRequest", client, kControl, open, 0},
-      {"Chunk", server, kChunks, open, 0},
+      {"Chunks", server, kChunks, open, 0},
       {"EditRequest", client, kEdits, open, 0},
       {"Commit", server, kEdits, open, 0},
       {"Reject", server, kEdits, open, 0},
@@ -65,14 +63,13 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
       {"Goodbye", both, kControl, std::nullopt, 0},
       {"ChunkUnavailable", server, kChunks, open, 0},
       {"HistoryRequest", client, kControl, open, 0},
-      {"HistoryState", server, kChunks, open, 0},
+      {"ViewState", server, kChunks, open, 0},
       {"CommandRequest", client, kControl, open, kFeatureCommands},
       {"CommandOutput", server, kControl, open, kFeatureCommands},
       {"ReceiveAck", client, kControl, open, kFeatureReceiveAck},
       {"UniformChunks", server, kChunks, open, 0},
       {"CachedChunks", client, kControl, open, 0},
       {"ChunksNotModified", server, kChunks, open, 0},
-      {"ChunkEdits", server, kChunks, open, 0},
   }};
 }();
 
@@ -80,9 +77,22 @@ inline constexpr std::array<MessageInfo, kMessageKindCount> kMessageTable = [] {
 constexpr const MessageInfo& info_of(MessageKind kind) { return kMessageTable[kind]; }
 inline const MessageInfo& info_of(const Message& message) { return info_of(message.index()); }
 
-/// Returns the kind of a message that encode_message() made or decode_message() accepted. Verifies
-/// nothing. Cost: O(1).
-MessageKind kind_of(ByteView message);
+constexpr FrameClass class_of(const EncodedMessage& message) {
+  return info_of(message.kind).frame_class;
+}
+
+/// Returns the number of the kind in frame headers and in the enum Kind of the schema.
+constexpr std::uint8_t wire_number(MessageKind kind) { return static_cast<std::uint8_t>(kind + 1); }
+
+/// The kind of a type of Message.
+template <class T>
+inline constexpr MessageKind kKindOf = [] {
+  return []<class... Types>(std::variant<Types...>*) {
+    MessageKind kind = 0;
+    (void)((std::is_same_v<T, Types> || (++kind, false)) || ...);
+    return kind;
+  }(static_cast<Message*>(nullptr));
+}();
 
 /// Returns true if this side may send the message.
 constexpr bool may_send(const MessageInfo& info, Sender sender) {

@@ -84,6 +84,7 @@ struct SessionAccepted {
 /// The chunks that a client wants: those with dx^2 + dz^2 <= radius_h^2 and |dy| <= radius_v around
 /// `centre`. The direction is a hint: the server sends what lies in the cone first.
 struct View {
+  std::uint32_t number = 1;  // from 1, ascending within a session
   ChunkCoord centre;
   std::uint8_t radius_h = 0, radius_v = 0;
   std::uint16_t yaw = 0;   // as in Pose
@@ -105,78 +106,13 @@ struct View {
   }
 };
 struct ChunkRequest {
-  std::vector<ChunkKey> keys;
+  std::vector<ChunkKey> keys;  // 1 .. kChunkRequestKeysMax, strictly ascending
   friend bool operator==(const ChunkRequest&, const ChunkRequest&) = default;
 };
-/// The schema's table Chunk. Clients decode it to this struct. Servers use encode_snapshot()
-/// instead, once per chunk.
 struct ChunkSnapshot {
   ChunkKey key;
   Chunk chunk;
   friend bool operator==(const ChunkSnapshot&, const ChunkSnapshot&) = default;
-};
-/// The snapshot of a chunk of one material. Its digest follows from the material.
-struct UniformChunk {
-  ChunkKey key;
-  Material material = kEmpty;
-  Version version;
-  friend bool operator==(const UniformChunk&, const UniformChunk&) = default;
-};
-struct UniformChunks {
-  /// 1 .. kUniformChunksMax chunks of level of detail 0, ascending by is_before_in_list().
-  std::vector<UniformChunk> chunks;
-  friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
-};
-/// Orders chunks by x, then z, then y, so that the chunks of a column follow each other.
-constexpr bool is_before_in_list(const ChunkCoord& a, const ChunkCoord& b) {
-  return a.x != b.x ? a.x < b.x : a.z != b.z ? a.z < b.z : a.y < b.y;
-}
-
-/// Why the server cannot send a chunk. Values are on the wire. Readers accept values that they do
-/// not know.
-enum class UnavailableReason : std::uint8_t {
-  /// The row of the chunk in the server's database is damaged. It stays so until the row is
-  /// repaired and the server restarts.
-  damaged = 1,
-};
-/// Returns the name in docs/protocol.md, or "unknown".
-const char* to_string(UnavailableReason reason);
-
-/// Names chunks of the view that the server cannot send, so that the client does not wait for them.
-struct ChunkUnavailable {
-  std::vector<ChunkKey> keys;
-  UnavailableReason reason = UnavailableReason::damaged;
-  friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
-};
-/// The claim of a client that it has a chunk at this version.
-struct CachedChunk {
-  ChunkKey key;
-  Version version;
-  std::uint64_t digest = 0;  // claim_digest() of the voxels
-  friend bool operator==(const CachedChunk&, const CachedChunk&) = default;
-};
-/// Returns lane 0 of a digest. Its 61 bits find a copy that differs by accident, but for one in
-/// 2^61. A copy that differs on purpose harms only the client that claims it, and only until the
-/// next DigestCheck.
-inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
-
-/// Claims for chunks of the view in force or of the next view, so that the server need not send
-/// them. Strictly ascending by key; level of detail 0.
-struct CachedChunks {
-  std::vector<CachedChunk> chunks;
-  friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
-};
-/// The client's copy at this sequence equals the chunk at the moment when the session was
-/// subscribed to it.
-struct UnmodifiedChunk {
-  ChunkKey key;
-  Sequence seq = 0;
-  friend bool operator==(const UnmodifiedChunk&, const UnmodifiedChunk&) = default;
-};
-/// Strictly ascending by key; level of detail 0.
-struct ChunksNotModified {
-  std::vector<UnmodifiedChunk> chunks;
-  friend bool operator==(const ChunksNotModified&, const ChunksNotModified&) = default;
 };
 struct MissingEdit {
   Sequence seq = 0;
@@ -193,7 +129,81 @@ struct ChunkEdits {
   std::vector<MissingEdit> edits;
   friend bool operator==(const ChunkEdits&, const ChunkEdits&) = default;
 };
+/// What a server sends for a chunk that is not of one material.
+using ChunkAnswer = std::variant<ChunkSnapshot, ChunkEdits>;
+inline const ChunkKey& key_of(const ChunkAnswer& answer) {
+  return std::visit([](const auto& a) -> const ChunkKey& { return a.key; }, answer);
+}
+/// Clients decode this struct. Servers encode each chunk once for all sessions instead, and join
+/// the entries of a session to messages: see chunk_entries.hpp.
+struct Chunks {
+  /// View::number of the newest view in force when the chunks were queued, so that a client can
+  /// ignore chunks that it has forgotten and requested again since. The same holds for the fields
+  /// of this name below.
+  std::uint32_t view = 1;
+  std::vector<ChunkAnswer> chunks;  // 1 .. kChunksPerMessageMax, strictly ascending by key
+  friend bool operator==(const Chunks&, const Chunks&) = default;
+};
+/// The snapshot of a chunk of one material. Its digest follows from the material.
+struct UniformChunk {
+  ChunkKey key;
+  Material material = kEmpty;
+  Version version;
+  friend bool operator==(const UniformChunk&, const UniformChunk&) = default;
+};
+struct UniformChunks {
+  std::uint32_t view = 1;
+  std::vector<UniformChunk> chunks;  // 1 .. kUniformChunksMax, strictly ascending by key
+  friend bool operator==(const UniformChunks&, const UniformChunks&) = default;
+};
 
+/// Why the server cannot send a chunk. Values are on the wire. Readers accept values that they do
+/// not know.
+enum class UnavailableReason : std::uint8_t {
+  /// The row of the chunk in the server's database is damaged. It stays so until the row is
+  /// repaired and the server restarts.
+  damaged = 1,
+};
+/// Returns the name in docs/protocol.md, or "unknown".
+const char* to_string(UnavailableReason reason);
+
+/// Names chunks of the view that the server cannot send, so that the client does not wait for them.
+struct ChunkUnavailable {
+  std::uint32_t view = 1;
+  std::vector<ChunkKey> keys;  // 1 .. kUnavailableKeysMax, strictly ascending
+  UnavailableReason reason = UnavailableReason::damaged;
+  friend bool operator==(const ChunkUnavailable&, const ChunkUnavailable&) = default;
+};
+/// The claim of a client that it has a chunk at this version.
+struct CachedChunk {
+  ChunkKey key;
+  Version version;
+  std::uint64_t digest = 0;  // claim_digest() of the voxels
+  friend bool operator==(const CachedChunk&, const CachedChunk&) = default;
+};
+/// Returns lane 0 of a digest. Its 61 bits find a copy that differs by accident, but for one in
+/// 2^61. A copy that differs on purpose harms only the client that claims it, and only until the
+/// next DigestCheck.
+inline std::uint64_t claim_digest(const Digest& digest) { return digest.lane[0]; }
+
+/// Claims for chunks of the view in force or of the next view, so that the server need not send
+/// them.
+struct CachedChunks {
+  std::vector<CachedChunk> chunks;  // 1 .. kCachedChunksMax, strictly ascending by key
+  friend bool operator==(const CachedChunks&, const CachedChunks&) = default;
+};
+/// The client's copy at this sequence equals the chunk at the moment when the session was
+/// subscribed to it.
+struct UnmodifiedChunk {
+  ChunkKey key;
+  Sequence seq = 0;
+  friend bool operator==(const UnmodifiedChunk&, const UnmodifiedChunk&) = default;
+};
+struct ChunksNotModified {
+  std::uint32_t view = 1;
+  std::vector<UnmodifiedChunk> chunks;  // 1 .. kChunksNotModifiedMax, strictly ascending by key
+  friend bool operator==(const ChunksNotModified&, const ChunksNotModified&) = default;
+};
 /// Which state of the world a session asks for. Values are on the wire.
 enum class HistoryTarget : std::uint8_t { live = 0, sequence = 1, time = 2 };
 inline constexpr std::uint8_t kHistoryTargetMax = 2;
@@ -209,20 +219,22 @@ struct HistoryRequest {
 
 /// Values are on the wire.
 ///   - begins: the chunks that follow show this state of the world;
-///   - complete: all chunks of the view that differ from the client's were sent; of past states
-///     only;
-///   - refused: nothing changed, and `text` gives the reason.
-enum class HistoryPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
-inline constexpr std::uint8_t kHistoryPhaseMax = 3;
+///   - complete: every chunk of the view was answered;
+///   - refused: a HistoryRequest changed nothing, and `text` gives the reason.
+enum class ViewPhase : std::uint8_t { begins = 1, complete = 2, refused = 3 };
+inline constexpr std::uint8_t kViewPhaseMax = 3;
 
-struct HistoryState {
-  std::uint32_t request = 1;
-  HistoryPhase phase = HistoryPhase::begins;
-  bool past = false;  // false: the live world
+/// Says which state of the world the client sees from this message on: the fields past, seq and
+/// utc_us describe it in every phase.
+struct ViewState {
+  std::uint32_t request = 0;  // the newest HistoryRequest that was answered; 0: none yet
+  std::uint32_t view = 0;     // number of the newest view in force; 0: none yet
+  ViewPhase phase = ViewPhase::begins;
+  bool past = false;  // false: the live world; seq and utc_us are 0 then
   Sequence seq = 0;   // of a past state: its last edit; 0: before the first one
-  TimeUs utc_us = 0;  // when that edit was ordered; 0 if unknown
+  TimeUs utc_us = 0;  // of a past state: when that edit was ordered; 0 before the first one
   std::string text;
-  friend bool operator==(const HistoryState&, const HistoryState&) = default;
+  friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 struct EditRequest {
   ClientSequence client_seq = 0;
@@ -293,7 +305,7 @@ struct DigestCheckEntry {
   friend bool operator==(const DigestCheckEntry&, const DigestCheckEntry&) = default;
 };
 struct DigestCheck {
-  std::vector<DigestCheckEntry> entries;
+  std::vector<DigestCheckEntry> entries;  // 1 .. kDigestCheckEntriesMax, strictly ascending by key
   friend bool operator==(const DigestCheck&, const DigestCheck&) = default;
 };
 struct Move {
@@ -377,44 +389,39 @@ struct ReceiveAck {
   friend bool operator==(const ReceiveAck&, const ReceiveAck&) = default;
 };
 
-/// The order is that of the union Body in the schema.
+/// The order is that of the enum Kind in the schema.
 using Message =
-    std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, ChunkSnapshot,
+    std::variant<Hello, Welcome, ClientAuth, SessionAccepted, View, ChunkRequest, Chunks,
                  EditRequest, Commit, Reject, Durable, DigestCheck, Move, PlayerPoses, PlayerList,
-                 Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, HistoryState,
-                 CommandRequest, CommandOutput, ReceiveAck, UniformChunks, CachedChunks,
-                 ChunksNotModified, ChunkEdits>;
+                 Ping, Pong, Goodbye, ChunkUnavailable, HistoryRequest, ViewState, CommandRequest,
+                 CommandOutput, ReceiveAck, UniformChunks, CachedChunks, ChunksNotModified>;
 
 /// Returns true if the snapshot's digest is the digest of its voxels. Cost: O(runs).
 inline bool digest_matches(const ChunkSnapshot& snapshot) {
   return digest_of(snapshot.chunk.voxels) == snapshot.chunk.digest;
 }
 
-/// Serialises a message as a FlatBuffers buffer of protocol/schema/runstone.fbs. Chunk snapshots
-/// are `raw`; see encode_snapshot() for the other encodings. Requires what decode_message()
-/// demands, with these exceptions:
+/// Serialises a message as a FlatBuffers buffer of its table in protocol/schema/runstone.fbs. Chunk
+/// snapshots are `raw`; see chunk_entries.hpp for the other encodings. Requires what
+/// decode_message() demands, with these exceptions:
 ///   - reject details, goodbye texts and lines of command output that are too long are cut;
 ///   - in lines of command output, bytes that are not printable become "?";
 ///   - a request with a fault gets empty descriptor bytes.
 /// Thread: any.
 EncodedMessage encode_message(const Message& message);
 
-/// Serialises a snapshot in the given encoding. Reads runs and makes no dense copy. Cost: O(runs).
-/// Thread: any.
-EncodedMessage encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
-
 /// Returns the claims as messages, each within the limits of a client's control message. Requires
 /// chunks strictly ascending by key.
 std::vector<Message> cached_chunks_messages(std::span<const CachedChunk> chunks);
 
-/// Decodes one message of a class from a sender. `bytes` must be 8-aligned, as FrameReader's are.
-/// `chunk_edge` is the edge of the world's chunks, 0 before Welcome. With an edge, the function
-/// also rejects snapshots of another size, keys outside the world, and lists of `previous` that do
-/// not fit the chunks touched by their edits. Of a snapshot's digest it checks only the range; see
-/// digest_matches(). A Hello or Welcome of another protocol version yields only that version,
-/// because its other fields may have another meaning. Memory is bounded by a small multiple of the
-/// bytes; for chunks see decode_chunk(). Thread: any.
-Result<Message> decode_message(Sender sender, FrameClass frame_class, ByteView bytes,
+/// Decodes one message. Requires a kind that the sender may send, and 8-aligned bytes; FrameReader
+/// delivers both. `chunk_edge` is the edge of the world's chunks, 0 before Welcome. With an edge,
+/// the function also rejects snapshots of another size, keys outside the world, and commits that do
+/// not list one previous sequence for each touched chunk. Of a snapshot's digest it checks only the
+/// range; see digest_matches(). A Hello or Welcome of another protocol version yields only that
+/// version, because its other fields may have another meaning. Memory is bounded by a small
+/// multiple of the bytes; for chunks see decode_chunk(). Thread: any.
+Result<Message> decode_message(Sender sender, MessageKind kind, ByteView bytes,
                                std::uint16_t chunk_edge);
 
 }  // namespace runstone

@@ -1,5 +1,5 @@
-// The byte list of UniformChunks: chunks of one material each. Equal chunks on top of each other
-// are one entry; an entry takes about six bytes. Internal to the message codec.
+// The byte list of UniformChunks: chunks of one material each. Equal chunks in a row along z are
+// one entry; an entry takes about six bytes. Internal to the message codec.
 #pragma once
 #include <vector>
 
@@ -9,8 +9,7 @@
 
 namespace runstone {
 
-/// Encodes the list. Requires 1 .. kUniformChunksMax chunks of lod 0, ascending by
-/// is_before_in_list().
+/// Encodes the list. Requires 1 .. kUniformChunksMax chunks, strictly ascending by key.
 Bytes encode_uniform(const std::vector<UniformChunk>& chunks);
 /// Decodes the list. `edge` is that of the world's chunks and bounds their coordinates. The list is
 /// not canonical: equal chunks may be several entries.

@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 
-#include "common/core/m61.hpp"
 #include "common/core/text.hpp"
 #include "protocol/codec/messages.hpp"
 #include "protocol/schema/runstone_generated.h"
@@ -48,25 +47,6 @@ inline bool take_coord(std::int32_t x, std::int32_t y, std::int32_t z, std::int3
   const std::int32_t reach = kWorldLimit / edge;
   const auto inside = [reach](std::int32_t c) { return c >= -reach && c < reach; };
   return inside(x) && inside(y) && inside(z);
-}
-
-inline bool take_key(const wire::Key* from, std::int32_t edge, ChunkKey& to) {
-  if (from == nullptr || from->lod() > kLodMax) return false;
-  to.lod = from->lod();
-  return take_coord(from->x(), from->y(), from->z(), edge, to.at);
-}
-
-/// Requires (0, 0), which is the base, or an epoch and a sequence of at least 1.
-inline bool take_version(const wire::Version* from, Version& to) {
-  if (from == nullptr) return false;
-  to = {from->epoch(), from->seq()};
-  return (to.epoch == 0) == (to.seq == 0);
-}
-
-inline bool take_digest(const wire::Digest* from, Digest& to) {
-  if (from == nullptr) return false;
-  to.lane = {from->lane0(), from->lane1()};
-  return to.lane[0] < m61::kPrime && to.lane[1] < m61::kPrime;
 }
 
 inline bool take_position(const wire::Position* from, WorldPos& to) {

@@ -22,7 +22,7 @@ void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Cl
 
 /// Sends the history states that must precede the session's next chunk. Returns false if its queue
 /// is full.
-bool send_history_states(WorldState& world, SessionId session, const Clocks& now) {
+bool send_view_states(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   if (!mine.history_start_due && !mine.history_report_due) return true;
   // Answers about the live world precede the state that ends it.
@@ -31,7 +31,7 @@ bool send_history_states(WorldState& world, SessionId session, const Clocks& now
     return false;
   }
   if (!send_uniform(world, session, now)) return false;
-  for (std::optional<HistoryState>* due : {&mine.history_start_due, &mine.history_report_due}) {
+  for (std::optional<ViewState>* due : {&mine.history_start_due, &mine.history_report_due}) {
     if (!*due) continue;
     if (!world.environment.send(session, encode_message(**due))) {
       ++world.counters.queue_full;
@@ -147,7 +147,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession* mine = world.find(session);
   if (mine == nullptr || mine->state != SessionStage::open || is_stalled(world, *mine, now)) return;
   mine->stalled_us.reset();
-  if (!send_history_states(world, session, now)) return;
+  if (!send_view_states(world, session, now)) return;
   if (mine->history) {
     deliver_history(world, session, now);
     return send_uniform_if_last(world, session, now);

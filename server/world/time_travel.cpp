@@ -31,7 +31,7 @@ void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
                     const Clocks& now) {
   WorldSession& mine = *world.find(session);
   mine.history.reset();
-  mine.history_start_due = HistoryState{request, HistoryPhase::begins, false, 0, 0, ""};
+  mine.history_start_due = ViewState{request, ViewPhase::begins, false, 0, 0, ""};
   mine.history_report_due.reset();
   want_all(world, session);
   deliver(world, session, now);
@@ -70,7 +70,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
   if (!opened) {
     const bool is_past = mine->history.has_value();
     mine->history_report_due =
-        HistoryState{request, HistoryPhase::refused, is_past, is_past ? mine->history->seq : 0,
+        ViewState{request, ViewPhase::refused, is_past, is_past ? mine->history->seq : 0,
                      0,       opened.error()};
     return deliver(world, session, now);
   }
@@ -82,7 +82,7 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
   mine->history = std::move(history);
   mine->history_report_due.reset();
   mine->history_start_due =
-      HistoryState{request, HistoryPhase::begins, true, opened->seq, opened->utc_us, ""};
+      ViewState{request, ViewPhase::begins, true, opened->seq, opened->utc_us, ""};
   want_all(world, session);
   deliver(world, session, now);
 }
@@ -100,7 +100,7 @@ void deliver_history(WorldState& world, SessionId session, const Clocks& now) {
   if (history.loading != 0 || history.is_complete || world.interest.nearest_wanted(session)) return;
   history.is_complete = true;
   mine.history_report_due =
-      HistoryState{history.request, HistoryPhase::complete, true, history.seq, 0, ""};
+      ViewState{history.request, ViewPhase::complete, true, history.seq, 0, ""};
   deliver(world, session, now);
 }
 

@@ -75,8 +75,8 @@ struct WorldSession {
   std::optional<HistoryRequest> next_history_request;  // the newest request, until it is answered
   bool is_opening_history = false;                     // a worker opens a request
   std::optional<HistoryView> history;                  // nullopt: the session sees the live world
-  std::optional<HistoryState> history_start_due;       // must be sent before any further chunk
-  std::optional<HistoryState>
+  std::optional<ViewState> history_start_due;       // must be sent before any further chunk
+  std::optional<ViewState>
       history_report_due;  // then this: the view is complete, or a request failed
   // When the session's queue was full. No chunks are sent until it drains or the retry interval has
   // passed.

@@ -173,10 +173,10 @@ HistoryRequest any_history_request(SplitMix64& rng) {
   return m;
 }
 
-HistoryState any_history_state(SplitMix64& rng) {
-  HistoryState m;
+ViewState any_view_state(SplitMix64& rng) {
+  ViewState m;
   m.request = 1 + rng.below(1'000'000);
-  m.phase = static_cast<HistoryPhase>(1 + rng.below(kHistoryPhaseMax));
+  m.phase = static_cast<ViewPhase>(1 + rng.below(kViewPhaseMax));
   m.past = rng.below(2) == 0;
   if (m.past) m.seq = any64(rng) >> 1;
   m.utc_us = any_time(rng);
@@ -375,7 +375,7 @@ Message random_message(SplitMix64& rng, std::size_t kind) {
     case 19:
       return any_history_request(rng);
     case 20:
-      return any_history_state(rng);
+      return any_view_state(rng);
     case 21:
       return CommandRequest{rng.below(1000), any_text(rng, 1, kCommandBytesMax)};
     case 22:

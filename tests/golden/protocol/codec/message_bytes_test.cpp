@@ -191,7 +191,7 @@ TEST_CASE("a history state of protocol 2 is read", "[protocol][golden]") {
                                  "10002000080006000700100018000c0010000000000001010300000014000000"
                                  "2c03000000000000c0fd0e18240a06000000000000000000");
   CHECK(read_back ==
-        Message(HistoryState{3, HistoryPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
+        Message(ViewState{3, ViewPhase::begins, true, 812, 1'699'999'999'000'000, ""}));
 }
 
 TEST_CASE("a refused history request of protocol 2 is read", "[protocol][golden]") {
@@ -199,7 +199,7 @@ TEST_CASE("a refused history request of protocol 2 is read", "[protocol][golden]
                                  "1000000052554e3108000c000700080008000000000000151400000010001000"
                                  "080007000000000000000c001000000000000003040000000400000009000000"
                                  "636f6d706163746564000000");
-  CHECK(read_back == Message(HistoryState{4, HistoryPhase::refused, false, 0, 0, "compacted"}));
+  CHECK(read_back == Message(ViewState{4, ViewPhase::refused, false, 0, 0, "compacted"}));
 }
 
 TEST_CASE("a command of protocol 2 is read", "[protocol][golden]") {

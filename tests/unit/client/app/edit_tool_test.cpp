@@ -76,7 +76,7 @@ TEST_CASE_METHOD(Fixture, "an edit in the live world is submitted and counted un
 TEST_CASE_METHOD(Fixture, "an edit in the past is refused with a reason and is in no percentile",
                  "[client_app]") {
   REQUIRE(session.request_history({}).has_value());
-  HistoryState past;
+  ViewState past;
   past.past = true;
   receive(past);
   REQUIRE(session.replica().past());

@@ -6,7 +6,7 @@ using namespace runstone;
 
 namespace {
 
-HistoryState state(std::uint32_t request, HistoryPhase phase, bool past, std::string text = "") {
+ViewState state(std::uint32_t request, ViewPhase phase, bool past, std::string text = "") {
   return {request, phase, past, 5, 0, std::move(text)};
 }
 
@@ -17,16 +17,16 @@ TEST_CASE("a request for the past loads until it is complete", "[replica]") {
   CHECK_FALSE(requests.is_loading());
   CHECK(requests.next({.to = HistoryTarget::sequence, .seq = 5}).request == 1);
   CHECK(requests.is_loading());
-  requests.receive(state(1, HistoryPhase::begins, true));
+  requests.receive(state(1, ViewPhase::begins, true));
   CHECK(requests.is_loading());
-  requests.receive(state(1, HistoryPhase::complete, true));
+  requests.receive(state(1, ViewPhase::complete, true));
   CHECK_FALSE(requests.is_loading());
 }
 
 TEST_CASE("a request for the live world is answered when it begins", "[replica]") {
   HistoryRequests requests;
   requests.next({});
-  requests.receive(state(1, HistoryPhase::begins, false));
+  requests.receive(state(1, ViewPhase::begins, false));
   CHECK_FALSE(requests.is_loading());
 }
 
@@ -35,10 +35,10 @@ TEST_CASE("answers to older requests change nothing, and a refusal is kept until
   HistoryRequests requests;
   requests.next({});
   CHECK(requests.next({}).request == 2);
-  requests.receive(state(1, HistoryPhase::refused, false, "too old"));
+  requests.receive(state(1, ViewPhase::refused, false, "too old"));
   CHECK(requests.is_loading());
   CHECK(requests.refusal().empty());
-  requests.receive(state(2, HistoryPhase::refused, false, "no such edit"));
+  requests.receive(state(2, ViewPhase::refused, false, "no such edit"));
   CHECK_FALSE(requests.is_loading());
   CHECK(requests.refusal() == "no such edit");
   requests.next({});

@@ -254,7 +254,7 @@ TEST_CASE("a history state is refused outside its bounds", "[protocol]") {
   const auto state = [](std::uint32_t number, std::uint8_t phase, bool past, Sequence seq,
                         TimeUs utc_us = 0) {
     return passes_from_server(
-        [=](auto& b) { return wire::CreateHistoryState(b, number, phase, past, seq, utc_us); },
+        [=](auto& b) { return wire::CreateViewState(b, number, phase, past, seq, utc_us); },
         FrameClass::chunks);
   };
   CHECK(state(1, 1, true, kSequenceMax, kWireTimeUsMax));

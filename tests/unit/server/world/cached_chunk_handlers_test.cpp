@@ -147,7 +147,7 @@ TEST_CASE_METHOD(Fixture, "not modified is sent before a session goes to the pas
         decode_message(Sender::server, sent.message.frame_class, *sent.message.bytes, kEdge);
     REQUIRE(message.has_value());
     if (std::holds_alternative<ChunksNotModified>(*message)) order.emplace_back("same");
-    if (std::holds_alternative<HistoryState>(*message)) order.emplace_back("moment");
+    if (std::holds_alternative<ViewState>(*message)) order.emplace_back("moment");
   }
   CHECK(order == std::vector<std::string>{"same", "moment"});
 }

@@ -32,8 +32,8 @@ struct HistoryBench : WorldBench {
                                   std::make_shared<const Chunk>(chunk), now());
     }
   }
-  std::vector<HistoryState> states(SessionId session) const {
-    return environment.messages<HistoryState>(session, kEdge);
+  std::vector<ViewState> states(SessionId session) const {
+    return environment.messages<ViewState>(session, kEdge);
   }
 };
 
@@ -67,8 +67,8 @@ TEST_CASE("few history requests are opened at a time, and of each session only t
   for (SessionId session = 2; session <= 4; ++session) {
     const auto moments = bench.states(session);
     REQUIRE(moments.size() == 2);
-    CHECK(moments[0] == HistoryState{1, HistoryPhase::begins, true, 5, 1000, ""});
-    CHECK(moments[1] == HistoryState{1, HistoryPhase::complete, true, 5, 0, ""});
+    CHECK(moments[0] == ViewState{1, ViewPhase::begins, true, 5, 1000, ""});
+    CHECK(moments[1] == ViewState{1, ViewPhase::complete, true, 5, 0, ""});
   }
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("a session in the past gets no commits, and gets the current world whe
   CHECK(bench.commits(1).empty());
   CHECK(bench.commits(2).size() == 1);
   bench.server.received(1, HistoryRequest{2, HistoryTarget::live, 0, 0}, bench.now());
-  CHECK(bench.states(1).back() == HistoryState{2, HistoryPhase::begins, false, 0, 0, ""});
+  CHECK(bench.states(1).back() == ViewState{2, ViewPhase::begins, false, 0, 0, ""});
   REQUIRE(bench.environment.snapshots.size() == before + 10);
   CHECK(bench.environment.snapshots.back().session == 1);
   bench.edit(2, 2, kAtOrigin, 2);
@@ -110,7 +110,7 @@ TEST_CASE("a chunk that is equal in the next view of the past is not sent again"
   bench.open_one();
   bench.load_all(10);  // every chunk is at version 10, as before
   CHECK(bench.environment.snapshots.size() == before);
-  CHECK(bench.states(1).back().phase == HistoryPhase::complete);
+  CHECK(bench.states(1).back().phase == ViewPhase::complete);
   CHECK(bench.states(1).back().request == 2);
   bench.go_to(1, 3, 20);
   bench.open_one();
@@ -138,7 +138,7 @@ TEST_CASE("a full queue delays the history state and its chunks, and loses none"
   bench.server.drained(1, bench.now());
   bench.load_all();
   CHECK(bench.environment.snapshots.size() == before + 5);
-  CHECK(bench.states(1).back().phase == HistoryPhase::complete);
+  CHECK(bench.states(1).back().phase == ViewPhase::complete);
 }
 
 TEST_CASE(
@@ -151,7 +151,7 @@ TEST_CASE(
   bench.environment.history_requests.clear();
   bench.server.history_opened(1, 1, Unexpected<std::string>{"no such edit"}, bench.now());
   CHECK(bench.states(1).back() ==
-        HistoryState{1, HistoryPhase::refused, false, 0, 0, "no such edit"});
+        ViewState{1, ViewPhase::refused, false, 0, 0, "no such edit"});
   CHECK(bench.environment.history_loads.empty());
 
   bench.go_to(1, 2, 3);
@@ -165,7 +165,7 @@ TEST_CASE(
   CHECK(unavailable[0].keys == std::vector<ChunkKey>{load.key});
   CHECK(bench.environment.lines.back().find("row damaged") != std::string::npos);
   bench.load_all();
-  CHECK(bench.states(1).back().phase == HistoryPhase::complete);
+  CHECK(bench.states(1).back().phase == ViewPhase::complete);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// The entries of Chunks messages. A server encodes a chunk once, without its place in a message,
+// and joins the entries that a session waits for to one message. So many small chunks share one
+// envelope. docs/protocol.md specifies the bytes.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/result.hpp"
+#include "common/runs/chunk.hpp"
+#include "protocol/codec/chunk_codec.hpp"
+#include "protocol/codec/frame.hpp"
+#include "protocol/codec/messages.hpp"
+
+namespace runstone {
+
+/// What a session gets for one chunk. The bytes are shared by all sessions with one encoding.
+struct ChunkEntry {
+  ChunkKey key;
+  std::shared_ptr<const Bytes> bytes;
+  std::size_t runs = 0;  // of a snapshot
+};
+
+/// Makes the snapshot of a chunk. Reads runs and makes no dense copy. Cost: O(runs). Thread: any.
+ChunkEntry encode_snapshot(const ChunkKey& key, const Chunk& chunk, ChunkEncoding encoding);
+/// Requires 1 .. kChunkEditsMax edits as ChunkEdits describes. Thread: any.
+ChunkEntry encode_chunk_edits(const ChunkEdits& edits);
+
+/// Makes a Chunks message. Requires 1 .. kChunksPerMessageMax entries, strictly ascending by key,
+/// and more than one only if they have at most kRunsPerMessageMax runs together. Cost: it copies
+/// the bytes. Thread: any.
+EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries);
+
+// ---- Internal to the message codec
+
+/// Makes an entry of either form, with snapshots as `raw`.
+ChunkEntry encode_answer(const ChunkAnswer& answer);
+/// Returns the byte list of a Chunks message.
+Bytes list_of(std::span<const ChunkEntry> entries);
+/// `key_edge` bounds the keys. `chunk_edge` is the edge of the world's chunks, or 0 if it is not
+/// known: then chunks of any size are accepted.
+Result<std::vector<ChunkAnswer>> decode_answers(ByteView bytes, std::int32_t key_edge,
+                                                std::int32_t chunk_edge);
+
+}  // namespace runstone

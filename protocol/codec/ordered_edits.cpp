@@ -1,0 +1,102 @@
+#include "protocol/codec/ordered_edits.hpp"
+
+#include "common/core/assert.hpp"
+#include "common/edits/descriptor/edit_geometry.hpp"
+#include "protocol/limits.hpp"
+
+namespace runstone {
+
+// An edit:
+//   varint author | u64 instance | varint client sequence | u8 cause | varint subject |
+//   svarint ordered_us minus that of the edit before, of the first edit minus 0 |
+//   svarint ordered_us - submitted_us | varint bytes of the descriptor | descriptor |
+//   varint touched chunks | for each: varint sequence of the edit minus that of the chunk before it
+Bytes encode_ordered_edits(const Commit& commit) {
+  RUNSTONE_ASSERT(!commit.edits.empty() && commit.edits.size() <= kCommitEditsMax);
+  Bytes bytes;
+  ByteWriter out(bytes);
+  Sequence seq = commit.first;
+  TimeUs ordered_us = 0;
+  for (const OrderedEdit& e : commit.edits) {
+    RUNSTONE_ASSERT(e.subject < seq && e.previous.size() <= kTouchedChunksMax);
+    out.varint(e.op.author);
+    out.u64(e.op.instance);
+    out.varint(e.op.seq);
+    out.u8(static_cast<std::uint8_t>(e.cause));
+    out.varint(e.subject);
+    out.svarint(e.ordered_us - ordered_us);
+    out.svarint(e.ordered_us - e.submitted_us);
+    const Bytes descriptor = encode(e.edit);
+    out.varint(descriptor.size());
+    out.bytes(descriptor);
+    out.varint(e.previous.size());
+    for (const Sequence previous : e.previous) {
+      RUNSTONE_ASSERT(previous < seq);
+      out.varint(seq - previous);
+    }
+    ordered_us = e.ordered_us;
+    ++seq;
+  }
+  return bytes;
+}
+
+Result<Sequence> OrderedEditReader::next(OrderedEdit& edit, std::vector<ChunkCoord>& touched) {
+  RUNSTONE_ASSERT(!at_end());
+  edit.op.author =
+      static_cast<AuthorId>(in_.varint_max(0xffff'ffff, "author of an edit exceeds 32 bits"));
+  edit.op.instance = in_.u64();
+  edit.op.seq = in_.varint();
+  const std::uint8_t cause = in_.u8();
+  if (in_.ok() && cause > kCauseMax) in_.reject(ErrorCode::bad_value, "commit cause is unknown");
+  edit.cause = static_cast<Cause>(cause);
+  edit.subject = in_.varint_max(seq_ - 1, "commit subject is not an earlier edit");
+  const auto time = [this](TimeUs from) {
+    return from + in_.svarint_in(-kWireTimeUsMax - from, kWireTimeUsMax - from,
+                                 "commit time is out of range");
+  };
+  edit.ordered_us = ordered_us_ = time(ordered_us_);
+  // The difference is subtracted: a click lies before the edit's order.
+  edit.submitted_us = edit.ordered_us - in_.svarint_in(edit.ordered_us - kWireTimeUsMax,
+                                                       edit.ordered_us + kWireTimeUsMax,
+                                                       "commit time is out of range");
+  take_descriptor(edit);
+  take_previous(edit);
+  if (!in_.ok()) return Unexpected<Error>{in_.error()};
+  touched.clear();
+  if (chunk_edge_ != 0) {
+    // The bound comes before the list: a hostile box may touch millions of chunks. Servers reject
+    // by the same bound.
+    if (touched_chunks_bound(edit.edit, static_cast<std::uint16_t>(chunk_edge_)) >
+        kTouchedChunksMax)
+      return fail(ErrorCode::limit_exceeded, "edit touches too many chunks");
+    touched_chunks(edit.edit, static_cast<std::uint16_t>(chunk_edge_), touched);
+    if (touched.size() != edit.previous.size())
+      return fail(ErrorCode::bad_value,
+                  "commit does not list one previous sequence per touched chunk");
+  }
+  return seq_++;
+}
+
+void OrderedEditReader::take_descriptor(OrderedEdit& edit) {
+  const std::uint64_t size = in_.varint_max(kDescriptorBytesMax, "descriptor is too long");
+  const ByteView bytes = in_.bytes(static_cast<std::size_t>(size));
+  if (!in_.ok()) return;
+  auto descriptor = decode_descriptor(bytes);
+  if (descriptor) {
+    edit.edit = *std::move(descriptor);
+  } else {
+    in_.reject(descriptor.error().code, descriptor.error().what);
+  }
+}
+
+void OrderedEditReader::take_previous(OrderedEdit& edit) {
+  edit.previous.clear();
+  const std::uint64_t count = in_.varint_max(kTouchedChunksMax, "edit touches too many chunks");
+  for (std::uint64_t i = 0; in_.ok() && i < count; ++i) {
+    const std::uint64_t back = in_.varint_max(seq_, "previous sequence lies before the log");
+    if (in_.ok() && back == 0) in_.reject(ErrorCode::bad_value, "an edit cannot precede itself");
+    edit.previous.push_back(seq_ - back);
+  }
+}
+
+}  // namespace runstone
