@@ -1,5 +1,6 @@
 #include "protocol/codec/chunk_entries.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -143,6 +144,31 @@ ChunkEntry encode_chunk_edits(const ChunkEdits& edits) {
   out.varint(list.size());
   out.bytes(list);
   return {edits.key, std::move(bytes), 0};
+}
+
+bool ChunksBuilder::fits(const ChunkEntry& entry) const {
+  if (entries_.empty()) return true;
+  return entries_.size() < kChunksPerMessageMax && runs_ + entry.runs <= kRunsPerMessageMax &&
+         bytes_ + entry.bytes->size() <= kBytesMax &&
+         std::none_of(
+             entries_.begin(), entries_.end(),
+             [&](const ChunkEntry& other) { return other.key == entry.key; });
+}
+
+void ChunksBuilder::add(ChunkEntry entry) {
+  RUNSTONE_ASSERT(fits(entry));
+  bytes_ += entry.bytes->size();
+  runs_ += entry.runs;
+  entries_.push_back(std::move(entry));
+}
+
+EncodedMessage ChunksBuilder::take(std::uint32_t view) {
+  std::sort(entries_.begin(), entries_.end(),
+            [](const ChunkEntry& a, const ChunkEntry& b) { return a.key < b.key; });
+  EncodedMessage message = join_entries(view, entries_);
+  entries_.clear();
+  bytes_ = runs_ = 0;
+  return message;
 }
 
 ChunkEntry encode_answer(const ChunkAnswer& answer) {

@@ -34,6 +34,27 @@ ChunkEntry encode_chunk_edits(const ChunkEdits& edits);
 /// the bytes. Thread: any.
 EncodedMessage join_entries(std::uint32_t view, std::span<const ChunkEntry> entries);
 
+/// Gathers the entries of one message, as many as a sender should join. Thread: one.
+class ChunksBuilder {
+ public:
+  /// Of the entries in a message. A client decodes a message when it has all of it, so more would
+  /// show chunks later.
+  static constexpr std::size_t kBytesMax = 4 * 1024;
+
+  /// Returns true if the entry may join those that were added. The first entry always may. A chunk
+  /// that is added already may not: its entries keep their order in two messages.
+  bool fits(const ChunkEntry& entry) const;
+  /// Adds an entry that fits. Entries may come in any order.
+  void add(ChunkEntry entry);
+  bool empty() const { return entries_.empty(); }
+  /// Returns the message and begins the next one. Requires an entry.
+  EncodedMessage take(std::uint32_t view);
+
+ private:
+  std::vector<ChunkEntry> entries_;
+  std::size_t bytes_ = 0, runs_ = 0;
+};
+
 // ---- Internal to the message codec
 
 /// Makes an entry of either form, with snapshots as `raw`.

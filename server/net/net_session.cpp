@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/os/steady_clock.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "server/net/net_log.hpp"
 
 namespace runstone {
@@ -77,7 +78,7 @@ bool NetSession::send(const EncodedMessage& message) {
     if (!queue_.push(message)) return false;
     wakes = take_wake();
     // The cost of sending this message is not in commit_send_ns before the writer has run.
-    if (message.frame_class == FrameClass::edits && is_woken_ && !std::exchange(is_due_, true)) {
+    if (class_of(message) == FrameClass::edits && is_woken_ && !std::exchange(is_due_, true)) {
       counters_.commits_due.fetch_add(1, std::memory_order_relaxed);
     }
   }
@@ -85,10 +86,10 @@ bool NetSession::send(const EncodedMessage& message) {
   return true;
 }
 
-std::optional<ChunkPlace> NetSession::reserve_chunk(const ChunkKey& key) {
+std::optional<ChunkPlace> NetSession::reserve_chunk(const ChunkKey& key, std::uint32_t view) {
   const std::lock_guard lock(mutex_);
   if (closing_) return ChunkPlace{0};  // no place: filling it does nothing
-  return queue_.reserve_chunk(key);
+  return queue_.reserve_chunk(key, view);
 }
 
 void NetSession::forget_outside(const View& view) {
@@ -99,11 +100,11 @@ void NetSession::forget_outside(const View& view) {
   wake_writer();  // there may be room again, or a filled chunk may be first now
 }
 
-void NetSession::fill_chunk(ChunkPlace place, const EncodedMessage& message) {
+void NetSession::fill_chunk(ChunkPlace place, const ChunkEntry& chunk) {
   {
     const std::lock_guard lock(mutex_);
     if (closing_) return;
-    queue_.fill(place, message);
+    queue_.fill(place, chunk);
   }
   wake_writer();
 }
@@ -189,13 +190,13 @@ asio::awaitable<void> NetSession::wait_for_read_budget(std::size_t bytes_read) {
   (void)error;  // cancelled when the stream is closed; the next read fails then
 }
 
-Result<void> NetSession::on_message(FrameClass frame_class, ByteView body) {
+Result<void> NetSession::on_message(MessageKind kind, ByteView body) {
   counters_.messages_in.fetch_add(1, std::memory_order_relaxed);
   if (!messages_.take(1, steady_now_us())) {
     broken_rule_ = GoodbyeReason::flooding;
     return fail(ErrorCode::limit_exceeded, "more messages than the rate allows");
   }
-  auto message = decode_message(Sender::client, frame_class, body, chunk_edge_);
+  auto message = decode_message(Sender::client, kind, body, chunk_edge_);
   if (!message) {
     broken_rule_ = GoodbyeReason::malformed_message;
     return Unexpected<Error>{message.error()};
@@ -232,8 +233,8 @@ void NetSession::refuse(const Error& error) {
 
 asio::awaitable<void> NetSession::read_loop(std::shared_ptr<NetSession> self) {
   Bytes buffer(kReadBytes);
-  const FrameReader::OnMessage on_message = [raw = self.get()](FrameClass c, ByteView body) {
-    return raw->on_message(c, body);
+  const FrameReader::OnMessage on_message = [raw = self.get()](MessageKind kind, ByteView body) {
+    return raw->on_message(kind, body);
   };
   bool refused = false;
   for (;;) {

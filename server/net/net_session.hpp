@@ -14,6 +14,7 @@
 #include <mutex>
 #include <string>
 
+#include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 #include "server/limits/token_bucket.hpp"
@@ -69,9 +70,10 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   /// Queues a message. Returns false if its class is full. After close() the message is dropped,
   /// and the call returns true.
   bool send(const EncodedMessage& message);
-  /// Reserves a place for a chunk. Returns nullopt if the class is full.
-  std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key);
-  void fill_chunk(ChunkPlace place, const EncodedMessage& message);
+  /// Reserves a place for a chunk that answers the view of this number. Returns nullopt if the
+  /// class is full.
+  std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key, std::uint32_t view);
+  void fill_chunk(ChunkPlace place, const ChunkEntry& chunk);
   /// Drops queued chunks outside of the view of which nothing was sent.
   void forget_outside(const View& view);
   void set_encoding(ChunkEncoding encoding) { encoding_.store(encoding); }
@@ -93,7 +95,7 @@ class NetSession : public std::enable_shared_from_this<NetSession> {
   static asio::awaitable<void> read_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> write_loop(std::shared_ptr<NetSession> self);
   static asio::awaitable<void> end_after_linger(std::shared_ptr<NetSession> self);
-  Result<void> on_message(FrameClass frame_class, ByteView body);
+  Result<void> on_message(MessageKind kind, ByteView body);
   Result<void> on_receive_ack(const ReceiveAck& ack);
   void refuse(const Error& error);
   asio::awaitable<void> wait_for_read_budget(std::size_t bytes_read);

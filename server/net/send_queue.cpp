@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/assert.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace runstone {
 
@@ -31,47 +32,66 @@ std::size_t SendQueue::count_limit(FrameClass c) const {
 }
 
 bool SendQueue::push(const EncodedMessage& message) {
-  Lane& mine = lane(message.frame_class);
+  const FrameClass frame_class = class_of(message);
+  Lane& mine = lane(frame_class);
   const std::size_t size = message.bytes->size();
-  const bool has_place = mine.items.size() < count_limit(message.frame_class);
-  if (!has_place || (!mine.items.empty() && mine.bytes + size > limit(message.frame_class))) {
+  const bool has_place = mine.items.size() < count_limit(frame_class);
+  if (!has_place || (!mine.items.empty() && mine.bytes + size > limit(frame_class))) {
     refused_ = true;
     return false;
   }
-  mine.items.push_back({message.bytes, 0, std::nullopt});
+  mine.items.push_back({message, 0, {}, 0});
   mine.bytes += size;
   return true;
 }
 
-std::optional<ChunkPlace> SendQueue::reserve_chunk(const std::optional<ChunkKey>& key) {
+std::optional<ChunkPlace> SendQueue::reserve_chunk(const ChunkKey& key, std::uint32_t view) {
   Lane& mine = lane(FrameClass::chunks);
   if (mine.items.size() >= limits_.chunk_count || mine.bytes >= chunk_bytes_max()) {
     refused_ = true;
     return std::nullopt;
   }
-  mine.items.push_back({nullptr, next_place_, key});
+  mine.items.push_back({{}, next_place_, {key, nullptr, 0}, view});
   return next_place_++;
 }
 
-void SendQueue::fill(ChunkPlace place, const EncodedMessage& message) {
-  RUNSTONE_ASSERT(message.frame_class == FrameClass::chunks);
+void SendQueue::fill(ChunkPlace place, const ChunkEntry& chunk) {
   Lane& mine = lane(FrameClass::chunks);
-  const auto found = std::find_if(mine.items.begin(), mine.items.end(),
-                                  [&](const Item& item) { return item.place == place; });
+  const auto found = std::find_if(mine.items.begin(), mine.items.end(), [&](const Item& item) {
+    return item.is_place() && item.place == place;
+  });
   if (found == mine.items.end()) return;
-  found->bytes = message.bytes;
-  mine.bytes += message.bytes->size();
+  RUNSTONE_ASSERT(found->chunk.key == chunk.key && !found->is_ready());
+  found->chunk = chunk;
+  mine.bytes += chunk.bytes->size();
+}
+
+void SendQueue::join_chunks() {
+  Lane& mine = lane(FrameClass::chunks);
+  const std::uint32_t view = mine.items.front().view;
+  ChunksBuilder chunks;
+  while (!mine.items.empty()) {
+    Item& item = mine.items.front();
+    if (!item.is_place() || !item.is_ready() || item.view != view || !chunks.fits(item.chunk))
+      break;
+    mine.bytes -= item.chunk.bytes->size();
+    chunks.add(std::move(item.chunk));
+    mine.items.pop_front();
+  }
+  mine.items.push_front({chunks.take(view), 0, {}, 0});
+  mine.bytes += mine.items.front().message.bytes->size();
 }
 
 bool SendQueue::cut(FrameClass frame_class, std::size_t body_max, Batch& batch) {
   if (!can_cut(frame_class)) return false;
   Lane& mine = lane(frame_class);
-  const std::shared_ptr<const Bytes>& bytes = mine.items.front().bytes;
-  const std::size_t count = std::min(body_max, bytes->size() - mine.sent);
-  const ByteView body = ByteView(*bytes).subspan(mine.sent, count);
-  const bool more = mine.sent + count < bytes->size();
-  batch.pieces.push_back({frames_.next(frame_class, count, more), body});
-  batch.messages.push_back(bytes);
+  if (mine.items.front().is_place()) join_chunks();
+  const EncodedMessage& message = mine.items.front().message;
+  const std::size_t count = std::min(body_max, message.bytes->size() - mine.sent);
+  const ByteView body = ByteView(*message.bytes).subspan(mine.sent, count);
+  const bool more = mine.sent + count < message.bytes->size();
+  batch.pieces.push_back({frames_.next(message.kind, count, more), body});
+  batch.messages.push_back(message.bytes);
   batch.bytes += kFrameHeaderBytes + count;
   batch.has_edits = batch.has_edits || frame_class == FrameClass::edits;
   if (frame_class == FrameClass::chunks) batch.chunk_bytes += kFrameHeaderBytes + count;
@@ -112,17 +132,13 @@ bool SendQueue::take(Batch& batch, std::size_t chunk_body_max) {
 
 void SendQueue::forget_outside(const View& view) {
   Lane& mine = lane(FrameClass::chunks);
-  const auto keeps = [&](const Item& item) { return !item.key || view.contains(item.key->at); };
-  std::deque<Item> kept;
-  for (std::size_t i = 0; i < mine.items.size(); ++i) {
-    Item& item = mine.items[i];
-    if (keeps(item) || (i == 0 && mine.sent > 0)) {
-      kept.push_back(std::move(item));
-    } else if (item.bytes != nullptr) {
-      mine.bytes -= item.bytes->size();
-    }
+  const auto goes = [&](const Item& item) {
+    return item.is_place() && !view.contains(item.chunk.key.at);
+  };
+  for (const Item& item : mine.items) {
+    if (goes(item) && item.is_ready()) mine.bytes -= item.chunk.bytes->size();
   }
-  mine.items = std::move(kept);
+  std::erase_if(mine.items, goes);
 }
 
 void SendQueue::drop_chunks() {

@@ -3,7 +3,8 @@
 // So an edit waits for at most one fragment of terrain, and each class keeps its own order. No
 // class is starved: when kPassedFragments fragments of other classes have passed a class, its next
 // fragment is sent. A chunk reserves a place in the queue before a worker has encoded it, and later
-// messages of its class wait for it.
+// messages of its class wait for it. Chunks that wait next to each other are joined to one message
+// when their turn comes: the slower the link, the fewer envelopes it carries.
 // Threads: one; the session guards it with a mutex (a leaf).
 #pragma once
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 
@@ -41,11 +43,11 @@ class SendQueue {
   /// Queues a message. Returns false if its class is full. An empty class accepts a message of any
   /// size.
   bool push(const EncodedMessage& message);
-  /// Reserves a place at the end of the chunk class. Returns nullopt if the class is full. `key`:
-  /// the chunk that will fill it.
-  std::optional<ChunkPlace> reserve_chunk(const std::optional<ChunkKey>& key = std::nullopt);
-  /// Fills a place. Does nothing if the place was dropped.
-  void fill(ChunkPlace place, const EncodedMessage& message);
+  /// Reserves a place at the end of the chunk class for this chunk, as an answer to the view of this
+  /// number. Returns nullopt if the class is full.
+  std::optional<ChunkPlace> reserve_chunk(const ChunkKey& key, std::uint32_t view);
+  /// Fills a place with its chunk. Does nothing if the place was dropped.
+  void fill(ChunkPlace place, const ChunkEntry& chunk);
 
   /// One write: headers and pieces of bodies in the order of sending. It is reused between writes.
   struct Batch {
@@ -85,10 +87,14 @@ class SendQueue {
   bool take_drained();
 
  private:
+  /// A message, or the place of a chunk.
   struct Item {
-    std::shared_ptr<const Bytes> bytes;  // null: a place that is not filled yet
+    EncodedMessage message;  // without bytes: a place
     ChunkPlace place = 0;
-    std::optional<ChunkKey> key;
+    ChunkEntry chunk;        // of a place; without bytes until it is filled
+    std::uint32_t view = 0;  // of a place
+    bool is_place() const { return message.bytes == nullptr; }
+    bool is_ready() const { return !is_place() || chunk.bytes != nullptr; }
   };
   struct Lane {
     std::deque<Item> items;
@@ -103,9 +109,12 @@ class SendQueue {
   std::size_t count_limit(FrameClass c) const;
   bool can_cut(FrameClass frame_class) const {
     const Lane& mine = lane(frame_class);
-    return !mine.items.empty() && mine.items.front().bytes != nullptr;
+    return !mine.items.empty() && mine.items.front().is_ready();
   }
   bool cut(FrameClass frame_class, std::size_t body_max, Batch& batch);
+  /// Makes one message of the first chunks, as many as are filled, answer the same view and fit.
+  /// Requires that the first item is a filled chunk.
+  void join_chunks();
 
   static constexpr std::size_t kPassedFragments = 4;
 

@@ -9,9 +9,9 @@
 
 namespace runstone {
 
-bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
-                                const ChunkPtr& chunk) {
-  const auto place = session->reserve_chunk(key);
+bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                                const ChunkKey& key, const ChunkPtr& chunk) {
+  const auto place = session->reserve_chunk(key, view);
   if (!place) return false;
   asio::post(workers_, [this, session, key, chunk, place = *place] {
     session->fill_chunk(place, encoded_.snapshot(key, chunk, session->encoding()));
@@ -19,9 +19,9 @@ bool ChunkSender::send_snapshot(const std::shared_ptr<NetSession>& session, cons
   return true;
 }
 
-bool ChunkSender::send_update(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
-                              const ChunkPtr& chunk, Version held) {
-  const auto place = session->reserve_chunk(key);
+bool ChunkSender::send_update(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                              const ChunkKey& key, const ChunkPtr& chunk, Version held) {
+  const auto place = session->reserve_chunk(key, view);
   if (!place) return false;
   asio::post(workers_, [this, session, key, chunk, held, place = *place] {
     session->fill_chunk(place, encode_update(key, chunk, held, session->encoding()));
@@ -29,8 +29,8 @@ bool ChunkSender::send_update(const std::shared_ptr<NetSession>& session, const 
   return true;
 }
 
-EncodedMessage ChunkSender::encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
-                                          ChunkEncoding encoding) {
+ChunkEntry ChunkSender::encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
+                                      ChunkEncoding encoding) {
   std::optional<ChunkEdits> edits;
   const auto read = chunks_.with_reader([&](WorldReader& reader) {
     auto missing =
@@ -42,7 +42,7 @@ EncodedMessage ChunkSender::encode_update(const ChunkKey& key, const ChunkPtr& c
     }
   });
   if (!read) logger("store").error("{}", read.error().message());
-  return edits ? encode_message(*edits) : encoded_.snapshot(key, chunk, encoding);
+  return edits ? encode_chunk_edits(*edits) : encoded_.snapshot(key, chunk, encoding);
 }
 
 }  // namespace runstone

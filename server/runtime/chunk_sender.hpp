@@ -21,21 +21,22 @@ class ChunkSender {
   ChunkSender(asio::thread_pool& workers, ChunkSource& chunks)
       : workers_(workers), chunks_(chunks) {}
 
-  /// Queues the chunk's snapshot. Returns false if the session's queue is full.
-  bool send_snapshot(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
-                     const ChunkPtr& chunk);
+  /// Queues the chunk's snapshot as an answer to the view of this number. Returns false if the
+  /// session's queue is full.
+  bool send_snapshot(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                     const ChunkKey& key, const ChunkPtr& chunk);
   /// Queues the edits that lead from version `held` to the chunk, or its snapshot if that is
   /// shorter or if the log cannot be read. Requires that these edits are durable. Returns false if
   /// the session's queue is full.
-  bool send_update(const std::shared_ptr<NetSession>& session, const ChunkKey& key,
-                   const ChunkPtr& chunk, Version held);
+  bool send_update(const std::shared_ptr<NetSession>& session, std::uint32_t view,
+                   const ChunkKey& key, const ChunkPtr& chunk, Version held);
 
   /// Returns how many snapshots were encoded. Thread: any.
   std::uint64_t encoded_count() const { return encoded_.encoded(); }
 
  private:
-  EncodedMessage encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
-                               ChunkEncoding encoding);
+  ChunkEntry encode_update(const ChunkKey& key, const ChunkPtr& chunk, Version held,
+                           ChunkEncoding encoding);
 
   asio::thread_pool& workers_;
   ChunkSource& chunks_;

@@ -4,11 +4,11 @@
 
 namespace runstone {
 
-EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chunk,
-                                       ChunkEncoding encoding) {
+ChunkEntry EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chunk,
+                                   ChunkEncoding encoding) {
   const EntryKey id{key, chunk.get(), encoding};
-  std::promise<EncodedMessage> promise;
-  std::shared_future<EncodedMessage> known;
+  std::promise<ChunkEntry> promise;
+  std::shared_future<ChunkEntry> known;
   {
     const std::lock_guard lock(mutex_);
     auto found = entries_.find(id);
@@ -18,7 +18,7 @@ EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chun
     }
     if (found != entries_.end()) {
       by_use_.splice(by_use_.begin(), by_use_, found->second.place);
-      known = found->second.message;
+      known = found->second.snapshot;
     } else {
       by_use_.push_front(id);
       entries_.emplace(id, Entry{chunk, promise.get_future().share(), 0, by_use_.begin()});
@@ -27,16 +27,16 @@ EncodedMessage EncodedChunks::snapshot(const ChunkKey& key, const ChunkPtr& chun
   }
   if (known.valid()) return known.get();
 
-  EncodedMessage message = encode_snapshot(key, *chunk, encoding);
-  promise.set_value(message);
+  ChunkEntry snapshot = encode_snapshot(key, *chunk, encoding);
+  promise.set_value(snapshot);
   const std::lock_guard lock(mutex_);
   const auto entry = entries_.find(id);
   if (entry == entries_.end() || entry->second.bytes != 0)
-    return message;  // evicted meanwhile, perhaps encoded again
-  entry->second.bytes = message.bytes->size();
+    return snapshot;  // evicted meanwhile, perhaps encoded again
+  entry->second.bytes = snapshot.bytes->size();
   bytes_ += entry->second.bytes;
   while (bytes_ > bytes_max_) drop(entries_.find(by_use_.back()));
-  return message;
+  return snapshot;
 }
 
 void EncodedChunks::drop(Entries::iterator entry) {

@@ -1,5 +1,5 @@
 // EncodedChunks: a cache of encoded snapshots. Players in one place need the same chunks at the
-// same versions, so each is encoded once in each encoding, and every session queues the same bytes.
+// same versions, so each is encoded once in each encoding, and every session queues the same entry.
 // The least recently used are evicted.
 // Threads: any.
 #pragma once
@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "common/runs/chunk.hpp"
-#include "protocol/codec/messages.hpp"
+#include "protocol/codec/chunk_entries.hpp"
 
 namespace runstone {
 
@@ -23,21 +23,21 @@ class EncodedChunks {
 
   explicit EncodedChunks(std::size_t bytes_max = kBytesMax) : bytes_max_(bytes_max) {}
 
-  /// Returns the chunk's snapshot message. Encodes it, unless it is cached. Waits if another thread
-  /// encodes it.
-  EncodedMessage snapshot(const ChunkKey& key, const ChunkPtr& chunk, ChunkEncoding encoding);
+  /// Returns the chunk's snapshot. Encodes it, unless it is cached. Waits if another thread encodes
+  /// it.
+  ChunkEntry snapshot(const ChunkKey& key, const ChunkPtr& chunk, ChunkEncoding encoding);
 
   /// Returns how many snapshots were encoded.
   std::uint64_t encoded() const;
-  /// Returns the bytes of the cached messages.
+  /// Returns the bytes of the cached snapshots.
   std::size_t bytes() const;
 
  private:
   using EntryKey = std::tuple<ChunkKey, const Chunk*, ChunkEncoding>;
   struct Entry {
     std::weak_ptr<const Chunk> chunk;  // detects an address that was used again
-    std::shared_future<EncodedMessage> message;
-    std::size_t bytes = 0;  // 0 until the message is encoded
+    std::shared_future<ChunkEntry> snapshot;
+    std::size_t bytes = 0;  // 0 until the snapshot is encoded
     std::list<EntryKey>::iterator place;
   };
   using Entries = std::map<EntryKey, Entry>;

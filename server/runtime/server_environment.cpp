@@ -30,16 +30,16 @@ void ServerEnvironment::set_features(SessionId session, std::uint64_t features) 
 
 void ServerEnvironment::opened(SessionId session) { listener_.opened(session); }
 
-bool ServerEnvironment::send_snapshot(SessionId session, const ChunkKey& key,
+bool ServerEnvironment::send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
                                       const ChunkPtr& chunk) {
   const auto& net = sessions_.find(session);
-  return net == nullptr || sender_.send_snapshot(net, key, chunk);
+  return net == nullptr || sender_.send_snapshot(net, view, key, chunk);
 }
 
-bool ServerEnvironment::send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                                    Version held) {
+bool ServerEnvironment::send_update(SessionId session, std::uint32_t view, const ChunkKey& key,
+                                    const ChunkPtr& chunk, Version held) {
   const auto& net = sessions_.find(session);
-  return net == nullptr || sender_.send_update(net, key, chunk, held);
+  return net == nullptr || sender_.send_update(net, view, key, chunk, held);
 }
 
 void ServerEnvironment::forget_outside(SessionId session, const View& view) {

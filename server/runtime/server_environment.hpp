@@ -45,9 +45,10 @@ class ServerEnvironment final : public WorldEnvironment {
   void set_encoding(SessionId session, ChunkEncoding encoding) override;
   void set_features(SessionId session, std::uint64_t features) override;
   void opened(SessionId session) override;
-  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override;
-  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                   Version held) override;
+  bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
+                     const ChunkPtr& chunk) override;
+  bool send_update(SessionId session, std::uint32_t view, const ChunkKey& key,
+                   const ChunkPtr& chunk, Version held) override;
   void forget_outside(SessionId session, const View& view) override;
   void close(SessionId session, GoodbyeReason reason, const std::string& text) override;
   bool log_has_room(std::size_t records) const override;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/key_text.hpp"
+#include "server/world/delivery.hpp"
 
 namespace runstone {
 namespace {
@@ -57,7 +58,9 @@ ClaimAnswer answer_claim(WorldState& world, SessionId session, const ChunkKey& k
     mine.claims.drop(key);
     return ClaimAnswer::none;
   }
-  if (!world.environment.send_update(session, key, chunk, claim->version)) return ClaimAnswer::full;
+  if (!world.environment.send_update(session, view_in_force(world, session), key, chunk,
+                                     claim->version))
+    return ClaimAnswer::full;
   mine.claims.drop(key);
   ++world.counters.updates_sent;
   return ClaimAnswer::queued;
@@ -70,7 +73,7 @@ bool send_not_modified(WorldState& world, SessionId session, bool is_more) {
   while (due.size() >= (is_more ? kChunksNotModifiedMax : 1)) {
     const std::size_t count = std::min(due.size(), kChunksNotModifiedMax);
     const auto end = due.begin() + static_cast<std::ptrdiff_t>(count);
-    ChunksNotModified same{{due.begin(), end}};
+    ChunksNotModified same{view_in_force(world, session), {due.begin(), end}};
     // A chunk that left the view and came back may be due twice. The newer version is sent.
     const auto newest_first = [](const UnmodifiedChunk& a, const UnmodifiedChunk& b) {
       return a.key != b.key ? a.key < b.key : a.seq > b.seq;

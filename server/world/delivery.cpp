@@ -20,18 +20,18 @@ void put_off(WorldState& world, SessionId session, const ChunkKey& key, const Cl
   world.interest.set_state(session, key, ChunkInterest::wanted);
 }
 
-/// Sends the history states that must precede the session's next chunk. Returns false if its queue
-/// is full.
+/// Sends the reports that must precede the session's next chunk. Returns false if its queue is
+/// full.
 bool send_view_states(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
-  if (!mine.history_start_due && !mine.history_report_due) return true;
+  if (!mine.begins_due && !mine.refused_due && !mine.complete_due) return true;
   // Answers about the live world precede the state that ends it.
   if (!send_not_modified(world, session, false)) {
     mine.stalled_us = now.steady_us;
     return false;
   }
   if (!send_uniform(world, session, now)) return false;
-  for (std::optional<ViewState>* due : {&mine.history_start_due, &mine.history_report_due}) {
+  for (std::optional<ViewState>* due : {&mine.begins_due, &mine.refused_due, &mine.complete_due}) {
     if (!*due) continue;
     if (!world.environment.send(session, encode_message(**due))) {
       ++world.counters.queue_full;
@@ -55,12 +55,18 @@ bool queue_uniform(WorldState& world, SessionId session, const ChunkKey& key, co
   return true;
 }
 
-/// Sends the uniform chunks that are due unless loads under way may soon add more.
-void send_uniform_if_last(WorldState& world, SessionId session, const Clocks& now) {
+/// Ends a delivery: sends the uniform chunks that are due unless loads under way may soon add more,
+/// and reports once that every chunk of the view was answered.
+void end_delivery(WorldState& world, SessionId session, const Clocks& now) {
   WorldSession& mine = *world.find(session);
   const bool more_come = world.interest.find(session)->count(ChunkInterest::waiting) > 0 ||
                          (mine.history && mine.history->loading > 0);
-  if (!more_come) send_uniform(world, session, now);
+  if (more_come || !send_uniform(world, session, now)) return;
+  const bool is_answered = mine.not_modified_due.empty() && !world.interest.nearest_wanted(session);
+  if (mine.is_view_complete || !is_answered) return;
+  mine.is_view_complete = true;
+  mine.complete_due = view_state(world, session, ViewPhase::complete);
+  send_view_states(world, session, now);
 }
 
 }  // namespace
@@ -71,10 +77,10 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   if (is_stalled(world, mine, now)) return false;
   // A chunk that is due twice is sent at its newer version.
   const auto before = [](const UniformChunk& a, const UniformChunk& b) {
-    return a.key != b.key ? is_before_in_list(a.key.at, b.key.at) : b.version < a.version;
+    return a.key != b.key ? a.key < b.key : b.version < a.version;
   };
   const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
-  UniformChunks message{mine.uniform};
+  UniformChunks message{view_in_force(world, session), mine.uniform};
   std::sort(message.chunks.begin(), message.chunks.end(), before);
   message.chunks.erase(std::unique(message.chunks.begin(), message.chunks.end(), same),
                        message.chunks.end());
@@ -88,18 +94,42 @@ bool send_uniform(WorldState& world, SessionId session, const Clocks& now) {
   return true;
 }
 
+std::uint32_t view_in_force(const WorldState& world, SessionId session) {
+  const std::optional<View>& view = world.interest.find(session)->view();
+  return view ? view->number : 0;
+}
+
+ViewState view_state(const WorldState& world, SessionId session, ViewPhase phase) {
+  const WorldSession& mine = *world.find(session);
+  ViewState state;
+  state.request = mine.history_request;
+  state.view = view_in_force(world, session);
+  state.phase = phase;
+  state.past = mine.history.has_value();
+  if (mine.history) {
+    state.seq = mine.history->seq;
+    state.utc_us = mine.history->utc_us;
+  }
+  return state;
+}
+
 void forget_unsent(WorldState& world, SessionId session) {
   WorldSession& mine = *world.find(session);
-  const View& view = *world.interest.find(session)->view();
-  std::erase_if(mine.uniform,
-                [&](const UniformChunk& chunk) { return !view.contains(chunk.key.at); });
-  world.environment.forget_outside(session, view);
+  const SessionInterest& interest = *world.interest.find(session);
+  const auto is_void = [&interest](const auto& chunk) {
+    const auto state = interest.state(chunk.key);
+    return state != ChunkInterest::subscribed && state != ChunkInterest::history_sent;
+  };
+  std::erase_if(mine.uniform, is_void);
+  std::erase_if(mine.not_modified_due, is_void);
+  world.environment.forget_outside(session, *interest.view());
 }
 
 bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
                   ChunkInterest then, const Clocks& now) {
   if (chunk == nullptr) {
-    const ChunkUnavailable unavailable{{key}, UnavailableReason::damaged};
+    const ChunkUnavailable unavailable{
+        view_in_force(world, session), {key}, UnavailableReason::damaged};
     if (!world.environment.send(session, encode_message(unavailable))) {
       put_off(world, session, key, now);
       return false;
@@ -117,7 +147,8 @@ bool answer_chunk(WorldState& world, SessionId session, const ChunkKey& key, con
   }
   const auto send = [&] {
     return chunk->voxels.is_uniform() ? queue_uniform(world, session, key, *chunk, now)
-                                      : world.environment.send_snapshot(session, key, chunk);
+                                      : world.environment.send_snapshot(
+                                            session, view_in_force(world, session), key, chunk);
   };
   if (held == ClaimAnswer::full || !send()) {
     put_off(world, session, key, now);
@@ -149,8 +180,8 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   mine->stalled_us.reset();
   if (!send_view_states(world, session, now)) return;
   if (mine->history) {
-    deliver_history(world, session, now);
-    return send_uniform_if_last(world, session, now);
+    deliver_history(world, session);
+    return end_delivery(world, session, now);
   }
   WorldChunks& chunks = world.authority.chunks();
   const SessionInterest& interest = *world.interest.find(session);
@@ -169,7 +200,7 @@ void deliver(WorldState& world, SessionId session, const Clocks& now) {
   const bool is_more =
       world.interest.nearest_wanted(session) || interest.count(ChunkInterest::waiting) != 0;
   send_not_modified(world, session, is_more);
-  send_uniform_if_last(world, session, now);
+  end_delivery(world, session, now);
   start_loads(world);
 }
 

@@ -13,7 +13,12 @@ void deliver(WorldState& world, SessionId session, const Clocks& now);
 /// Sends the uniform chunks that are due for the session, in one message. Returns false if its
 /// queue is full; the chunks stay due.
 bool send_uniform(WorldState& world, SessionId session, const Clocks& now);
-/// Drops chunks that are queued for the session and lie outside of its view.
+/// Returns the number of the session's view in force, or 0 before the first one. Answers carry it.
+std::uint32_t view_in_force(const WorldState& world, SessionId session);
+/// Describes the state of the world that the session sees.
+ViewState view_state(const WorldState& world, SessionId session, ViewPhase phase);
+/// Drops chunks that are queued for the session and lie outside of its view or will be answered
+/// anew.
 void forget_unsent(WorldState& world, SessionId session);
 /// Queues a wanted chunk for the session and moves it to the state `then`. Sends "chunk
 /// unavailable" if `chunk` is null. Returns false if the session's queue is full; the chunk stays

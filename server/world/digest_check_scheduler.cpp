@@ -27,6 +27,8 @@ void send_digest_check(WorldState& world, SessionId session) {
     check.entries.push_back({*key, chunk->version, digest});
   }
   if (check.entries.empty()) return;
+  std::sort(check.entries.begin(), check.entries.end(),
+            [](const DigestCheckEntry& a, const DigestCheckEntry& b) { return a.key < b.key; });
   if (send_or_skip(world, session, encode_message(check))) ++world.counters.digest_checks_sent;
 }
 

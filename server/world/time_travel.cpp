@@ -27,14 +27,23 @@ void open_next(WorldState& world, SessionId session) {
   world.environment.open_history(session, *mine.next_history_request);
 }
 
+/// Answers a request: the session sees another state of the world from here on.
+void begin_state(WorldState& world, SessionId session, std::uint32_t request, const Clocks& now) {
+  WorldSession& mine = *world.find(session);
+  mine.history_request = request;
+  mine.begins_due = view_state(world, session, ViewPhase::begins);
+  mine.refused_due.reset();
+  mine.complete_due.reset();
+  mine.is_view_complete = mine.begins_due->view == 0;
+  want_all(world, session);
+  deliver(world, session, now);
+}
+
 void return_to_live(WorldState& world, SessionId session, std::uint32_t request,
                     const Clocks& now) {
   WorldSession& mine = *world.find(session);
   mine.history.reset();
-  mine.history_start_due = ViewState{request, ViewPhase::begins, false, 0, 0, ""};
-  mine.history_report_due.reset();
-  want_all(world, session);
-  deliver(world, session, now);
+  begin_state(world, session, request, now);
 }
 
 }  // namespace
@@ -68,26 +77,21 @@ void on_history_opened(WorldState& world, SessionId session, std::uint32_t reque
     return open_next(world, session);
   mine->next_history_request.reset();
   if (!opened) {
-    const bool is_past = mine->history.has_value();
-    mine->history_report_due =
-        ViewState{request, ViewPhase::refused, is_past, is_past ? mine->history->seq : 0,
-                     0,       opened.error()};
+    mine->history_request = request;
+    mine->refused_due = view_state(world, session, ViewPhase::refused);
+    mine->refused_due->text = opened.error();
     return deliver(world, session, now);
   }
   HistoryView history;
   history.number = ++world.history_count;
-  history.request = request;
   history.seq = opened->seq;
+  history.utc_us = opened->utc_us;
   if (mine->history) history.sent = std::move(mine->history->sent);
   mine->history = std::move(history);
-  mine->history_report_due.reset();
-  mine->history_start_due =
-      ViewState{request, ViewPhase::begins, true, opened->seq, opened->utc_us, ""};
-  want_all(world, session);
-  deliver(world, session, now);
+  begin_state(world, session, request, now);
 }
 
-void deliver_history(WorldState& world, SessionId session, const Clocks& now) {
+void deliver_history(WorldState& world, SessionId session) {
   WorldSession& mine = *world.find(session);
   HistoryView& history = *mine.history;
   while (history.loading < kHistoryChunksLoadingMax) {
@@ -97,11 +101,6 @@ void deliver_history(WorldState& world, SessionId session, const Clocks& now) {
     ++history.loading;
     world.environment.load_history_chunk(session, history.number, history.seq, *key);
   }
-  if (history.loading != 0 || history.is_complete || world.interest.nearest_wanted(session)) return;
-  history.is_complete = true;
-  mine.history_report_due =
-      ViewState{history.request, ViewPhase::complete, true, history.seq, 0, ""};
-  deliver(world, session, now);
 }
 
 void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view_number,
@@ -124,9 +123,7 @@ void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view_n
 }
 
 void forget_sent(WorldSession& session) {
-  if (!session.history) return;
-  session.history->sent.clear();
-  session.history->is_complete = false;
+  if (session.history) session.history->sent.clear();
 }
 
 }  // namespace runstone

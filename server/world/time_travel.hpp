@@ -1,8 +1,8 @@
 // Time travel: a session sees its view as it was after an earlier edit, read-only. Workers make its
 // chunks from base, keyframes and log. It gets no commits meanwhile; other sessions are not
 // affected. A chunk whose version the session has already is not sent again, so moving in time
-// costs what differs. A history state message precedes the first chunk of each view, in the frame
-// class of chunks, so the order of messages tells to which view a chunk belongs.
+// costs what differs. ViewState precedes the first chunk of each state, in the frame class of
+// chunks, so the order of messages tells which state a chunk shows.
 #pragma once
 #include <string>
 
@@ -27,7 +27,7 @@ void on_history_chunk(WorldState& world, SessionId session, std::uint32_t view, 
                       const ChunkPtr& chunk, const Clocks& now);
 
 /// Loads the session's wanted chunks as they were, nearest first. Requires a history view.
-void deliver_history(WorldState& world, SessionId session, const Clocks& now);
+void deliver_history(WorldState& world, SessionId session);
 /// Forgets which chunks of the past the session has. Call it when the session's view changed,
 /// because the client may have dropped chunks.
 void forget_sent(WorldSession& session);

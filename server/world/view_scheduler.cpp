@@ -21,9 +21,10 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   for (const ChunkKey& key : world.loads.cancel(id)) {
     world.interest.set_state(id, key, ChunkInterest::wanted);
   }
+  const bool has_skipped = mine.has_skipped_too_many || !mine.skipped_views.empty();
   if (mine.has_skipped_too_many) {
     world.interest.want_again(id, {});
-  } else if (!mine.skipped_views.empty()) {
+  } else if (has_skipped) {
     world.interest.want_again(id, mine.skipped_views);
   }
   mine.skipped_views.clear();
@@ -33,10 +34,10 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
   const std::size_t entered =
       world.interest.set_view(id, *std::exchange(mine.next_view, std::nullopt));
   world.view_chunks_left -= std::min(world.view_chunks_left, entered + 1);
-  if (!same_chunks) {
-    forget_sent(mine);
-    forget_unsent(world, id);
-  }
+  if (!same_chunks) forget_sent(mine);
+  if (!same_chunks || has_skipped) forget_unsent(world, id);
+  mine.is_view_complete = false;
+  mine.complete_due.reset();
   mine.view_applied_us = now.steady_us;
   collect_released(world);
   deliver(world, id, now);
@@ -46,6 +47,11 @@ void apply_view(WorldState& world, SessionId id, const Clocks& now) {
 
 void on_view(WorldState& world, SessionId session, View view, const Clocks& now) {
   WorldSession& mine = *world.find(session);
+  if (view.number <= mine.view_number) {
+    return close_session(world, session, GoodbyeReason::malformed_message,
+                         "the numbers of views do not ascend");
+  }
+  mine.view_number = view.number;
   view.radius_h = std::min(view.radius_h, world.config.view_radius_max);
   view.radius_v = std::min(view.radius_v, world.config.view_radius_max);
   if (mine.next_view && !mine.next_view->same_chunks(view)) {

@@ -50,15 +50,17 @@ class WorldEnvironment {
   virtual void set_features(SessionId /*session*/, std::uint64_t /*features*/) {}
   /// Reports that the session has authenticated its key.
   virtual void opened(SessionId /*session*/) {}
-  /// Encodes a snapshot on a worker in the session's encoding and queues it like send(). Returns
-  /// false as send() does. WorldServer::drained() is called when the queue has room again.
-  virtual bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) = 0;
+  /// Encodes a snapshot on a worker in the session's encoding and queues it like send(), as an
+  /// answer to the view of this number. Returns false as send() does. WorldServer::drained() is
+  /// called when the queue has room again.
+  virtual bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
+                             const ChunkPtr& chunk) = 0;
   /// Queues a chunk for a session that has it at the earlier version `held`. A worker sends the
   /// edits between the two versions if the log has them and they are shorter than a snapshot,
   /// otherwise a snapshot. Returns false as send() does. Requires that the edits are durable.
-  virtual bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                           Version /*held*/) {
-    return send_snapshot(session, key, chunk);
+  virtual bool send_update(SessionId session, std::uint32_t view, const ChunkKey& key,
+                           const ChunkPtr& chunk, Version /*held*/) {
+    return send_snapshot(session, view, key, chunk);
   }
   /// Allows to drop queued snapshots outside of the session's view, if no byte of them was sent.
   virtual void forget_outside(SessionId /*session*/, const View& /*view*/) {}

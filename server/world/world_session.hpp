@@ -28,13 +28,12 @@ inline constexpr std::uint64_t kCommandsPerSecond = 10, kCommandBurst = 20;
 /// A session's view of the past.
 struct HistoryView {
   std::uint32_t number =
-      0;  // counts all history views of the server; identifies answers of workers
-  std::uint32_t request = 0;
-  Sequence seq = 0;  // the last edit that it contains
+      0;              // counts all history views of the server; identifies answers of workers
+  Sequence seq = 0;   // the last edit that it contains
+  TimeUs utc_us = 0;  // when that edit was ordered
   // Chunks of the past that the session has. They are not sent again while the view stays.
   std::map<ChunkKey, Version> sent;
-  std::size_t loading = 0;   // chunks that workers make for this view
-  bool is_complete = false;  // the session got the report that its whole view was sent
+  std::size_t loading = 0;  // chunks that workers make for this view
 };
 
 /// Times are of the steady clock.
@@ -61,6 +60,7 @@ struct WorldSession {
   TokenBucket commands{kCommandsPerSecond, kCommandBurst};
   std::optional<std::uint32_t> command;  // id of the command under way
   // Views (view_scheduler.hpp).
+  std::uint32_t view_number = 0;          // of the newest view that the client sent
   std::optional<View> next_view;          // the newest view, until it takes effect
   std::optional<TimeUs> view_applied_us;  // when a view took effect last
   std::vector<View> skipped_views;    // replaced before they took effect, at most kSkippedViewsMax
@@ -75,9 +75,10 @@ struct WorldSession {
   std::optional<HistoryRequest> next_history_request;  // the newest request, until it is answered
   bool is_opening_history = false;                     // a worker opens a request
   std::optional<HistoryView> history;                  // nullopt: the session sees the live world
-  std::optional<ViewState> history_start_due;       // must be sent before any further chunk
-  std::optional<ViewState>
-      history_report_due;  // then this: the view is complete, or a request failed
+  std::uint32_t history_request = 0;                   // the newest one that was answered
+  // Reports that precede the session's next chunk, in this order.
+  std::optional<ViewState> begins_due, refused_due, complete_due;
+  bool is_view_complete = true;  // of the view in force it was reported, or there is no view
   // When the session's queue was full. No chunks are sent until it drains or the retry interval has
   // passed.
   std::optional<TimeUs> stalled_us;

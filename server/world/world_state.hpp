@@ -65,6 +65,10 @@ struct WorldState {
     const auto found = sessions.find(session);
     return found == sessions.end() ? nullptr : &found->second;
   }
+  const WorldSession* find(SessionId session) const {
+    const auto found = sessions.find(session);
+    return found == sessions.end() ? nullptr : &found->second;
+  }
 };
 
 /// Sends goodbye with a reason and removes the session, if there is one.

@@ -25,7 +25,7 @@ constexpr std::int32_t kFarChunk = 1 << 20;  // from the middle of the world; in
 constexpr std::uint8_t kSomeRadius = 4;
 
 View view_at(ChunkCoord centre, std::uint8_t radius_h, std::uint8_t radius_v) {
-  return {centre, radius_h, radius_v};
+  return {1, centre, radius_h, radius_v};
 }
 View large_view() { return view_at({}, kViewRadiusMax, kViewRadiusMax); }
 

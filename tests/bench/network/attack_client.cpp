@@ -119,9 +119,9 @@ void AttackClient::read(std::size_t bytes_max) {
     }
     got += static_cast<std::size_t>(count);
     bytes_received_ += static_cast<std::uint64_t>(count);
-    const auto fed = reader_.feed(
-        ByteView(buffer.data(), static_cast<std::size_t>(count)),
-        [this](FrameClass frame_class, ByteView body) { return take(frame_class, body); });
+    const auto fed =
+        reader_.feed(ByteView(buffer.data(), static_cast<std::size_t>(count)),
+                     [this](MessageKind kind, ByteView body) { return take(kind, body); });
     if (!fed) is_open_ = false;
   }
 }
@@ -141,10 +141,11 @@ std::string AttackClient::ending() const {
 }
 
 // Terrain and commits are only counted: decoding them would slow the attack down.
-Result<void> AttackClient::take(FrameClass frame_class, ByteView body) {
+Result<void> AttackClient::take(MessageKind kind, ByteView body) {
+  const FrameClass frame_class = info_of(kind).frame_class;
   if (frame_class == FrameClass::chunks || (frame_class == FrameClass::edits && has_session_))
     return {};
-  auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
+  auto message = decode_message(Sender::server, kind, body, chunk_edge_);
   if (!message) return Unexpected<Error>{message.error()};
   if (auto* welcome = std::get_if<Welcome>(&*message)) {
     chunk_edge_ = welcome->chunk_edge;

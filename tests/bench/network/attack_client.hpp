@@ -26,7 +26,11 @@ class AttackClient {
   bool open_session(std::uint64_t identity, int wait_ms);
 
   /// Queues a message; flush() sends. Bytes are sent unchanged, outside of any frame.
-  void queue(const Message& message) { queue(encode_message(message)); }
+  /// A view gets the number that follows the last one.
+  void queue(Message message) {
+    if (auto* view = std::get_if<View>(&message)) view->number = ++views_;
+    queue(encode_message(message));
+  }
   void queue(const EncodedMessage& message) { frames_.append(message, out_); }
   void queue_bytes(ByteView bytes);
   std::size_t queued() const { return out_.size() - sent_; }
@@ -52,10 +56,11 @@ class AttackClient {
   std::uint64_t bytes_received() const { return bytes_received_; }
 
  private:
-  Result<void> take(FrameClass frame_class, ByteView body);
+  Result<void> take(MessageKind kind, ByteView body);
 
   Descriptor socket_;
   bool is_open_ = false, has_session_ = false;
+  std::uint32_t views_ = 0;  // queued
   FrameWriter frames_;
   FrameReader reader_{Sender::server};
   Bytes out_;

@@ -15,6 +15,7 @@
 #include "common/mesh/rdm/rdm_mesher.hpp"
 #include "common/runs/dense.hpp"
 #include "common/runs/reorder.hpp"
+#include "protocol/codec/chunk_entries.hpp"
 #include "protocol/codec/frame.hpp"
 #include "protocol/codec/messages.hpp"
 #include "tests/bench/harness/clocks.hpp"
@@ -159,17 +160,19 @@ const char* name_of(Transfer transfer) {
 Bytes encode_scene(const TransferScene& scene, Transfer transfer) {
   Bytes out;
   FrameWriter frames;
+  ChunksBuilder chunks;
   for (const auto& [at, voxels] : scene.chunks) {
     if (transfer == Transfer::dense || transfer == Transfer::dense_zstd) {
       append_dense(at, voxels, transfer == Transfer::dense_zstd, out);
       continue;
     }
     const Chunk chunk{voxels, {1, 1}, digest_of(voxels)};
-    frames.append(
-        encode_snapshot({0, at}, chunk,
-                        transfer == Transfer::raw ? ChunkEncoding::raw : ChunkEncoding::packed),
-        out);
+    ChunkEntry entry = encode_snapshot(
+        {0, at}, chunk, transfer == Transfer::raw ? ChunkEncoding::raw : ChunkEncoding::packed);
+    if (!chunks.fits(entry)) frames.append(chunks.take(1), out);
+    chunks.add(std::move(entry));
   }
+  if (!chunks.empty()) frames.append(chunks.take(1), out);
   return out;
 }
 
@@ -190,18 +193,20 @@ struct SceneReceiver::Parts {
       for (const ChunkCoord& at : came) arrived(at);
       return fed;
     }
-    const auto fed = frames.feed(bytes, [&](FrameClass frame_class, ByteView body) -> Result<void> {
+    const auto fed = frames.feed(bytes, [&](MessageKind kind, ByteView body) -> Result<void> {
       const std::uint64_t start = now_ns();
       auto message =
-          decode_message(Sender::server, frame_class, body, static_cast<std::uint16_t>(scene.edge));
+          decode_message(Sender::server, kind, body, static_cast<std::uint16_t>(scene.edge));
       if (!message) return Unexpected<Error>{message.error()};
-      auto* snapshot = std::get_if<ChunkSnapshot>(&*message);
-      if (snapshot == nullptr || !digest_matches(*snapshot))
-        return fail(ErrorCode::bad_value, "not a sound snapshot");
-      const ChunkCoord at = snapshot->key.at;
-      runs[at] = std::move(snapshot->chunk.voxels);
+      std::vector<ChunkCoord> came;
+      for (ChunkAnswer& answer : std::get<Chunks>(*message).chunks) {
+        auto& snapshot = std::get<ChunkSnapshot>(answer);
+        if (!digest_matches(snapshot)) return fail(ErrorCode::bad_value, "not a sound snapshot");
+        came.push_back(snapshot.key.at);
+        runs[came.back()] = std::move(snapshot.chunk.voxels);
+      }
       times.unpack_ns += now_ns() - start;
-      arrived(at);
+      for (const ChunkCoord& at : came) arrived(at);
       return {};
     });
     if (!fed) return Unexpected<std::string>{fed.error().what};

@@ -126,7 +126,7 @@ TEST_CASE("after kill -9 durable edits are kept, and the others, offered again, 
   sender.join();
   CHECK(last == kEdits);
 
-  client.send(View{{0, 0, 0}, 0, 0});
+  client.send(View{1, {0, 0, 0}, 0, 0});
   const auto snapshot = client.next_of<ChunkSnapshot>();
   REQUIRE(snapshot.has_value());
   CHECK(snapshot->chunk.version.seq == kEdits);

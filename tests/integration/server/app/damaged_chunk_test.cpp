@@ -34,10 +34,9 @@ struct Answers {
 Answers answers(RawClient& client, std::size_t count) {
   Answers got;
   while (got.sent.size() + got.unavailable.size() < count) {
-    const auto message = client.next();
+    auto message = client.next();
     REQUIRE(message.has_value());
-    if (const auto* snapshot = std::get_if<ChunkSnapshot>(&*message))
-      got.sent.insert(snapshot->key);
+    if (const auto* snapshot = RawClient::snapshot_in(*message)) got.sent.insert(snapshot->key);
     if (const auto* none = std::get_if<ChunkUnavailable>(&*message)) {
       CHECK(none->reason == UnavailableReason::damaged);
       got.unavailable.insert(none->keys.begin(), none->keys.end());
@@ -81,12 +80,12 @@ TEST_CASE("a damaged chunk is unavailable to the sessions that see it, and other
     RawClient far(server->port());
     REQUIRE(near.join(1, 2).has_value());
     REQUIRE(far.join(2).has_value());
-    near.send(View{{0, 0, 0}, 1, 0});
+    near.send(View{1, {0, 0, 0}, 1, 0});
     const Answers seen = answers(near, 5);
     CHECK(seen.unavailable == std::set{kDamaged});
     CHECK(seen.sent.size() == 4);
     CHECK(seen.sent.contains({0, {1, 0, 0}}));
-    far.send(View{{5, 0, 0}, 1, 0});
+    far.send(View{1, {5, 0, 0}, 1, 0});
     CHECK(answers(far, 5).sent.size() == 5);
 
     near.send(edit(1, {18, 1, 1}));  // the neighbouring chunk accepts edits

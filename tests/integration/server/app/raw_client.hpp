@@ -52,7 +52,11 @@ class RawClient {
       bytes = bytes.subspan(static_cast<std::size_t>(sent));
     }
   }
-  void send(const Message& message) { send(encode_message(message)); }
+  /// Sends a message. A view gets the number that follows the last one.
+  void send(Message message) {
+    if (auto* view = std::get_if<View>(&message)) view->number = ++views_;
+    send(encode_message(message));
+  }
   void send(const EncodedMessage& message) {
     Bytes bytes;
     frames_.append(message, bytes);
@@ -72,12 +76,16 @@ class RawClient {
     arrived_.pop_front();
     return message;
   }
-  /// Returns the next message of one kind. Earlier messages are passed to `seen`, if any, and
-  /// dropped.
+  /// Returns the next message of one kind, or the next ChunkSnapshot of any message. Earlier messages
+  /// are passed to `seen`, if any, and dropped.
   template <class Kind>
   std::optional<Kind> next_of(std::vector<Message>* seen = nullptr) {
     while (auto message = next()) {
-      if (auto* found = std::get_if<Kind>(&*message)) return std::move(*found);
+      if constexpr (std::is_same_v<Kind, ChunkSnapshot>) {
+        if (auto* found = snapshot_in(*message)) return std::move(*found);
+      } else {
+        if (auto* found = std::get_if<Kind>(&*message)) return std::move(*found);
+      }
       if (seen != nullptr) seen->push_back(std::move(*message));
     }
     return std::nullopt;
@@ -101,6 +109,13 @@ class RawClient {
     while (next()) {
     }
     return !is_open_;
+  }
+
+  /// Returns the snapshot of a Chunks message, or null. The client cuts such messages into single
+  /// chunks.
+  static ChunkSnapshot* snapshot_in(Message& message) {
+    auto* chunks = std::get_if<Chunks>(&message);
+    return chunks == nullptr ? nullptr : std::get_if<ChunkSnapshot>(&chunks->chunks.front());
   }
 
   Hello hello(std::uint8_t who, ClientInstance instance = 1) {
@@ -143,8 +158,8 @@ class RawClient {
       is_open_ = false;
       return false;
     }
-    const auto on_message = [this](FrameClass frame_class, ByteView body) -> Result<void> {
-      auto message = decode_message(Sender::server, frame_class, body, chunk_edge_);
+    const auto on_message = [this](MessageKind kind, ByteView body) -> Result<void> {
+      auto message = decode_message(Sender::server, kind, body, chunk_edge_);
       if (!message) return Unexpected<Error>{message.error()};
       // The chunk edge is known from welcome on, also for messages of the same read.
       if (const auto* w = std::get_if<Welcome>(&*message)) chunk_edge_ = w->chunk_edge;
@@ -152,8 +167,13 @@ class RawClient {
         for (const UniformChunk& each : uniform->chunks) {  // tests get them as snapshots
           Chunk chunk{uniform_chunk(Extent::cube(chunk_edge_), each.material), each.version, {}};
           chunk.digest = digest_of(chunk.voxels);
-          arrived_.emplace_back(ChunkSnapshot{each.key, std::move(chunk)});
+          arrived_.emplace_back(Chunks{uniform->view, {ChunkSnapshot{each.key, std::move(chunk)}}});
         }
+        return {};
+      }
+      if (auto* chunks = std::get_if<Chunks>(&*message)) {
+        for (ChunkAnswer& each : chunks->chunks)
+          arrived_.emplace_back(Chunks{chunks->view, {std::move(each)}});
         return {};
       }
       arrived_.push_back(*std::move(message));
@@ -165,6 +185,7 @@ class RawClient {
     return true;
   }
 
+  std::uint32_t views_ = 0;  // sent
   int socket_;
   bool is_open_ = false;
   KeySeed seed_{};

@@ -86,7 +86,7 @@ TEST_CASE("several clients see each other's edits as equal commits", "[integrati
   for (std::uint8_t who = 1; who <= 3; ++who) {
     clients.push_back(std::make_unique<RawClient>(server->port()));
     REQUIRE(clients.back()->join(who).has_value());
-    clients.back()->send(View{{0, 0, 0}, 1, 0});
+    clients.back()->send(View{1, {0, 0, 0}, 1, 0});
     snapshots(*clients.back(), 5);
   }
   constexpr ClientSequence kEdits = 50;
@@ -281,7 +281,7 @@ TEST_CASE("a wrong receive ack closes the session, and so does one without the f
   liar.features = kFeatureReceiveAck;
   REQUIRE(liar.join(1).has_value());
   CHECK(liar.welcome.features == kFeatureReceiveAck);
-  liar.send(View{{0, 0, 0}, 1, 1});
+  liar.send(View{1, {0, 0, 0}, 1, 1});
   snapshots(liar, 5 * 3);
   liar.send(ReceiveAck{1ULL << 40});
   const auto told = liar.goodbye();
@@ -303,7 +303,7 @@ TEST_CASE("a client that sends no receive acks still gets its view", "[integrati
   RawClient quiet(server->port());
   quiet.features = kFeatureReceiveAck;
   REQUIRE(quiet.join(1).has_value());
-  quiet.send(View{{0, 0, 0}, 2, 1});
+  quiet.send(View{1, {0, 0, 0}, 2, 1});
   CHECK(snapshots(quiet, 13 * 3).size() == 13 * 3);
 }
 
@@ -318,10 +318,10 @@ TEST_CASE("a client that never reads loses chunks and commits, and the server go
   const auto server = start_server(config, flat_creation());
   RawClient deaf(server->port());
   REQUIRE(deaf.join(1).has_value());
-  deaf.send(View{{0, 0, 0}, 16, 16});
+  deaf.send(View{1, {0, 0, 0}, 16, 16});
   RawClient good(server->port());
   REQUIRE(good.join(2).has_value());
-  good.send(View{{0, 0, 0}, 1, 0});
+  good.send(View{1, {0, 0, 0}, 1, 0});
   snapshots(good, 5);
   // The small queue may also fill for the client that reads. Then a commit is dropped, and a reject
   // answers the edit.
@@ -360,7 +360,7 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
     const auto server = start_server(config, flat_creation());
     RawClient client(server->port());
     REQUIRE(client.join(5, 33).has_value());
-    client.send(View{{0, 0, 0}, 1, 1});
+    client.send(View{1, {0, 0, 0}, 1, 1});
     for (ClientSequence seq = 1; seq <= 20; ++seq) {
       client.send(
           edit(seq, {static_cast<std::int32_t>(seq) * 7 % 40 - 20, 1, 2}, some_material(seq)));
@@ -389,7 +389,7 @@ TEST_CASE("a restarted server continues the world: sequences, voxels, authors an
   const auto reject = client.next_of<Reject>();
   REQUIRE(reject.has_value());
   CHECK(reject->reason == RejectReason::already_resolved);
-  client.send(View{{0, 0, 0}, 3, 1});
+  client.send(View{1, {0, 0, 0}, 3, 1});
   std::map<ChunkKey, Version> versions;
   for (const auto& s : snapshots(client, 29 * 3)) versions[s.key] = s.chunk.version;
   CHECK(versions.at({0, {0, 0, 0}}).epoch == 1);
@@ -473,7 +473,7 @@ TEST_CASE("an invalid descriptor is rejected as bad_edit and the session goes on
 
   RawClient client(server->port());
   REQUIRE(client.join(1).has_value());
-  client.send(View{{0, 4, 0}, 1, 1});
+  client.send(View{1, {0, 4, 0}, 1, 1});
   for (int attempt = 0; attempt < 2; ++attempt) {
     client.send(invalid);
     const auto reject = client.next_of<Reject>();

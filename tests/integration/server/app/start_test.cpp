@@ -149,7 +149,7 @@ TEST_CASE("a damaged snapshot is quarantined: not sent, not regenerated, its edi
     const auto server = start_server(config, flat_creation());
     RawClient client(server->port());
     REQUIRE(client.join(1).has_value());
-    client.send(View{{0, 0, 0}, 2, 0});
+    client.send(View{1, {0, 0, 0}, 2, 0});
     std::set<ChunkKey> got;
     for (int i = 0; i < 12; ++i) {
       const auto snapshot = client.next_of<ChunkSnapshot>();

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "common/runs/run_builder.hpp"
+#include "protocol/codec/chunk_entries.hpp"
+#include "protocol/codec/message_table.hpp"
 #include "server/history/missing_edits.hpp"
 #include "server/store/store.hpp"
 #include "server/world/world_server.hpp"
@@ -96,9 +98,9 @@ class SimServer final : public WorldEnvironment {
   std::shared_ptr<SimConnection> accept(const LinkFaults& faults, SimEnd client) {
     const SessionId id = next_session_++;
     SimEnd end;
-    end.on_message = [this, id, life = life_](FrameClass c, ByteView bytes) -> Result<void> {
+    end.on_message = [this, id, life = life_](MessageKind kind, ByteView bytes) -> Result<void> {
       if (life != life_ || !sessions_.contains(id)) return {};
-      auto message = decode_message(Sender::client, c, bytes, kSimEdge);
+      auto message = decode_message(Sender::client, kind, bytes, kSimEdge);
       if (!message) throw SimFault(std::string("server cannot decode: ") + message.error().what);
       world_->received(id, std::move(*message), now());
       turn_later();
@@ -143,13 +145,6 @@ class SimServer final : public WorldEnvironment {
     return *std::move(result);
   }
 
-  static bool is_commit(const EncodedMessage& message) {
-    if (message.frame_class != FrameClass::edits) return false;
-    const auto decoded =
-        decode_message(Sender::server, message.frame_class, *message.bytes, kSimEdge);
-    return decoded && std::holds_alternative<Commit>(*decoded);
-  }
-
   static void done(const StoreResult<void>& result) {
     if (!result) throw SimFault(result.error().message());
   }
@@ -178,7 +173,7 @@ class SimServer final : public WorldEnvironment {
   bool send(SessionId id, const EncodedMessage& message) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end()) return false;
-    if (is_commit(message) && rng_.below(1000) < drop_commits) {
+    if (message.kind == kKindOf<Commit> && rng_.below(1000) < drop_commits) {
       ++dropped;
       return true;
     }
@@ -187,24 +182,25 @@ class SimServer final : public WorldEnvironment {
   void set_encoding(SessionId id, ChunkEncoding encoding) override {
     if (const auto it = sessions_.find(id); it != sessions_.end()) it->second.encoding = encoding;
   }
-  bool send_snapshot(SessionId id, const ChunkKey& key, const ChunkPtr& chunk) override {
+  bool send_snapshot(SessionId id, std::uint32_t view, const ChunkKey& key,
+                     const ChunkPtr& chunk) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
     ++it->second.encoding_now;
-    later(100, 30'000, [this, id, key, chunk] {  // the worker
+    later(100, 30'000, [this, id, view, key, chunk] {  // the worker
       const auto session = sessions_.find(id);
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
-      send_encoded(id, encode_snapshot(key, *chunk, session->second.encoding));
+      send_encoded(id, view, encode_snapshot(key, *chunk, session->second.encoding));
     });
     return true;
   }
-  bool send_update(SessionId id, const ChunkKey& key, const ChunkPtr& chunk,
+  bool send_update(SessionId id, std::uint32_t view, const ChunkKey& key, const ChunkPtr& chunk,
                    Version held) override {
     const auto it = sessions_.find(id);
     if (it == sessions_.end() || it->second.encoding_now >= 16) return false;
     ++it->second.encoding_now;
-    later(100, 30'000, [this, id, key, chunk, held] {  // the worker
+    later(100, 30'000, [this, id, view, key, chunk, held] {  // the worker
       const auto session = sessions_.find(id);
       if (session == sessions_.end()) return;
       --session->second.encoding_now;
@@ -212,17 +208,18 @@ class SimServer final : public WorldEnvironment {
       const auto edits = value(
           missing_edits(*store_, key, *chunk, held, chunk_bytes_about(chunk->voxels, encoding)));
       updates += edits ? 1 : 0;
-      send_encoded(id, edits ? encode_message(*edits) : encode_snapshot(key, *chunk, encoding));
+      send_encoded(id, view,
+                   edits ? encode_chunk_edits(*edits) : encode_snapshot(key, *chunk, encoding));
     });
     return true;
   }
-  void send_encoded(SessionId id, const EncodedMessage& message) {
+  void send_encoded(SessionId id, std::uint32_t view, const ChunkEntry& chunk) {
     const auto session = sessions_.find(id);
     if (session == sessions_.end() || !session->second.connection->open()) return;
-    if (session->second.connection->send_from_server(message)) {
+    if (session->second.connection->send_from_server(join_entries(view, {&chunk, 1}))) {
       world_->drained(id, now());
     } else {  // send() must queue it: try again when there is room
-      later(1000, 5000, [this, id, message] { send_encoded(id, message); });
+      later(1000, 5000, [this, id, view, chunk] { send_encoded(id, view, chunk); });
     }
   }
   void close(SessionId id, GoodbyeReason reason, const std::string& text) override {

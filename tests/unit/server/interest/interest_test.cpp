@@ -30,7 +30,8 @@ TEST_CASE("a view difference is exactly the chunks of one view outside of the ot
           "[interest][property]") {
   SplitMix64 rng(Catch::rngSeed());
   const auto random_view = [&] {
-    return View{{rng.between(-6, 6), rng.between(-6, 6), rng.between(-6, 6)},
+    return View{1,
+                {rng.between(-6, 6), rng.between(-6, 6), rng.between(-6, 6)},
                 static_cast<std::uint8_t>(rng.below(7)),
                 static_cast<std::uint8_t>(rng.below(5))};
   };

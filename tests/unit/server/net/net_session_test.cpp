@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/codec/message_table.hpp"
+
 using namespace runstone;
 
 namespace {
@@ -99,22 +101,24 @@ struct Bench {
   std::pair<std::size_t, std::size_t> sent() const {
     std::size_t chunks = 0, edits = 0;
     for (std::size_t at = 0; at < stream->written.size();) {
-      const std::uint8_t* header = stream->written.data() + at;  // length, little-endian; class
+      const std::uint8_t* header = stream->written.data() + at;  // length, little-endian; kind
       const std::size_t body_bytes = header[0] + 256U * header[1];
-      (FrameClass{header[4]} == FrameClass::chunks ? chunks : edits) += body_bytes;
+      (header[2] == wire_number(kKindOf<Chunks>) ? chunks : edits) += body_bytes;
       at += kFrameHeaderBytes + body_bytes;
     }
     return {chunks, edits};
   }
-  /// Queues so many bytes of terrain.
-  void fill_chunk(std::size_t bytes) {
-    const auto place = session->reserve_chunk({0, {0, 0, 0}});
+  /// Queues a chunk and returns the bytes of its message.
+  std::size_t fill_chunk(std::size_t bytes) {
+    const ChunkEntry chunk{{0, {0, 0, 0}}, std::make_shared<const Bytes>(bytes), 1};
+    const auto place = session->reserve_chunk(chunk.key, 1);
     REQUIRE(place);
-    session->fill_chunk(*place, {FrameClass::chunks, std::make_shared<const Bytes>(bytes)});
+    session->fill_chunk(*place, chunk);
     io.poll();
+    return join_entries(1, {&chunk, 1}).bytes->size();
   }
   void edit(std::size_t bytes) {
-    REQUIRE(session->send({FrameClass::edits, std::make_shared<const Bytes>(bytes)}));
+    REQUIRE(session->send({kKindOf<Commit>, std::make_shared<const Bytes>(bytes)}));
     io.poll();
   }
   asio::io_context io;
@@ -157,7 +161,7 @@ TEST_CASE("a session has few unhandled messages, fewer large ones than small one
 TEST_CASE("without room in the socket edits are sent, and terrain waits with growing pauses",
           "[net]") {
   Bench bench({}, {0, 1'000});
-  bench.fill_chunk(5'000);
+  const std::size_t terrain = bench.fill_chunk(5'000);
   bench.edit(100);
   CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
   // The last pauses are 4, 8, 16 and 32 ms. A slow machine makes them longer, never shorter.
@@ -167,8 +171,8 @@ TEST_CASE("without room in the socket edits are sent, and terrain waits with gro
   CHECK(std::chrono::steady_clock::now() - began >= std::chrono::milliseconds(50));
   CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{0, 100});
   bench.stream->room_now = {2'000, 0};
-  while (bench.sent().first < 5'000) REQUIRE(bench.io.run_one() == 1);
-  CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{5'000, 100});
+  while (bench.sent().first < terrain) REQUIRE(bench.io.run_one() == 1);
+  CHECK(bench.sent() == std::pair<std::size_t, std::size_t>{terrain, 100});
 }
 
 TEST_CASE("edits that never leave room do not starve terrain", "[net]") {

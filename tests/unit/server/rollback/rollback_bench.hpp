@@ -90,7 +90,7 @@ class RollbackBench : public RollbackService::Workers {
   /// Opens a session that sees the first chunks.
   AuthorId join(SessionId session) {
     const AuthorId author = bench.join(session, static_cast<std::uint8_t>(session)).author;
-    bench.view(session, View{{0, 0, 0}, 4, 1});
+    bench.view(session, View{1, {0, 0, 0}, 4, 1});
     return author;
   }
   void edit(SessionId session, const EditShape& shape, Material material) {

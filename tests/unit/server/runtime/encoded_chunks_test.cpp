@@ -27,10 +27,10 @@ TEST_CASE("a chunk is encoded once in each encoding, and every call returns the 
   SplitMix64 rng{1};
   EncodedChunks chunks;
   const ChunkPtr chunk = some_chunk(rng);
-  const EncodedMessage packed = chunks.snapshot(kKey, chunk, ChunkEncoding::packed);
+  const ChunkEntry packed = chunks.snapshot(kKey, chunk, ChunkEncoding::packed);
   CHECK(*packed.bytes == *encode_snapshot(kKey, *chunk, ChunkEncoding::packed).bytes);
   CHECK(chunks.snapshot(kKey, chunk, ChunkEncoding::packed).bytes == packed.bytes);
-  const EncodedMessage raw = chunks.snapshot(kKey, chunk, ChunkEncoding::raw);
+  const ChunkEntry raw = chunks.snapshot(kKey, chunk, ChunkEncoding::raw);
   CHECK(*raw.bytes == *encode_snapshot(kKey, *chunk, ChunkEncoding::raw).bytes);
   const ChunkKey elsewhere{0, {1, 2, 4}};
   CHECK(*chunks.snapshot(elsewhere, chunk, ChunkEncoding::raw).bytes ==
@@ -51,7 +51,7 @@ TEST_CASE("a released chunk is not mistaken for another one at its address", "[s
   CHECK(chunks.encoded() == 200);
 }
 
-TEST_CASE("the most recently used messages are kept, within the bound", "[server]") {
+TEST_CASE("the most recently used snapshots are kept, within the bound", "[server]") {
   SplitMix64 rng{3};
   std::vector<ChunkPtr> some;
   for (int i = 0; i < 50; ++i) some.push_back(some_chunk(rng));
@@ -60,7 +60,7 @@ TEST_CASE("the most recently used messages are kept, within the bound", "[server
     largest = std::max(largest, encode_snapshot(kKey, *chunk, ChunkEncoding::raw).bytes->size());
   }
   EncodedChunks chunks(2 * largest);
-  const EncodedMessage first = chunks.snapshot(kKey, some[0], ChunkEncoding::raw);
+  const ChunkEntry first = chunks.snapshot(kKey, some[0], ChunkEncoding::raw);
   for (const ChunkPtr& chunk : some) {
     chunks.snapshot(kKey, chunk, ChunkEncoding::raw);
     CHECK(chunks.snapshot(kKey, some[0], ChunkEncoding::raw).bytes == first.bytes);
@@ -77,7 +77,7 @@ TEST_CASE("threads that request a chunk at the same time wait for the one that e
   std::vector<ChunkPtr> some;
   for (int i = 0; i < 100; ++i) some.push_back(some_chunk(rng));
   EncodedChunks chunks;
-  std::vector<std::vector<EncodedMessage>> got(4);
+  std::vector<std::vector<ChunkEntry>> got(4);
   std::vector<std::thread> threads;
   for (auto& mine : got) {
     threads.emplace_back([&] {

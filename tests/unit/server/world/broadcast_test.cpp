@@ -16,8 +16,8 @@ TEST_CASE("a commit is sent to every session that sees its chunk, and to its aut
   for (SessionId s = 1; s <= 4; ++s) bench.join(s, static_cast<std::uint8_t>(s));
   bench.view(1, kSmall);
   bench.view(2, kSmall);
-  bench.view(3, {{50, 0, 0}, 1, 0});  // far away
-  bench.edit(4, 1, kAtOrigin, 3);     // sees nothing at all
+  bench.view(3, {1, {50, 0, 0}, 1, 0});  // far away
+  bench.edit(4, 1, kAtOrigin, 3);        // sees nothing at all
   CHECK(bench.commits(1).empty());
   const std::size_t before = bench.environment.sent.size();
   bench.server.commit(bench.now());
@@ -33,7 +33,7 @@ TEST_CASE("a commit is sent to every session that sees its chunk, and to its aut
   std::set<const Bytes*> bytes;
   for (std::size_t i = before; i < bench.environment.sent.size(); ++i) {
     const EncodedMessage& message = bench.environment.sent[i].message;
-    if (message.frame_class == FrameClass::edits) bytes.insert(message.bytes.get());
+    if (class_of(message) == FrameClass::edits) bytes.insert(message.bytes.get());
   }
   CHECK(bytes.size() == 1);
   REQUIRE(bench.environment.records.size() == 1);

@@ -15,11 +15,11 @@ using Bench = WorldBench;
 TEST_CASE("a view brings its chunks, nearest first, each once", "[world]") {
   Bench bench;
   bench.join(1, 1);
-  bench.view(1, {{2, 0, 1}, 3, 1});
+  bench.view(1, {1, {2, 0, 1}, 3, 1});
   std::set<ChunkKey> keys;
   std::int64_t last = 0;
   for (const auto& s : bench.environment.snapshots) {
-    const std::int64_t distance = distance2({{2, 0, 1}, 3, 1}, s.key.at);
+    const std::int64_t distance = distance2({1, {2, 0, 1}, 3, 1}, s.key.at);
     CHECK(distance >= last);  // the fake environment loads in order
     last = distance;
     CHECK(keys.insert(s.key).second);
@@ -32,7 +32,7 @@ TEST_CASE("a view beyond the limit is reduced to it", "[world]") {
   c.view_radius_max = 1;
   Bench bench(c);
   bench.join(1, 1);
-  bench.view(1, {{0, 0, 0}, 60, 60});
+  bench.view(1, {1, {0, 0, 0}, 60, 60});
   CHECK(bench.environment.snapshots.size() == 5 * 3);
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("at most the allowed number of loads waits for one session", "[world]"
   c.loads_per_session_max = 4;
   Bench bench(c);
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 4, 4}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 4, 4});
   CHECK(bench.environment.loads.size() == 4);
   const ChunkKey key = bench.environment.loads.front();
   bench.environment.loads.pop_front();
@@ -77,12 +77,12 @@ TEST_CASE("a chunk request sends chunks of the view again and ignores others", "
 TEST_CASE("a quarantined chunk is logged, unavailable to every session, and never loaded again",
           "[world]") {
   Bench bench;
-  const ChunkUnavailable expected{{ChunkKey{}}, UnavailableReason::damaged};
+  const ChunkUnavailable expected{1, {ChunkKey{}}, UnavailableReason::damaged};
   const auto unavailable = [&](SessionId session) {
     return bench.environment.messages<ChunkUnavailable>(session, kEdge);
   };
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
   REQUIRE(bench.environment.loads.size() == 1);
   bench.environment.loads.clear();
   CHECK(unavailable(1).empty());
@@ -109,7 +109,7 @@ TEST_CASE("a quarantined chunk is logged, unavailable to every session, and neve
 TEST_CASE("a loaded chunk that contradicts the log is unavailable", "[world]") {
   Bench bench;
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
   bench.environment.loads.clear();
   bench.server.chunk_loaded({}, test::empty_chunk(32), bench.now());
   CHECK(bench.environment.messages<ChunkUnavailable>(1, kEdge).size() == 1);
@@ -122,7 +122,7 @@ TEST_CASE("chunk unavailable waits for room like a snapshot", "[world]") {
     return bench.environment.messages<ChunkUnavailable>(1, kEdge).size();
   };
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
   bench.environment.loads.clear();
   bench.environment.full.insert(1);
   bench.server.chunk_failed({}, "damaged", bench.now());

@@ -12,7 +12,7 @@ TEST_CASE("the digest checks of many sessions are spread over the ticks, one a s
   constexpr std::uint8_t kPlayers = 40;
   for (SessionId id = 1; id <= kPlayers; ++id) {
     bench.join(id, static_cast<std::uint8_t>(id));
-    bench.view(id, {{0, 0, 0}, 0, 0});
+    bench.view(id, {1, {0, 0, 0}, 0, 0});
   }
   bench.tick();  // sends the checks that were due before the sessions joined
   const auto sent = [&] { return bench.server.counters().digest_checks_sent; };

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/codec/message_table.hpp"
 #include "server/world/world_environment.hpp"
 
 namespace runstone::test {
@@ -23,6 +24,7 @@ class FakeEnvironment : public WorldEnvironment {
     SessionId session = 0;
     ChunkKey key;
     ChunkPtr chunk;
+    std::uint32_t view = 0;  // number of the view that it answers
   };
   struct Closed {
     SessionId session = 0;
@@ -63,23 +65,24 @@ class FakeEnvironment : public WorldEnvironment {
 
   bool send(SessionId session, const EncodedMessage& message) override {
     if (full.contains(session)) return false;
-    if (message.frame_class == FrameClass::edits && refuse_edits.contains(session)) return false;
+    if (class_of(message) == FrameClass::edits && refuse_edits.contains(session)) return false;
     sent.push_back({session, message});
     return true;
   }
-  bool send_snapshot(SessionId session, const ChunkKey& key, const ChunkPtr& chunk) override {
+  bool send_snapshot(SessionId session, std::uint32_t view, const ChunkKey& key,
+                     const ChunkPtr& chunk) override {
     if (full.contains(session)) return false;
     const auto room = snapshot_room.find(session);
     if (room != snapshot_room.end()) {
       if (room->second == 0) return false;
       --room->second;
     }
-    snapshots.push_back({session, key, chunk});
+    snapshots.push_back({session, key, chunk, view});
     return true;
   }
-  bool send_update(SessionId session, const ChunkKey& key, const ChunkPtr& chunk,
-                   Version held) override {
-    if (!send_snapshot(session, key, chunk)) return false;
+  bool send_update(SessionId session, std::uint32_t view, const ChunkKey& key,
+                   const ChunkPtr& chunk, Version held) override {
+    if (!send_snapshot(session, view, key, chunk)) return false;
     updates.emplace_back(key, held);
     return true;
   }
@@ -122,10 +125,10 @@ class FakeEnvironment : public WorldEnvironment {
     std::vector<Kind> found;
     for (const Sent& s : sent) {
       if (s.session != session) continue;
-      auto message =
-          decode_message(Sender::server, s.message.frame_class, *s.message.bytes, chunk_edge);
+      if (s.message.kind != kKindOf<Kind>) continue;
+      auto message = decode_message(Sender::server, s.message.kind, *s.message.bytes, chunk_edge);
       RUNSTONE_ASSERT(message.has_value());
-      if (auto* kind = std::get_if<Kind>(&*message)) found.push_back(std::move(*kind));
+      found.push_back(std::get<Kind>(*std::move(message)));
     }
     return found;
   }

@@ -32,8 +32,13 @@ struct HistoryBench : WorldBench {
                                   std::make_shared<const Chunk>(chunk), now());
     }
   }
+  /// Returns the states that a session got after its live view was complete.
   std::vector<ViewState> states(SessionId session) const {
-    return environment.messages<ViewState>(session, kEdge);
+    std::vector<ViewState> all = environment.messages<ViewState>(session, kEdge);
+    REQUIRE_FALSE(all.empty());
+    CHECK(all.front() == ViewState{0, 1, ViewPhase::complete, false, 0, 0, ""});
+    all.erase(all.begin());
+    return all;
   }
 };
 
@@ -67,8 +72,8 @@ TEST_CASE("few history requests are opened at a time, and of each session only t
   for (SessionId session = 2; session <= 4; ++session) {
     const auto moments = bench.states(session);
     REQUIRE(moments.size() == 2);
-    CHECK(moments[0] == ViewState{1, ViewPhase::begins, true, 5, 1000, ""});
-    CHECK(moments[1] == ViewState{1, ViewPhase::complete, true, 5, 0, ""});
+    CHECK(moments[0] == ViewState{1, 1, ViewPhase::begins, true, 5, 1000, ""});
+    CHECK(moments[1] == ViewState{1, 1, ViewPhase::complete, true, 5, 1000, ""});
   }
 }
 
@@ -90,7 +95,10 @@ TEST_CASE("a session in the past gets no commits, and gets the current world whe
   CHECK(bench.commits(1).empty());
   CHECK(bench.commits(2).size() == 1);
   bench.server.received(1, HistoryRequest{2, HistoryTarget::live, 0, 0}, bench.now());
-  CHECK(bench.states(1).back() == ViewState{2, ViewPhase::begins, false, 0, 0, ""});
+  const auto states = bench.states(1);
+  REQUIRE(states.size() == 4);
+  CHECK(states[2] == ViewState{2, 1, ViewPhase::begins, false, 0, 0, ""});
+  CHECK(states[3] == ViewState{2, 1, ViewPhase::complete, false, 0, 0, ""});
   REQUIRE(bench.environment.snapshots.size() == before + 10);
   CHECK(bench.environment.snapshots.back().session == 1);
   bench.edit(2, 2, kAtOrigin, 2);
@@ -150,8 +158,7 @@ TEST_CASE(
   bench.go_to(1, 1, 99);
   bench.environment.history_requests.clear();
   bench.server.history_opened(1, 1, Unexpected<std::string>{"no such edit"}, bench.now());
-  CHECK(bench.states(1).back() ==
-        ViewState{1, ViewPhase::refused, false, 0, 0, "no such edit"});
+  CHECK(bench.states(1).back() == ViewState{1, 1, ViewPhase::refused, false, 0, 0, "no such edit"});
   CHECK(bench.environment.history_loads.empty());
 
   bench.go_to(1, 2, 3);
@@ -166,6 +173,25 @@ TEST_CASE(
   CHECK(bench.environment.lines.back().find("row damaged") != std::string::npos);
   bench.load_all();
   CHECK(bench.states(1).back().phase == ViewPhase::complete);
+}
+
+TEST_CASE("a refused request and a view that is complete describe the past that the session sees",
+          "[world]") {
+  HistoryBench bench;
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  bench.go_to(1, 1, 5);
+  bench.open_one();
+  bench.load_all();
+  bench.go_to(1, 2, 99);
+  bench.environment.history_requests.clear();
+  bench.server.history_opened(1, 2, Unexpected<std::string>{"no such edit"}, bench.now());
+  CHECK(bench.states(1).back() ==
+        ViewState{2, 1, ViewPhase::refused, true, 5, 1000, "no such edit"});
+  bench.tick(2'000'000);
+  bench.view(1, {2, {1, 0, 0}, 1, 0});
+  bench.load_all();
+  CHECK(bench.states(1).back() == ViewState{2, 2, ViewPhase::complete, true, 5, 1000, ""});
 }
 
 }  // namespace

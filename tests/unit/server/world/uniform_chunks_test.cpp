@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-constexpr View kView{{0, 0, 0}, 4, 3};  // 343 chunks
+constexpr View kView{1, {0, 0, 0}, 4, 3};  // 343 chunks
 
 /// Answers all loads with air, except those of chunks at height 0.
 void answer(WorldBench& bench) {
@@ -24,7 +24,7 @@ void answer(WorldBench& bench) {
 /// Session 1 joins with a view of three chunks of air.
 void join_above(WorldBench& bench) {
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
+  bench.send_view(1, View{1, {0, 3, 0}, 0, 1});
 }
 
 /// Answers the oldest load with air.
@@ -49,7 +49,7 @@ std::set<ChunkKey> keys_of(const std::vector<UniformChunks>& messages) {
 TEST_CASE("one message has many uniform chunks, at a few bytes each", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
-  bench.server.received(1, kView, bench.now());
+  bench.send_view(1, kView);
   answer(bench);
   const std::size_t mixed = 49;
   CHECK(bench.environment.snapshots.size() == mixed);
@@ -58,7 +58,7 @@ TEST_CASE("one message has many uniform chunks, at a few bytes each", "[world]")
   // A session that joins when all chunks are in memory gets them at once.
   bench.join(2, 2);
   const std::size_t before = bench.environment.sent.size();
-  bench.server.received(2, kView, bench.now());
+  bench.send_view(2, kView);
   const auto messages = uniform(bench, 2);
   CHECK(keys_of(messages).size() == 343 - mixed);
   CHECK(messages.size() <= 2);
@@ -104,7 +104,7 @@ TEST_CASE(
   WorldBench bench;
   bench.join(1, 1);
   bench.environment.full.insert(1);
-  bench.server.received(1, View{{0, 3, 0}, 0, 1}, bench.now());
+  bench.send_view(1, View{1, {0, 3, 0}, 0, 1});
   answer(bench);
   CHECK(uniform(bench, 1).empty());
   CHECK(bench.server.counters().queue_full > 0);
@@ -130,7 +130,7 @@ TEST_CASE("a uniform chunk that left the view before it was sent is not sent", "
   join_above(bench);
   load_air(bench);
   bench.time_us += 100'000;
-  bench.server.received(1, View{{90, 3, 0}, 0, 0}, bench.now());
+  bench.send_view(1, View{1, {90, 3, 0}, 0, 0});
   answer(bench);
   bench.tick();
   CHECK(keys_of(uniform(bench, 1)) == std::set<ChunkKey>{{0, {90, 3, 0}}});

@@ -34,15 +34,15 @@ TEST_CASE("a client that moves its view each millisecond costs no loads and does
   bench.join(2, 2);
   bench.view(1, kSmall);
   bench.environment.loads.clear();
-  const View last{{9'000, 0, 0}, 4, 4};
+  const View last{1, {9'000, 0, 0}, 4, 4};
   std::size_t loads_answered = 0;
   std::optional<std::size_t> moved_at, arrived_at;
   ClientSequence seq = 0;
   for (int ms = 0; ms < 1'000; ++ms) {
     bench.time_us += 1'000;
-    bench.server.received(2, ms == 999 ? last : View{{100 + 20 * ms, 0, 0}, 4, 4}, bench.now());
+    bench.send_view(2, ms == 999 ? last : View{1, {100 + 20 * ms, 0, 0}, 4, 4});
     if (ms == 500) {  // the editor moves to five chunks that are not loaded
-      bench.server.received(1, View{{-50, 0, 0}, 1, 0}, bench.now());
+      bench.send_view(1, View{1, {-50, 0, 0}, 1, 0});
       moved_at = loads_answered;
     }
     if (ms % 10 == 0) {
@@ -79,16 +79,16 @@ TEST_CASE("of several views within an interval the newest takes effect on the ne
           "[world]") {
   WorldBench bench;
   bench.join(1, 1);
-  bench.view(1, {{0, 0, 0}, 0, 0});
+  bench.view(1, {1, {0, 0, 0}, 0, 0});
   REQUIRE(bench.environment.snapshots.size() == 1);  // the first view takes effect at once
-  bench.view(1, {{10, 0, 0}, 1, 0});
-  bench.view(1, {{20, 0, 0}, 1, 0});
+  bench.view(1, {1, {10, 0, 0}, 1, 0});
+  bench.view(1, {1, {20, 0, 0}, 1, 0});
   CHECK(bench.environment.snapshots.size() == 1);
   bench.tick();
   bench.answer_loads();
   const std::set<ChunkKey> sent = sent_to(bench, 1, 1);
   CHECK(sent.size() == 5);
-  for (const ChunkKey& key : sent) CHECK(View{{20, 0, 0}, 1, 0}.contains(key.at));
+  for (const ChunkKey& key : sent) CHECK(View{1, {20, 0, 0}, 1, 0}.contains(key.at));
 }
 
 TEST_CASE("chunks outside of a skipped view are sent again, other chunks are not", "[world]") {
@@ -114,7 +114,8 @@ TEST_CASE("after too many skipped views every chunk is sent again", "[world]") {
   const View home{{0, 0, 0}, 1, 0};
   bench.view(1, home);
   for (std::uint8_t radius = 2; radius < 4; ++radius) {  // each contains all of home
-    for (std::uint8_t height = 0; height < 6; ++height) bench.view(1, {{0, 0, 0}, radius, height});
+    for (std::uint8_t height = 0; height < 6; ++height)
+      bench.view(1, {1, {0, 0, 0}, radius, height});
   }
   bench.view(1, home);
   bench.tick();
@@ -130,8 +131,7 @@ TEST_CASE("views add a limited number of chunks on each tick, and every session 
   std::set<SessionId> served;
   for (int round = 0; round < 4; ++round) {
     for (SessionId s = 1; s <= 4; ++s) {
-      bench.server.received(s, View{{static_cast<std::int32_t>(1000 * s) + round, 0, 0}, 0, 0},
-                            bench.now());
+      bench.send_view(s, View{1, {static_cast<std::int32_t>(1000 * s) + round, 0, 0}, 0, 0});
     }
     const std::size_t before = bench.environment.snapshots.size();
     bench.tick();
@@ -149,7 +149,7 @@ TEST_CASE("a stop cancels all loads except those that snapshots need", "[world]"
   c.loads_in_flight_max = 2;
   WorldBench bench(c);
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 4, 4}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 4, 4});
   REQUIRE(bench.environment.loads.size() == 2);
   const EditShape far = SetVoxel{{50 * kEdge, 0, 0}};
   bench.edit(1, 1, far);
@@ -166,6 +166,64 @@ TEST_CASE("a stop cancels all loads except those that snapshots need", "[world]"
   REQUIRE(bench.environment.saves.size() == 1);
   bench.server.snapshots_saved(bench.now());
   CHECK(bench.server.is_flushed());
+}
+
+TEST_CASE("answers carry the number of the view in force", "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  bench.view(1, kSmall);
+  for (const auto& sent : bench.environment.snapshots) CHECK(sent.view == 1);
+  const std::size_t before = bench.environment.snapshots.size();
+  bench.tick(2'000'000);
+  bench.view(1, {2, {1, 0, 0}, 1, 0});
+  REQUIRE(bench.environment.snapshots.size() > before);
+  for (std::size_t i = before; i < bench.environment.snapshots.size(); ++i)
+    CHECK(bench.environment.snapshots[i].view == 2);
+}
+
+TEST_CASE("numbers of views must ascend", "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  bench.server.received(1, View{7, {0, 0, 0}, 1, 0}, bench.now());
+  CHECK(bench.environment.closed.empty());
+  const std::uint32_t next = GENERATE(7u, 6u, 1u);
+  bench.server.received(1, View{next, {0, 0, 0}, 1, 0}, bench.now());
+  REQUIRE(bench.environment.closed.size() == 1);
+  CHECK(bench.environment.closed[0].reason == GoodbyeReason::malformed_message);
+}
+
+TEST_CASE("each view is reported complete once, when all its chunks were answered", "[world]") {
+  WorldBench bench;
+  bench.join(1, 1);
+  const auto complete = [&bench] {
+    std::vector<std::uint32_t> views;
+    for (const ViewState& state : bench.environment.messages<ViewState>(1, kEdge)) {
+      CHECK(state.phase == ViewPhase::complete);
+      CHECK_FALSE(state.past);
+      views.push_back(state.view);
+    }
+    return views;
+  };
+  bench.send_view(1, kSmall);
+  CHECK(complete().empty());  // its chunks are loaded
+  bench.answer_loads();
+  CHECK(complete() == std::vector<std::uint32_t>{1});
+  bench.server.received(1, ChunkRequest{{{0, {0, 0, 0}}}}, bench.now());
+  CHECK(complete() == std::vector<std::uint32_t>{1});  // the view was complete once
+  bench.tick(2'000'000);
+  View turned = kSmall;
+  turned.cone = 1'000;
+  bench.view(1, turned);
+  CHECK(complete() == std::vector<std::uint32_t>{1, 2});
+  SECTION("not while the queue is full") {
+    bench.tick(2'000'000);
+    bench.environment.snapshot_room[1] = 1;
+    bench.view(1, {3, {50, 0, 0}, 1, 0});
+    CHECK(complete().size() == 2);
+    bench.environment.snapshot_room.clear();
+    bench.server.drained(1, bench.now());
+    CHECK(complete() == std::vector<std::uint32_t>{1, 2, 3});
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,8 +64,13 @@ struct WorldBench {
     REQUIRE(accepted.size() == 1);
     return accepted[0];
   }
-  void view(SessionId session, View v) {
+  /// Sends a view with the number that follows the session's last one.
+  void send_view(SessionId session, View v) {
+    v.number = ++views[session];
     server.received(session, v, now());
+  }
+  void view(SessionId session, const View& v) {
+    send_view(session, v);
     answer_loads();
   }
   void answer_loads() {
@@ -87,11 +93,12 @@ struct WorldBench {
 
   FakeEnvironment environment;
   TimeUs time_us = 1'000'000;
+  std::map<SessionId, std::uint32_t> views;  // that each session has sent
   bool has_empty_base = false;  // loaded chunks are uniform; otherwise each is sent as a snapshot
   WorldServer server;
 };
 
-inline constexpr View kSmall{{0, 0, 0}, 1, 0};  // five chunks
+inline constexpr View kSmall{1, {0, 0, 0}, 1, 0};  // five chunks
 inline const EditShape kAtOrigin = SetVoxel{{1, 1, 1}};
 
 }  // namespace runstone::test

@@ -144,7 +144,7 @@ TEST_CASE("digest checks have version and digest of chunks that the session has"
 TEST_CASE("a digest check finds a digest that differs from its runs", "[world]") {
   Bench bench;
   bench.join(1, 1);
-  bench.server.received(1, View{{0, 0, 0}, 0, 0}, bench.now());
+  bench.send_view(1, View{1, {0, 0, 0}, 0, 0});
   bench.environment.loads.clear();
   Chunk wrong = test::dotted_chunk(kEdge);
   wrong.digest.lane[0] = 1;
