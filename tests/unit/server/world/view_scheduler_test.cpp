@@ -94,8 +94,8 @@ TEST_CASE("of several views within an interval the newest takes effect on the ne
 TEST_CASE("chunks outside of a skipped view are sent again, other chunks are not", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
-  const View home{{0, 0, 0}, 2, 0};
-  const View aside{{3, 0, 0}, 2, 0};
+  const View home{1, {0, 0, 0}, 2, 0};
+  const View aside{1, {3, 0, 0}, 2, 0};
   bench.view(1, home);
   const std::size_t first = bench.environment.snapshots.size();
   REQUIRE(first == cells_of(home));
@@ -111,7 +111,7 @@ TEST_CASE("chunks outside of a skipped view are sent again, other chunks are not
 TEST_CASE("after too many skipped views every chunk is sent again", "[world]") {
   WorldBench bench;
   bench.join(1, 1);
-  const View home{{0, 0, 0}, 1, 0};
+  const View home{1, {0, 0, 0}, 1, 0};
   bench.view(1, home);
   for (std::uint8_t radius = 2; radius < 4; ++radius) {  // each contains all of home
     for (std::uint8_t height = 0; height < 6; ++height)
