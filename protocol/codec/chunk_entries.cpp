@@ -156,10 +156,13 @@ Bytes list_of(std::span<const ChunkEntry> entries) {
   Bytes list;
   ByteWriter out(list);
   KeyWriter keys;
+  std::size_t runs = 0;
   for (const ChunkEntry& entry : entries) {
     keys.put(out, entry.key);
     out.bytes(*entry.bytes);
+    runs += entry.runs;
   }
+  RUNSTONE_ASSERT(entries.size() == 1 || runs <= kRunsPerMessageMax);
   return list;
 }
 
