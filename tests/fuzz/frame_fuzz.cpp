@@ -7,13 +7,14 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace {
 
 using namespace runstone;
 
 struct Outcome {
-  std::vector<Bytes> messages;  // the first byte is the class
+  std::vector<Bytes> messages;  // the first byte is the kind
   bool failed = false;
   friend bool operator==(const Outcome&, const Outcome&) = default;
 };
@@ -22,10 +23,12 @@ Outcome read(Sender sender, ByteView stream, std::uint64_t seed) {
   SplitMix64 rng(seed);
   FrameReader reader(sender);
   Outcome out;
-  const auto take = [&](FrameClass c, ByteView body) -> Result<void> {
-    RUNSTONE_ASSERT(!body.empty() && body.size() <= message_bytes_max(sender, c));
+  const auto take = [&](MessageKind kind, ByteView body) -> Result<void> {
+    RUNSTONE_ASSERT(kind < kMessageKindCount && may_send(info_of(kind), sender));
+    RUNSTONE_ASSERT(!body.empty() &&
+                    body.size() <= message_bytes_max(sender, info_of(kind).frame_class));
     RUNSTONE_ASSERT(reinterpret_cast<std::uintptr_t>(body.data()) % 16 == 0);
-    out.messages.push_back({static_cast<std::uint8_t>(c)});
+    out.messages.push_back({static_cast<std::uint8_t>(kind)});
     out.messages.back().insert(out.messages.back().end(), body.begin(), body.end());
     return {};
   };

@@ -1,27 +1,31 @@
-// Decodes any bytes as a message. Input: 1 byte (bit 0: sender; bits 1-2: class; bit 3: the edge of
-// the world is known and 16), then the message. A message that decodes is encoded again and must
-// decode to the same message.
+// Decodes any bytes as a message. Input: 1 byte (bits 0-4: kind, modulo their count; bit 5: the edge
+// of the world is known and 16; bit 6: of a kind that both sides send, the server is the sender),
+// then the message. A message that decodes is encoded again and must decode to the same message.
 #include <cstdint>
 
+#include "protocol/codec/message_table.hpp"
 #include "protocol/codec/messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace runstone;
-  if (size == 0 || (data[0] >> 1 & 3) == 3) return 0;
-  const Sender sender = (data[0] & 1) == 0 ? Sender::client : Sender::server;
-  const auto frame_class = static_cast<FrameClass>(data[0] >> 1 & 3);
-  const std::uint16_t edge = (data[0] & 8) == 0 ? 0 : 16;
+  if (size == 0) return 0;
+  const MessageKind kind = (data[0] & 31u) % kMessageKindCount;
+  const std::uint16_t edge = (data[0] & 32) == 0 ? 0 : 16;
+  const bool is_from_client = may_send(info_of(kind), Sender::client) &&
+                              ((data[0] & 64) == 0 || !may_send(info_of(kind), Sender::server));
+  const Sender sender = is_from_client ? Sender::client : Sender::server;
   const Bytes aligned(data + 1, data + size);
-  const auto message = decode_message(sender, frame_class, aligned, edge);
+  const auto message = decode_message(sender, kind, aligned, edge);
   if (!message) return 0;
+  RUNSTONE_ASSERT(message->index() == kind);
   // A Hello or Welcome of another protocol decodes to its version alone.
   const auto* hello = std::get_if<Hello>(&*message);
   if (hello != nullptr && hello->protocol != kProtocolVersion) return 0;
   const auto* welcome = std::get_if<Welcome>(&*message);
   if (welcome != nullptr && welcome->protocol != kProtocolVersion) return 0;
   const EncodedMessage again = encode_message(*message);
-  RUNSTONE_ASSERT(again.frame_class == frame_class);
-  const auto twice = decode_message(sender, frame_class, *again.bytes, edge);
+  RUNSTONE_ASSERT(again.kind == kind);
+  const auto twice = decode_message(sender, kind, *again.bytes, edge);
   RUNSTONE_ASSERT(twice && *twice == *message);
   return 0;
 }

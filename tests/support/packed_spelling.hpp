@@ -32,7 +32,7 @@ Bytes zstd_frame(ByteView body, bool announce = true);
 /// By default: 8x8x8, three runs of 3, 197 and 312 voxels of materials 1, 0 and 300.
 struct PackedSpelling {
   PackedSpelling();
-  std::uint8_t encoding = 2, version = 2, order = 2;
+  std::uint8_t encoding = 2, version = 1, order = 2;
   std::array<std::uint8_t, 3> sides{8, 8, 8};
   std::uint64_t runs = 3;
   std::vector<std::uint64_t> palette;         // first id, then differences - 1

@@ -1,12 +1,11 @@
 #include "tests/support/random_message.hpp"
-#include "tests/support/edit_oracle.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include "common/core/m61.hpp"
 #include "common/edits/descriptor/edit_geometry.hpp"
-#include "protocol/codec/message_table.hpp"
+#include "tests/support/edit_oracle.hpp"
 #include "tests/support/random_chunk.hpp"
 
 namespace runstone::test {
@@ -140,8 +139,22 @@ ClientAuth any_client_auth(SplitMix64& rng) {
   return m;
 }
 
+/// Returns strictly ascending keys, some of them neighbours.
+std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
+  std::set<ChunkKey> keys;
+  ChunkCoord at = any_coord(rng);
+  for (std::uint32_t i = 1 + rng.below(static_cast<std::uint32_t>(count_max)); i > 0; --i) {
+    at = rng.below(3) == 0 ? any_coord(rng) : ChunkCoord{at.x, at.y, std::max(at.z - 1, -1000)};
+    keys.insert({0, at});
+  }
+  return {keys.begin(), keys.end()};
+}
+
+std::uint32_t any_view_number(SplitMix64& rng) { return 1 + rng.below(1'000'000); }
+
 View any_view(SplitMix64& rng) {
-  return {any_coord(rng),
+  return {any_view_number(rng),
+          any_coord(rng),
           static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
           static_cast<std::uint8_t>(rng.below(kViewRadiusMax + 1)),
           static_cast<std::uint16_t>(rng.next()),
@@ -150,18 +163,12 @@ View any_view(SplitMix64& rng) {
 }
 
 ChunkRequest any_chunk_request(SplitMix64& rng) {
-  ChunkRequest m;
-  m.keys.resize(1 + rng.below(kChunkRequestKeysMax));
-  for (ChunkKey& key : m.keys) key.at = any_coord(rng);
-  return m;
+  return {ascending_keys(rng, kChunkRequestKeysMax)};
 }
 
 ChunkUnavailable any_unavailable(SplitMix64& rng) {
-  ChunkUnavailable m;
-  m.keys.resize(1 + rng.below(kUnavailableKeysMax));
-  for (ChunkKey& key : m.keys) key.at = any_coord(rng);
-  m.reason = static_cast<UnavailableReason>(1 + rng.below(255));
-  return m;
+  return {any_view_number(rng), ascending_keys(rng, kUnavailableKeysMax),
+          static_cast<UnavailableReason>(1 + rng.below(255))};
 }
 
 HistoryRequest any_history_request(SplitMix64& rng) {
@@ -175,24 +182,15 @@ HistoryRequest any_history_request(SplitMix64& rng) {
 
 ViewState any_view_state(SplitMix64& rng) {
   ViewState m;
-  m.request = 1 + rng.below(1'000'000);
+  m.view = rng.below(1'000'000);
   m.phase = static_cast<ViewPhase>(1 + rng.below(kViewPhaseMax));
   m.past = rng.below(2) == 0;
+  const bool is_asked = m.past || m.phase == ViewPhase::refused;
+  m.request = rng.below(1'000'000) + (is_asked ? 1 : 0);
   if (m.past) m.seq = any64(rng) >> 1;
-  m.utc_us = any_time(rng);
+  if (m.seq != 0) m.utc_us = any_time(rng);
   m.text = any_text(rng, 0, kTextBytesMax);
   return m;
-}
-
-/// Returns strictly ascending keys, some of them neighbours.
-std::vector<ChunkKey> ascending_keys(SplitMix64& rng, std::size_t count_max) {
-  std::set<ChunkKey> keys;
-  ChunkCoord at = any_coord(rng);
-  for (std::uint32_t i = 1 + rng.below(static_cast<std::uint32_t>(count_max)); i > 0; --i) {
-    at = rng.below(3) == 0 ? any_coord(rng) : ChunkCoord{at.x, at.y, std::max(at.z - 1, -1000)};
-    keys.insert({0, at});
-  }
-  return {keys.begin(), keys.end()};
 }
 
 CachedChunks any_cached_chunks(SplitMix64& rng) {
@@ -205,14 +203,15 @@ CachedChunks any_cached_chunks(SplitMix64& rng) {
 
 ChunksNotModified any_chunks_not_modified(SplitMix64& rng) {
   ChunksNotModified m;
+  m.view = any_view_number(rng);
   for (const ChunkKey& key : ascending_keys(rng, kChunksNotModifiedMax))
     m.chunks.push_back({key, any_version(rng).seq});
   return m;
 }
 
-ChunkEdits any_chunk_edits(SplitMix64& rng) {
+ChunkEdits any_chunk_edits(SplitMix64& rng, const ChunkKey& key) {
   ChunkEdits m;
-  m.key.at = any_coord(rng);
+  m.key = key;
   m.from = rng.below(2) == 0 ? 0 : any64(rng) >> 2;
   Sequence seq = m.from;
   for (std::uint32_t i = 1 + rng.below(6); i > 0; --i) {
@@ -235,9 +234,9 @@ CommandOutput any_output(SplitMix64& rng) {
   return m;
 }
 
-ChunkSnapshot any_snapshot(SplitMix64& rng) {
+ChunkSnapshot any_snapshot(SplitMix64& rng, const ChunkKey& key) {
   ChunkSnapshot m;
-  m.key.at = any_coord(rng);
+  m.key = key;
   const AxisOrder order = random_order(rng);
   m.chunk.voxels = random_chunk(rng, Extent::cube(kMessageEdge), order, 1 + rng.below(300));
   m.chunk.version = any_version(rng);
@@ -245,21 +244,29 @@ ChunkSnapshot any_snapshot(SplitMix64& rng) {
   return m;
 }
 
-UniformChunks any_uniform(SplitMix64& rng) {
-  UniformChunks m;
-  for (std::uint32_t left = 1 + rng.below(8); left > 0; --left) {
-    UniformChunk chunk{{0, any_coord(rng)}, static_cast<Material>(rng.next()), any_version(rng)};
-    for (std::uint32_t high = 1 + rng.below(5); high > 0; --high) {
-      m.chunks.push_back(chunk);
-      ++chunk.key.at.y;
+/// Returns up to six chunks, far fewer runs than the limit, in both forms.
+Chunks any_chunks(SplitMix64& rng) {
+  Chunks m;
+  m.view = any_view_number(rng);
+  for (const ChunkKey& key : ascending_keys(rng, 6)) {
+    if (rng.below(3) == 0) {
+      m.chunks.emplace_back(any_chunk_edits(rng, key));
+    } else {
+      m.chunks.emplace_back(any_snapshot(rng, key));
     }
   }
-  const auto before = [](const UniformChunk& a, const UniformChunk& b) {
-    return is_before_in_list(a.key.at, b.key.at);
-  };
-  const auto same = [](const UniformChunk& a, const UniformChunk& b) { return a.key == b.key; };
-  std::sort(m.chunks.begin(), m.chunks.end(), before);
-  m.chunks.erase(std::unique(m.chunks.begin(), m.chunks.end(), same), m.chunks.end());
+  return m;
+}
+
+/// Draws materials and versions from few values, so that some neighbours are equal.
+UniformChunks any_uniform(SplitMix64& rng) {
+  UniformChunks m;
+  m.view = any_view_number(rng);
+  const Version version = any_version(rng);
+  for (const ChunkKey& key : ascending_keys(rng, 40)) {
+    const auto material = static_cast<Material>(rng.below(4) == 0 ? rng.next() : rng.below(2));
+    m.chunks.push_back({key, material, rng.below(4) == 0 ? any_version(rng) : version});
+  }
   return m;
 }
 
@@ -296,9 +303,8 @@ Reject any_reject(SplitMix64& rng) {
 
 DigestCheck any_digest_check(SplitMix64& rng) {
   DigestCheck m;
-  m.entries.resize(rng.below(20));
-  for (DigestCheckEntry& e : m.entries)
-    e = {{0, any_coord(rng)}, any_version(rng), any_digest(rng)};
+  for (const ChunkKey& key : ascending_keys(rng, 20))
+    m.entries.push_back({key, any_version(rng), any_digest(rng)});
   return m;
 }
 
@@ -331,75 +337,73 @@ EditRequest any_edit_request(SplitMix64& rng) {
   return request;
 }
 
-Message random_message(SplitMix64& rng, std::size_t kind) {
+Message random_message(SplitMix64& rng, MessageKind kind) {
   switch (kind) {
-    case 0:
+    case kKindOf<Hello>:
       return any_hello(rng);
-    case 1:
+    case kKindOf<Welcome>:
       return any_welcome(rng);
-    case 2:
+    case kKindOf<ClientAuth>:
       return any_client_auth(rng);
-    case 3:
+    case kKindOf<SessionAccepted>:
       return SessionAccepted{static_cast<AuthorId>(any64(rng) >> 32), any64(rng)};
-    case 4:
+    case kKindOf<View>:
       return any_view(rng);
-    case 5:
+    case kKindOf<ChunkRequest>:
       return any_chunk_request(rng);
-    case 6:
-      return any_snapshot(rng);
-    case 7:
+    case kKindOf<Chunks>:
+      return any_chunks(rng);
+    case kKindOf<EditRequest>:
       return any_edit_request(rng);
-    case 8:
+    case kKindOf<Commit>:
       return any_commit(rng);
-    case 9:
+    case kKindOf<Reject>:
       return any_reject(rng);
-    case 10:
+    case kKindOf<Durable>:
       return Durable{1 + rng.below(1000), any64(rng)};
-    case 11:
+    case kKindOf<DigestCheck>:
       return any_digest_check(rng);
-    case 12:
+    case kKindOf<Move>:
       return Move{any_pose(rng)};
-    case 13:
+    case kKindOf<PlayerPoses>:
       return any_poses(rng);
-    case 14:
+    case kKindOf<PlayerList>:
       return any_player_list(rng);
-    case 15:
+    case kKindOf<Ping>:
       return Ping{any_time(rng)};
-    case 16:
+    case kKindOf<Pong>:
       return Pong{any_time(rng), any_time(rng)};
-    case 17:
+    case kKindOf<Goodbye>:
       return Goodbye{static_cast<GoodbyeReason>(1 + rng.below(kGoodbyeReasonMax)),
                      any_text(rng, 0, kTextBytesMax)};
-    case 18:
+    case kKindOf<ChunkUnavailable>:
       return any_unavailable(rng);
-    case 19:
+    case kKindOf<HistoryRequest>:
       return any_history_request(rng);
-    case 20:
+    case kKindOf<ViewState>:
       return any_view_state(rng);
-    case 21:
+    case kKindOf<CommandRequest>:
       return CommandRequest{rng.below(1000), any_text(rng, 1, kCommandBytesMax)};
-    case 22:
+    case kKindOf<CommandOutput>:
       return any_output(rng);
-    case 23:
+    case kKindOf<ReceiveAck>:
       return ReceiveAck{1 + (any64(rng) >> 1)};
-    case 24:
+    case kKindOf<UniformChunks>:
       return any_uniform(rng);
-    case 25:
+    case kKindOf<CachedChunks>:
       return any_cached_chunks(rng);
-    case 26:
-      return any_chunks_not_modified(rng);
     default:
-      RUNSTONE_ASSERT(kind == 27);
-      return any_chunk_edits(rng);
+      RUNSTONE_ASSERT(kind == kKindOf<ChunksNotModified>);
+      return any_chunks_not_modified(rng);
   }
 }
 
-Sender sender_of(const Message& message) {
-  return may_send(info_of(message), Sender::client) ? Sender::client : Sender::server;
+Sender sender_of(MessageKind kind) {
+  return may_send(info_of(kind), Sender::client) ? Sender::client : Sender::server;
 }
 
-Result<Message> decode(const Message& kind, const EncodedMessage& encoded) {
-  return decode_message(sender_of(kind), encoded.frame_class, *encoded.bytes, kMessageEdge);
+Result<Message> decode(const EncodedMessage& encoded) {
+  return decode_message(sender_of(encoded.kind), encoded.kind, *encoded.bytes, kMessageEdge);
 }
 
 }  // namespace runstone::test

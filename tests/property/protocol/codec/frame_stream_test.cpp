@@ -5,11 +5,26 @@
 
 #include "common/core/hash.hpp"
 #include "protocol/codec/frame.hpp"
+#include "protocol/codec/message_table.hpp"
 
 namespace runstone::test {
 namespace {
 
-using Messages = std::array<std::vector<Bytes>, kFrameClassCount>;
+struct Sent {
+  MessageKind kind = 0;
+  Bytes body;
+  friend bool operator==(const Sent&, const Sent&) = default;
+};
+/// Messages by class, each in the order in which they were sent.
+using Messages = std::array<std::vector<Sent>, kFrameClassCount>;
+
+/// Returns a kind that the sender may send.
+MessageKind random_kind(SplitMix64& rng, Sender sender) {
+  for (;;) {
+    const MessageKind kind = rng.below(static_cast<std::uint32_t>(kMessageKindCount));
+    if (may_send(info_of(kind), sender)) return kind;
+  }
+}
 
 Bytes random_body(SplitMix64& rng, std::size_t bytes_max) {
   const std::uint32_t size =
@@ -21,13 +36,12 @@ Bytes random_body(SplitMix64& rng, std::size_t bytes_max) {
 
 Messages random_messages(SplitMix64& rng, Sender sender) {
   Messages out;
-  for (int c = 0; c < kFrameClassCount; ++c) {
+  for (std::uint32_t left = rng.below(20); left > 0; --left) {
+    const MessageKind kind = random_kind(rng, sender);
+    const FrameClass frame_class = info_of(kind).frame_class;
     const std::size_t bytes_max =
-        std::min<std::size_t>(message_bytes_max(sender, static_cast<FrameClass>(c)), 100'000);
-    if (bytes_max == 0) continue;
-    for (std::uint32_t left = rng.below(8); left > 0; --left) {
-      out[static_cast<std::size_t>(c)].push_back(random_body(rng, bytes_max));
-    }
+        std::min<std::size_t>(message_bytes_max(sender, frame_class), 100'000);
+    out[static_cast<std::size_t>(frame_class)].push_back({kind, random_body(rng, bytes_max)});
   }
   return out;
 }
@@ -44,12 +58,12 @@ Bytes random_stream(SplitMix64& rng, const Messages& messages) {
     }
     if (unfinished.empty()) return stream;
     const std::size_t c = unfinished[rng.below(static_cast<std::uint32_t>(unfinished.size()))];
-    const Bytes& body = messages[c][message[c]];
+    const auto& [kind, body] = messages[c][message[c]];
     const std::size_t left = body.size() - at[c];
     const std::size_t size =
         std::min({left, kFragmentBytesMax,
                   rng.below(3) == 0 ? std::size_t{1} + rng.below(20) : kFragmentBytesMax});
-    const FrameHeader header = writer.next(static_cast<FrameClass>(c), size, size < left);
+    const FrameHeader header = writer.next(kind, size, size < left);
     stream.insert(stream.end(), header.begin(), header.end());
     const auto from = body.begin() + static_cast<std::ptrdiff_t>(at[c]);
     stream.insert(stream.end(), from, from + static_cast<std::ptrdiff_t>(size));
@@ -65,9 +79,10 @@ Bytes random_stream(SplitMix64& rng, const Messages& messages) {
 std::optional<Messages> read_in_pieces(SplitMix64& rng, Sender sender, ByteView stream) {
   FrameReader reader(sender);
   Messages out;
-  const auto take = [&out](FrameClass c, ByteView body) -> Result<void> {
+  const auto take = [&out](MessageKind kind, ByteView body) -> Result<void> {
     CHECK(reinterpret_cast<std::uintptr_t>(body.data()) % 16 == 0);
-    out[static_cast<std::size_t>(c)].emplace_back(body.begin(), body.end());
+    out[static_cast<std::size_t>(info_of(kind).frame_class)].push_back(
+        {kind, Bytes(body.begin(), body.end())});
     return {};
   };
   const std::uint32_t piece_max = 1 + (rng.below(2) == 0 ? rng.below(30) : rng.below(40'000));
@@ -103,8 +118,7 @@ TEST_CASE("a lost, repeated or swapped frame is noticed at once", "[protocol][pr
     FrameWriter writer;
     for (int i = 0; i < 6; ++i) {
       const Bytes body = random_body(rng, 200);
-      const FrameHeader header =
-          writer.next(static_cast<FrameClass>(rng.below(3)), body.size(), false);
+      const FrameHeader header = writer.next(random_kind(rng, Sender::server), body.size(), false);
       frames.emplace_back(header.begin(), header.end());
       frames.back().insert(frames.back().end(), body.begin(), body.end());
     }

@@ -83,7 +83,8 @@ TEST_CASE("packed bytes whose fields contradict each other are refused", "[proto
     std::function<void(PackedSpelling&)> bend;
     ErrorCode code;
   } cases[] = {
-      {"version", [](auto& s) { s.version = 3; }, ErrorCode::bad_version},
+      {"version", [](auto& s) { s.version = 2; }, ErrorCode::bad_version},
+      {"version 0", [](auto& s) { s.version = 0; }, ErrorCode::bad_version},
       {"order", [](auto& s) { s.order = 6; }, ErrorCode::bad_value},
       {"unknown flag", [](auto& s) { s.order = 2 + 16; }, ErrorCode::bad_value},
       {"side", [](auto& s) { s.sides = {8, 8, 129}; }, ErrorCode::bad_value},
@@ -146,7 +147,7 @@ TEST_CASE("packed bytes whose fields contradict each other are refused", "[proto
 }
 
 TEST_CASE("a varint of the head in more bytes than needed is refused", "[protocol]") {
-  Bytes bytes{2, 2, 2, 8, 8, 8};
+  Bytes bytes{2, 1, 2, 8, 8, 8};
   spell_varint(bytes, 3, 1);
   bytes = concat(bytes, {3, 0, 0, 0xaa, 0x02, 1, 0, 2, 231, 3});
   CHECK(error_of(bytes) == ErrorCode::not_canonical);

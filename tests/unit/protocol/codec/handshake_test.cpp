@@ -23,8 +23,8 @@ struct Exchange {
 
   Exchange() {
     SplitMix64 rng{5};
-    hello = std::get<Hello>(random_message(rng, 0));
-    welcome = std::get<Welcome>(random_message(rng, 1));
+    hello = random_message<Hello>(rng);
+    welcome = random_message<Welcome>(rng);
     hello.key = client.public_key;
     welcome.server_key = server.public_key;
     sign_both();

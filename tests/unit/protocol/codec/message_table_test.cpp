@@ -63,17 +63,28 @@ std::optional<GoodbyeReason> reason(const Message& message, Sender sender, Sessi
 }  // namespace
 
 TEST_CASE("the table has the names, the numbers and the order of the schema", "[protocol]") {
+  const char* const* names = wire::EnumNamesKind();
+  for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
+    REQUIRE(names[kind] != nullptr);
+    CHECK(std::string(info_of(kind).name) == names[kind]);
+    CHECK(names[kind] == wire::EnumNameKind(static_cast<wire::Kind>(wire_number(kind))));
+  }
+  CHECK(names[kMessageKindCount] == nullptr);
+}
+
+TEST_CASE("an encoded message has its kind, and the kind decides the class", "[protocol]") {
   SplitMix64 rng{Catch::rngSeed()};
   for (MessageKind kind = 0; kind < kMessageKindCount; ++kind) {
     const Message message = random_message(rng, kind);
-    CAPTURE(kind);
+    CAPTURE(info_of(kind).name);
     REQUIRE(message.index() == kind);
     const EncodedMessage encoded = encode_message(message);
-    CHECK(kind_of(*encoded.bytes) == kind);
-    CHECK(encoded.frame_class == info_of(kind).frame_class);
-    CHECK(std::string(info_of(kind).name) ==
-          wire::EnumNameBody(wire::GetMessage(encoded.bytes->data())->body_type()));
+    CHECK(encoded.kind == kind);
+    CHECK(class_of(encoded) == info_of(kind).frame_class);
   }
+  CHECK(kKindOf<Hello> == 0);
+  CHECK(kKindOf<Chunks> == Message(Chunks{}).index());
+  CHECK(kKindOf<ChunksNotModified> == kMessageKindCount - 1);
 }
 
 TEST_CASE("every client message fits a class that clients may use", "[protocol]") {
