@@ -236,8 +236,8 @@ RenderStats Renderer::draw(const Camera& camera, int width, int height,
 
 void Renderer::finish() {
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kNanosecondsMax =
-      30'000'000'000;  // a driver that hangs must not hang the client
+  // The wait is bounded, so that a driver that hangs does not block the client for ever.
+  constexpr GLuint64 kNanosecondsMax = 30'000'000'000;
   const GLenum waited = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanosecondsMax);
   glDeleteSync(fence);
   if (waited == GL_TIMEOUT_EXPIRED)

@@ -54,7 +54,7 @@ struct PathReport {
   std::uint64_t edits = 0;           // seen on this path, or due and never seen
   std::uint64_t without_effect = 0;  // no visible voxel changed: no later stage is recorded
   std::uint64_t left_view = 0;       // its chunks left the view before they were drawn
-  /// Its sender or this client had no clock offset: recorded in `step` only.
+  /// Edits recorded in `step` only, because their sender or this client had no clock offset.
   std::uint64_t unknown_submit = 0;
 };
 
@@ -74,17 +74,18 @@ class LatencyRecorder {
   /// `last`: the last recorded stage: presented, or meshed for a client that draws nothing.
   explicit LatencyRecorder(LatencyStage last = LatencyStage::presented) : last_(last) {}
 
-  /// A local edit was submitted. Call it before take() gets the changes that contain the edit.
+  /// Records that a local edit was submitted. Call it before take() gets the changes that contain
+  /// the edit.
   void submitted(ClientSequence seq, TimeUs scheduled_us) { local_[seq] = scheduled_us; }
-  /// A local edit was due, but submit() failed: it counts as infinitely late.
+  /// Records that a local edit was due and submit() failed. The edit counts as infinitely late.
   void not_submitted();
   void take(const ReplicaChanges& changes, const ClockOffset& clock, TimeUs now_us);
 
-  /// A mesh made from the chunk's shown runs is ready, or on the GPU. `serial`: the
-  /// Replica::shown_serial() of these runs.
+  /// Record that a mesh made from the chunk's shown runs is ready, and that it is on the GPU.
+  /// `serial`: the Replica::shown_serial() of these runs.
   void meshed(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
   void uploaded(const ChunkKey& key, std::uint64_t serial, TimeUs at_us);
-  /// The frame with everything uploaded so far is on the screen.
+  /// Records that the frame with everything uploaded so far is on the screen.
   void presented(TimeUs at_us);
 
   /// Returns the number of edits that have not reached the last stage.

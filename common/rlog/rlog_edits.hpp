@@ -14,11 +14,12 @@
 
 namespace runstone {
 
-/// Client, epoch, client sequence, time, cause, subject, descriptor length, descriptor.
+/// The columns are client, epoch, client sequence, time, cause, subject, descriptor length,
+/// descriptor.
 inline constexpr std::size_t kRlogColumns = 8;
 using RlogClient = std::pair<AuthorId, ClientInstance>;
 
-/// Collects one block.
+/// Collects the edits of one block.
 class RlogEditsWriter {
  public:
   /// Requires a valid record that continues the previous one: the next sequence; epoch and time do

@@ -1,5 +1,5 @@
-// What the subcommands of runstone-replay share: opening a world, finding the end of a replay, and
-// printing a report.
+// Functions that the subcommands of runstone-replay share. They open a world, find the end of a
+// replay, and print a report.
 #pragma once
 #include <iosfwd>
 #include <memory>

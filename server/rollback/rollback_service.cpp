@@ -10,8 +10,8 @@
 namespace runstone {
 namespace {
 
-constexpr std::size_t kPreviewsMax =
-    16;  // selections are large: beyond it the oldest preview is discarded
+// Selections are large, so the oldest preview is discarded when there are more.
+constexpr std::size_t kPreviewsMax = 16;
 constexpr std::size_t kListedMax = 20;
 constexpr TimeUs kSliceIntervalUs = 45'000;  // of one job: a little less than a tick
 

@@ -1,9 +1,8 @@
 // ServerCore: connects the parts of a running server around the world strand and starts and stops
-// them. What sessions and timers report becomes calls of WorldServer; ServerEnvironment does the
-// other direction.
-// Threads: I/O threads run the strands; workers load, generate and encode chunks; readers and the
-// log writer have threads of their own. The world and the connected sessions belong to the world
-// strand.
+// them. It turns events of sessions and timers into calls of WorldServer. ServerEnvironment is the
+// other direction. Threads: I/O threads run the strands; workers load, generate and encode chunks;
+// readers and the log writer have threads of their own. The world and the connected sessions belong
+// to the world strand.
 #pragma once
 #include <asio/io_context.hpp>
 #include <asio/thread_pool.hpp>
@@ -84,7 +83,7 @@ class ServerCore final : public NetEvents {
  private:
   DurableLog::Events log_events();
   void tick();
-  /// Runs behind every task of the world strand.
+  /// Runs after every task of the world strand.
   void after_task();
   void finish_stop_if_flushed();
   void write_counters();

@@ -29,7 +29,7 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// Finds such partitions. An object keeps its buffers between calls. Thread: one.
 class MinimumPartition {
  public:
   /// Replaces `out` by rectangles that cover each face of `plane` once, by row and place of their

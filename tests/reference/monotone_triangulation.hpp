@@ -18,13 +18,13 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// An object keeps its buffers between calls. Thread: one.
 class MonotoneTriangulation {
  public:
   // Indices of points(), counter-clockwise over u, v.
   using Triangle = std::array<std::uint32_t, 3>;
 
-  /// Triangulates a region of `outlines`. Cost: O(n log n), plus a look at every open slab where
+  /// Triangulates a region of `outlines`. Cost: O(n log n), and O(open slabs) for each corner where
   /// one splits.
   void run(const Outlines& outlines, const Outlines::Region& region);
 

@@ -24,7 +24,7 @@
 
 namespace runstone::reference {
 
-/// Keeps its buffers between calls. Thread: one.
+/// An object keeps its buffers between calls. Thread: one.
 class SweepDelaunay {
  public:
   // Indices of points(), counter-clockwise over u, v.
@@ -40,10 +40,9 @@ class SweepDelaunay {
 
  private:
   using PointId = std::uint32_t;
-  using EdgeId =
-      // 3 t + i: the edge from corner i of triangle t to the next corner, with the triangle on its
-      // left.
-      std::uint32_t;
+  // 3 t + i: the edge from corner i of triangle t to the next corner, with the triangle on its
+  // left.
+  using EdgeId = std::uint32_t;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// The position of an edge relative to the region. outer: the region is on its right.
   enum class Side : std::uint8_t { free, inner, outer };

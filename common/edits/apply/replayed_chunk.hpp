@@ -1,5 +1,6 @@
-// ReplayedChunk: a chunk that follows the log. Edits collect on its stack, and each full stack is
-// applied in one sweep. A replay looks at the voxels seldom, not after every edit.
+// ReplayedChunk: a chunk that follows the log. Edits are collected on its stack, and each full
+// stack is applied in one sweep. This is cheaper than one edit at a time, and a replay does not
+// need the voxels after every edit.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +13,8 @@
 
 namespace runstone {
 
-/// Maximum number of edits in one sweep. It bounds memory; a larger stack gains little
-/// (docs/performance.md).
+/// The maximum number of edits in one sweep. It bounds memory. A larger stack would save little
+/// time (docs/performance.md).
 inline constexpr std::size_t kFollowedEditsMax = 64;
 
 /// The state that all replayed chunks of a thread share: buffers, and counts since it was made.

@@ -158,7 +158,8 @@ class Sweep {
       add(rows[at(Side::fast_neg)], differ(f_fast_neg, Lanes::load(fast_neg_then + m), between), m);
       add(rows[at(Side::fast_pos)], differ(f_fast_pos, Lanes::load(fast_pos_then + m), between), m);
     }
-    // Rows behind the last row of the layer have no faces. The first of them would close open strips.
+    // Rows behind the last row of the layer have no faces. The first of them would close open
+    // strips.
     const Row valid = bits_below<Row>(count);
     for (RowSet& set : rows) set &= valid;
     return rows;

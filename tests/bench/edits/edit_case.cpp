@@ -165,10 +165,9 @@ EditTiming measure_edits(const VoxelWorld& world, const std::vector<Volume>& vol
     EditedChunk edited(world, volume);
     if (edited.mesh().empty()) continue;
     const VoxelBox inside = box_of({}, static_cast<std::int32_t>(volume.edge));
-    Samples
-        // Not counted: the first edit of a chunk, and the edits that take one back, whose branches
-        // the processor has learned.
-        left_out;
+    // The times that do not count: the first edit of a chunk, and the edits that take one back,
+    // whose branches the processor has learned.
+    Samples left_out;
     for (unsigned i = 0; i <= per_volume; ++i) {
       const VisibleVoxel visible = pick(edited.mesh(), rng);
       const auto local = [&](VoxelPos at) {

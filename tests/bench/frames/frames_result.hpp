@@ -20,9 +20,8 @@ struct FramesRow {
   /// - "product": the client's renderer. Its sky, fog and light cost more a pixel, and its picture
   ///   cannot be compared.
   std::string path;
-  std::size_t vertices =
-      // 4 a quad, as the thesis counts. Vertices that a triangle mesh shares count once.
-      0;
+  // A quad has 4, as the thesis counts. Vertices that a triangle mesh shares count once.
+  std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::size_t upload_bytes = 0;
   unsigned frames = 0;  // timed frames

@@ -163,9 +163,8 @@ void edit_too_often(AttackThread& thread) {
 }
 
 void edit_too_much(AttackThread& thread) {
-  constexpr std::uint16_t kRadius =
-      // 905,000 voxels, just below what one edit may have by default.
-      60;
+  // 905,000 voxels, just below what one edit may have by default.
+  constexpr std::uint16_t kRadius = 60;
   flood_edits(thread, [](const VoxelPos& at) { return EditShape{FillSphere{at, kRadius}}; });
 }
 

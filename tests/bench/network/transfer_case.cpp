@@ -106,15 +106,13 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   socket.read_some(asio::buffer(&asked, 1), error);
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
-    socket.read_some(asio::buffer(&asked, 1),
-                     // Until the receiver has all bytes and closes.
-                     error);
+    // Until the receiver has all bytes and closes.
+    socket.read_some(asio::buffer(&asked, 1), error);
 }
 
 struct Received {
-  double transfer_ms = 0,
-         // Last byte read, and last chunk meshed, since the request.
-      complete_ms = 0;
+  // From the request until the last byte was read, and until the last chunk was meshed.
+  double transfer_ms = 0, complete_ms = 0;
   TransferTimes times;
 };
 

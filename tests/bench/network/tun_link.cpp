@@ -36,9 +36,9 @@ using test::TimeNs;
 constexpr const char* kDevice = "rs0";
 constexpr int kBatch = 64;  // packets read from one side before the other side is read
 constexpr std::size_t kLatesMax = 1'000'000;
-constexpr int kKernelPackets =
-    // Packets that wait for the forwarder: all waiting is to be the model's.
-    20'000;
+// The number of packets that may wait for the forwarder. It is large, so that no packet is lost
+// outside of the model.
+constexpr int kKernelPackets = 20'000;
 
 TimeNs now() { return static_cast<TimeNs>(now_ns()); }
 

@@ -64,9 +64,8 @@ double read_ns(const Store& store, const StoreCase& asked) {
   return block_ns([&] {
            for (const LocalPos at : asked.reads) {
              const Material material = store.at(at);
-             benchmark::DoNotOptimize(
-                 // One by one: in a store of one material all reads are the same.
-                 material);
+             // One by one: in a store of one material all reads are the same.
+             benchmark::DoNotOptimize(material);
            }
            benchmark::ClobberMemory();
          }) /

@@ -1,4 +1,4 @@
-// The stores as cases to measure, each in front of one volume.
+// The stores as cases to measure, each with one volume.
 //   flat           one material a voxel, in the axis order of the runs (flat_array.hpp)
 //   morton         the same by Morton code (morton_array.hpp)
 //   palette        sections of 16³ with a palette, as in Minecraft (palette_store.hpp)

@@ -26,8 +26,9 @@ using test::VirtualDisplay;
 using test::wait_for;
 
 constexpr int kWidth = 480, kHeight = 360;
-constexpr double kChanged =
-    0.5;  // of the middle; a picked voxel's outline and the cross hair are less
+// The share of the middle's pixels that a changed scene changes. The outline of the picked voxel
+// and the cross hair change less.
+constexpr double kChanged = 0.5;
 constexpr std::chrono::seconds kLong{60};  // for a step on a machine that has much else to do
 
 /// Returns the required programs that this machine lacks.

@@ -61,9 +61,8 @@ unsigned number_of(const ThesisRow& row) {
 
 /// Means over the 27 chunks of a world.
 struct WorldMeans {
-  double vp = 0, grid = 0,
-         // Vertices. The first two are means over chunks that have any, as the thesis logged them.
-      rle = 0;
+  // Vertices. The first two are means over chunks that have any, as the thesis logged them.
+  double vp = 0, grid = 0, rle = 0;
   double opaque = 0, runs = 0, bytes_logged = 0, culled_alone = 0, grid_alone = 0;
 };
 
