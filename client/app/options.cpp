@@ -21,7 +21,7 @@ std::string parse_size(const std::string& text, ClientOptions& out) {
   return {};
 }
 
-/// Values that become options only after the whole command line was read.
+/// Values that are converted to options after the whole command line was read.
 struct RawOptions {
   std::string address, size, encoding = "auto";
   unsigned view = ClientOptions{}.view_radius, view_v = 0;

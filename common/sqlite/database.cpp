@@ -7,11 +7,11 @@
 namespace runstone::sql {
 namespace {
 
-// A reader waits while a writer holds the file exclusively: during recovery and at the end of a
-// checkpoint.
+// The time that a connection waits for a lock. A writer holds the file exclusively during recovery
+// and at the end of a checkpoint.
 constexpr int kBusyMsMax = 2000;
 
-/// Returns the URI of a file. Characters that mean something in a URI are escaped.
+/// Returns the URI of a file. Characters with a special meaning in a URI are escaped.
 std::string uri_of(const std::string& file) {
   // A path that begins with "//" would read as the name of a host; an empty host comes before it.
   std::string uri = file.starts_with("//") ? "file://" : "file:";

@@ -46,7 +46,7 @@ nlohmann::ordered_json times_json(std::uint64_t edits, const std::vector<double>
           {"edits_per_second", rate(edits, median(seconds))}};
 }
 
-/// What all rounds measured.
+/// The measurements of all rounds.
 struct Times {
   std::string world, file;  // id of the world in hex; its file
   std::vector<double> read_seconds, rebuild_seconds;

@@ -44,7 +44,7 @@ std::vector<Subcommand> subcommands() {
   };
 }
 
-/// The flags that chose what to do before there were subcommands.
+/// Flags that a person may type in place of a subcommand, and the command line to use instead.
 struct OldFlag {
   std::string_view flag, spelling;
 };

@@ -74,7 +74,7 @@ StoreResult<void> TimelapseWorld::set_stage(std::uint32_t radius,
   for (const ChunkCoord& eye : eyes) add_columns(eye);
   if (columns.size() > kChunksMax) return too_large();
   for (const Column& column : columns) add_surface(column);
-  // What was built before may lie above the ground or below it.
+  // Earlier buildings may lie above the ground or below it.
   for (const ChunkKey& key : start_.edited()) {
     if (columns.contains({key.at.x, key.at.z})) add_around(key.at);
   }

@@ -71,7 +71,7 @@ std::string report_json(const Store& store, const ReplayReport& report, double s
   return json + ",\n\"report\":" + more.dump() + "}\n";
 }
 
-/// Hands the lists, and the keyframes unless the replay is quick, to the replayer.
+/// Passes the lists to the replayer, and also the keyframes unless the replay is quick.
 Result<void, std::string> expect_all(Replayer& replayer, Store& store,
                                      const VerifyOptions& options) {
   for (const std::string& file : options.against) {

@@ -320,8 +320,8 @@ RollbackService::Job& RollbackService::start_job(RestoreOrder order, std::string
 }
 
 void RollbackService::step(Job& job, const Clocks& now) {
-  // tick() is also called whenever a worker has answered. The interval bounds the writes all the
-  // same.
+  // tick() is also called whenever a worker has answered, so the interval bounds the rate of
+  // writes.
   if (!job.wrote_us || now.steady_us - *job.wrote_us >= kSliceIntervalUs) {
     const std::uint64_t written = job.job.progress().edits;
     job.job.step(world_, now);

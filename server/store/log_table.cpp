@@ -63,7 +63,7 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
 }  // namespace
 
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
-  // The statements below do not see a row with a damaged log id. It would lie at one of the two
+  // The statements below do not find a row with a damaged log id. Such a row lies at one of the two
   // ends of the key order.
   const auto strangers = database.integer(
       "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + EXISTS(SELECT 1 FROM edit_log WHERE "

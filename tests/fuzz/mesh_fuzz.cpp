@@ -40,14 +40,14 @@ class Input {
  public:
   explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes), rng_(seed_of(bytes)) {}
   bool empty() const { return bytes_.empty(); }
-  /// Returns the next byte, or 0 behind the end.
+  /// Returns the next byte, or 0 after the end of the input.
   std::uint8_t next() {
     if (bytes_.empty()) return 0;
     const std::uint8_t byte = bytes_.front();
     bytes_ = bytes_.subspan(1);
     return byte;
   }
-  /// Returns the next byte, or a random one behind the end.
+  /// Returns the next byte, or a random one after the end of the input.
   std::uint8_t next_or_drawn() {
     return empty() ? static_cast<std::uint8_t>(rng_.below(256)) : next();
   }

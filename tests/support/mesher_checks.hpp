@@ -1,6 +1,6 @@
 // MesherChecks: checks all reference meshers with the oracle that also checks the product: exposed
 // unit faces with material and direction, each covered once by quads that wind outwards. Meshers
-// that cull less are compared with what they do show, face by face.
+// that cull less are compared with the faces that they are to show.
 #pragma once
 #include <cstddef>
 #include <string>

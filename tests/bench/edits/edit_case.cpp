@@ -108,7 +108,7 @@ class EditedChunk {
   Neighbour& neighbour_at(Direction d) { return *neighbours_[static_cast<std::size_t>(d)]; }
   const RunChunk& neighbour_chunk(Direction d) { return neighbour_at(d).volume.scene.chunk; }
 
-  /// Returns the neighbours that see a voxel, after it has made them ready to mesh.
+  /// Returns the neighbours that touch a voxel. Makes them ready to mesh first.
   std::vector<Direction> touched_by(VoxelPos at) {
     const auto side = static_cast<std::int32_t>(volume_.edge);
     std::vector<Direction> out;

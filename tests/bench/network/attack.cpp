@@ -115,7 +115,7 @@ void claim_falsely(AttackThread& thread) {
   std::size_t next = 0;
   const auto begin = [&](AttackClient& client) {
     next = 0;
-    // the server never sends any of these chunks
+    // The server never sends any of these chunks.
     if (fits) client.queue(view_at({0, kFarChunk, 0}, 1, 1));
   };
   const auto claim = [&](AttackClient& client) {
@@ -220,8 +220,7 @@ void open_halfway(AttackThread& thread) {
   };
   for (std::uint32_t turn = 0; !thread.is_over(); ++turn) {
     for (int i = 0; i < kPerStep && open.size() < kOpenMax; ++i) {
-      // Every second thread uses many addresses. The others use the one address that honest clients
-      // have, too.
+      // Every second thread uses many addresses. The others use the address of the honest clients.
       const std::uint32_t other =
           thread.index() % 2 == 0 ? 0 : 1 + thread.random().below(kAddresses);
       auto client = thread.connect(AttackThread::kLoopback + other);
@@ -285,8 +284,8 @@ void send_garbage(AttackThread& thread) {
   }
 }
 
-/// No attack: copies bytes between two sockets of its own. It shows what a busy machine does to the
-/// bots.
+/// This is no attack: it copies bytes between two sockets of its own. It shows how the load of the
+/// machine affects the bots.
 void keep_the_machine_busy(AttackThread& thread) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;

@@ -27,9 +27,9 @@ struct AttackResult {
   JoinProbe::Joins joins;
   AttackOutcome outcome;
   std::map<std::string, std::uint64_t>
-      // The reasons in the server's log, as far as the log does not drop lines.
+      // The reasons in the server's log. The log may drop lines.
       logged;
-  // At the end of the phase; during the attack: the peak.
+  // At the end of the phase; for the attack itself, the peak.
   std::array<double, 3> resident_mb{};
   std::array<double, 3> server_cores{};
   double attacker_cores = 0;

@@ -115,7 +115,7 @@ Result<nlohmann::json, std::string> read_report(const std::string& file) {
 
 double number_in(const nlohmann::json& value) {
   if (value.is_number()) return value.get<double>();
-  // The client's word, and the bots'.
+  // The client and the bots use different words.
   return value == "inf" || value == "infinite" ? std::numeric_limits<double>::infinity() : 0;
 }
 

@@ -88,7 +88,7 @@ Descriptor open_tun(const char* address, std::string& why) {
   it.ifr_flags = IFF_UP | IFF_RUNNING;
   tell(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
   if (!why.empty()) return {};
-  // A connection does not inherit what earlier ones learned about the path.
+  // A connection must not use the kernel's cached metrics of earlier connections.
   const Descriptor metrics(::open("/proc/sys/net/ipv4/tcp_no_metrics_save", O_WRONLY | O_CLOEXEC));
   if (!metrics || ::write(metrics.get(), "1", 1) != 1) {
     why = failed("cannot set tcp_no_metrics_save");
@@ -148,7 +148,7 @@ struct TunLink::Forwarder {
     counts.busy = static_cast<double>(core_ns()) / static_cast<double>(now_ns() - began_ns);
   }
 
-  /// Returns true when the link ends.
+  /// Returns true if the link is to end.
   bool read_and_send() {
     for (const Side from : {kServer, kClient}) {
       for (int i = 0; i < kBatch && read(from); ++i) {

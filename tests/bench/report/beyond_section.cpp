@@ -71,8 +71,8 @@ ReportFigure orders(const Evidence& evidence) {
   std::vector<double> fewer, faster;
   for (const std::string& world : runs.categories) {
     const Rows in = rows.where("world", world);
-    // If all orders of a volume cost the same, none is the worst. The best then counts as the
-    // worst, too, so that both means are over the same volumes.
+    // If all orders of a volume cost the same, none is the worst. The best then also counts as the
+    // worst, so that both means are over the same volumes.
     const auto mean = [&](const char* rank, const char* mesher, const char* column) {
       std::vector<double> values;
       for (const std::string& part : in.kinds("part")) {

@@ -64,7 +64,8 @@ double read_ns(const Store& store, const StoreCase& asked) {
   return block_ns([&] {
            for (const LocalPos at : asked.reads) {
              const Material material = store.at(at);
-             // One by one: in a store of one material all reads are the same.
+             // Each material is used alone, because in a store of one material all reads have the
+             // same result.
              benchmark::DoNotOptimize(material);
            }
            benchmark::ClobberMemory();
@@ -92,7 +93,7 @@ double edit_ns(const Store& store, const StoreCase& asked) {
   return block_ns([&] {
            for (const PointEdit& edit : asked.edits) {
              edited.set(edit.at, edit.now);
-             // otherwise an array would be written only the second time
+             // Otherwise an array would be written only the second time.
              benchmark::ClobberMemory();
              edited.set(edit.at, edit.before);
              benchmark::ClobberMemory();

@@ -86,7 +86,7 @@ std::vector<LitChunk> seeded(const VoxelWorld& world) {
   });
 }
 
-/// A scenario's model stands alone under the sky.
+/// A scenario's model has only sky around it.
 std::vector<LitChunk> scenarios(const MeasuredWorlds& worlds) {
   std::vector<LitChunk> out;
   for (const Volume& volume : worlds.at_edge(0, kByteEdge).volumes) {

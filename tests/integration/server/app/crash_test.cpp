@@ -1,5 +1,5 @@
-// kill -9: edits that were acknowledged as durable are kept, others are offered again, and none is
-// applied twice.
+// The server is killed with kill -9. Edits that were acknowledged as durable are kept, others are
+// offered again, and none is applied twice.
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>

@@ -79,8 +79,7 @@ TEST_CASE(
                             ": snapshot chunk=" + (key == kFar ? "5,0,0" : "0,0,0") + ": " + error);
   const DigestCheckEntry entry{key, live.version, digest_of(live.voxels)};
   CHECK(std::count(report.digests.chunks.begin(), report.digests.chunks.end(), entry) == 1);
-  // A stop that was cut short leaves chunks that are newer than their snapshots: nothing to
-  // complain of.
+  // A stop that was cut short leaves chunks that are newer than their snapshots, which is no error.
   CHECK(world.with(key, live, false).error.empty());
 }
 

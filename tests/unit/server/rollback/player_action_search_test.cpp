@@ -44,7 +44,8 @@ TEST_CASE("an undo reads the log once for all edits that it considers", "[rollba
   REQUIRE(found.has_value());
   REQUIRE(found->change.has_value());
   CHECK(found->change->action == 1);
-  // 16 records of hers, 31 of the chunk, and one call for each of 16 plans.
+  // should_continue is called for 16 records of the player, for 31 of the chunk, and once for each
+  // of 16 plans.
   CHECK(calls == 16 + 31 + 16);
 }
 
