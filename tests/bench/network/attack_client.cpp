@@ -56,12 +56,10 @@ AttackClient::AttackClient(std::uint16_t port, std::uint32_t from, int receive_b
   const linger no_wait{1, 0};
   (void)::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &no_wait, sizeof no_wait);
   const sockaddr_in here = endpoint(from, 0), there = endpoint(INADDR_LOOPBACK, port);
-  // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): the sockets interface asks for it
   if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) return;
   is_open_ =
       ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 ||
       would_block(errno);
-  // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
 bool AttackClient::open_session(std::uint64_t identity, int wait_ms) {
