@@ -71,12 +71,12 @@ void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions&
         timelapse.from = from;
         return {};
       },
-      "sequence number of the edit that the first frame shows last; default: before the first "
-      "edit");
+      "sequence number of the edit that the first frame shows last; "
+      "default: before the first edit");
   command_line.moment("--at", options.at, "moment of the last frame");
   command_line.number("--every", timelapse.every, 1, kSequenceMax,
-                      "edits from one frame to the next; default: so many that there are about 300 "
-                      "frames");
+                      "edits from one frame to the next; default: "
+                      "so many that there are about 300 frames");
   command_line.parsed(
       "--size", [&timelapse](const std::string& text) { return parse_size(text, timelapse.size); },
       "WIDTHxHEIGHT of the frames; default 1280x720");
@@ -86,8 +86,8 @@ void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions&
                       "chunks of untouched world around the edits; default 3");
   command_line.number("--fps", options.fps, 1, 120, "frames a second of the video; default 30");
   command_line.text("--client", timelapse.client,
-                    "path of runstone-client; default: RUNSTONE_CLIENT, or runstone-client beside "
-                    "this program");
+                    "path of runstone-client; default: RUNSTONE_CLIENT, "
+                    "or runstone-client beside this program");
 }
 
 Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, std::ostream& out) {

@@ -126,8 +126,8 @@ void TimelapseWorld::add_surface(const Column& column) {
 Unexpected<StoreError> TimelapseWorld::too_large() const {
   return {{StoreError::Kind::bad_request, reader_->file(), "",
            "the edits and the ground around them are more than " + std::to_string(kChunksMax) +
-               " chunks: too many for a picture; choose a smaller --radius, or fewer edits by "
-               "--from and --at"}};
+               " chunks: too many for a picture; choose a smaller --radius, "
+               "or fewer edits by --from and --at"}};
 }
 
 VoxelBox TimelapseWorld::stage() const {

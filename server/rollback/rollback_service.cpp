@@ -106,8 +106,8 @@ void RollbackService::start_player_change(AuthorId author, Cause cause, SearchRe
   }
   if (!found->change && found->has_given_up) {
     return refuse(reply, name + ": nothing is left of the " + std::to_string(kPassedActionsMax) +
-                             " edits that are next: others have built over them, or they changed "
-                             "nothing; it looks no further back");
+                             " edits that are next: others have built over them, "
+                             "or they changed nothing; it looks no further back");
   }
   if (!found->change) return refuse(reply, "nothing to " + name);
   PlayerChange& change = *found->change;

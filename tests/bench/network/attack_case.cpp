@@ -178,8 +178,8 @@ void write_rows(const AttackResult& result, std::string& latencies, std::string&
     violations += phase.violations;
   }
   fmt::format_to(std::back_inserter(latencies),
-                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | {:.0f}, "
-                 "{:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
+                 "| {} | {} | {} | {} | {:.0f}, {:.0f} | {:.0f}, {:.0f} | {} of {}, {} | "
+                 "{:.0f}, {:.0f}, {:.0f} | {:.2f}, {:.2f} | {:.2f} |\n",
                  result.name, times(seen[before]), times(seen[during]), times(seen[after]), samples,
                  never, disconnects, violations, result.joins.open, result.joins.tried,
                  number_text(result.joins.slowest_ms), result.resident_mb[before],
@@ -211,15 +211,20 @@ Done measure_attacks(Testbed& testbed, NetFindings& findings) {
     testbed.progress().flush();
   }
   findings.tables += fmt::format(
-      "\n### Attacks\n\nLoopback: {} bots in one place with {} edits a second each, {} s before, "
-      "during and after an attack of {} clients; a server for each attack. Latency from when an "
-      "edit was due until each bot that sees it had received and verified it.\n\n"
-      "| attack | before p50, p99, max ms | during | after | samples, never | bots disconnected, "
-      "rules broken | newcomers accepted, slowest ms | server MB before, peak, after | server "
-      "cores "
-      "before, during | attackers' cores |\n|---|---|---|---|---|---|---|---|---|---|\n{}\n| "
-      "attack | connections | MB sent, received | answers to the attackers | reasons in "
-      "the server's log |\n|---|---|---|---|---|\n{}",
+      "\n### Attacks\n\n"
+      "Loopback: {} bots in one place with {} edits a second each, {} s before, "
+      "during and after an attack of {} clients; a server for each attack. "
+      "Latency from when an edit was due until each bot that sees it had received and verified "
+      "it.\n\n"
+      "| attack | before p50, p99, max ms | during | after | samples, never | "
+      "bots disconnected, rules broken | newcomers accepted, slowest ms | "
+      "server MB before, peak, after | server cores before, during | attackers' cores |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n"
+      "{}\n"
+      "| attack | connections | MB sent, received | answers to the attackers | "
+      "reasons in the server's log |\n"
+      "|---|---|---|---|---|\n"
+      "{}",
       testbed.options().attack_bots, kFleetEditsPerSecond, testbed.options().attack_seconds,
       testbed.options().attackers, latencies, answers);
   findings.tables += "\n";

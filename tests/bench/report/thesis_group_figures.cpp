@@ -117,8 +117,8 @@ ReportFigure ThesisFigures::vertices(unsigned group) const {
   out.title =
       fmt::format("Vertices of group {}, {} (figures 8.11 to 8.13)", group, kGroupNames[group - 1]);
   out.sentence = fmt::format(
-      "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, its RLE RDM {} and "
-      "Voxel Plugin {}. {}",
+      "Ours needs {} vertices a chunk on average, the thesis' Grid RDM {}, "
+      "its RLE RDM {} and Voxel Plugin {}. {}",
       format_value(mean_of(chart.series[3].values)), format_value(mean_of(chart.series[0].values)),
       format_value(mean_of(chart.series[1].values)), format_value(mean_of(chart.series[2].values)),
       agreement(scenarios));
@@ -174,10 +174,11 @@ ReportFigure ThesisFigures::phases(unsigned group) const {
     return mean([&](unsigned s) { return time(s, mesher, "mean_ns") / 1000; });
   };
   out.sentence = fmt::format(
-      "Ours meshes a chunk in {} µs, with no phase before it and none after: quads are what the "
-      "GPU reads. On the same machine the rebuilt Grid RDM takes {} µs, RLE RDM {}, and decoding "
-      "first and meshing with the fastest dense mesher {}. Compare the thesis' milliseconds by "
-      "their shares only: another machine, and an engine around them.",
+      "Ours meshes a chunk in {} µs, with no phase before it and none after: "
+      "quads are what the GPU reads. On the same machine the rebuilt Grid RDM takes {} µs, "
+      "RLE RDM {}, and decoding first and meshing with the fastest dense mesher {}. "
+      "Compare the thesis' milliseconds by their shares only: another machine, "
+      "and an engine around them.",
       format_value(total("rdm")), format_value(total("grid_rdm")), format_value(total("rle_rdm")),
       format_value(total("decode_binary")));
   out.steps = {"thesis"};
@@ -229,8 +230,9 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
       "Meshing from runs in group {}, {}: least, median, greatest (figures 8.20 and 8.21)", group,
       kGroupNames[group - 1]);
   out.sentence = fmt::format(
-      "The thesis' RLE RDM took {} times as long as ours over the group, on another machine and "
-      "with Unreal's buffers: look at how both rise and fall with the model.",
+      "The thesis' RLE RDM took {} times as long as ours over the group, "
+      "on another machine and with Unreal's buffers: look at how both rise and fall with the "
+      "model.",
       format_value(theirs_sum / ours_sum));
   out.steps = {"thesis"};
   out.picture = chart::frame_of(chart);

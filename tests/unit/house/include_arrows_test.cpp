@@ -145,8 +145,8 @@ std::vector<std::string> wrong_includes(const std::vector<SourceFile>& files) {
           [&](std::string_view root) { return include.path.starts_with(std::string(root) + "/"); });
       if (ours != include.quoted) {
         complain(
-            "headers of this repository are quoted, from its root; all others stand in angle "
-            "brackets");
+            "headers of this repository are quoted, from its root; "
+            "all others stand in angle brackets");
         if (!ours) continue;
       }
       if (!ours || home == arrows().end()) continue;

@@ -398,8 +398,8 @@ TEST_CASE("commits that vanish between server and replica are noticed and repair
 }
 
 TEST_CASE(
-    "without synchronous writes the same simulation loses durable edits, and the final check finds "
-    "it",
+    "without synchronous writes the same simulation loses durable edits, "
+    "and the final check finds it",
     "[simulation]") {
   bool caught = false;
   for (std::uint64_t seed = 1; seed <= 5 && !caught; ++seed) {

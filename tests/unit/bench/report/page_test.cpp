@@ -115,8 +115,8 @@ TEST_CASE("a result of another form counts as not measured") {
 }
 
 TEST_CASE(
-    "frames are compared over the worlds that most meshers drew; a mesher that drew fewer is "
-    "named") {
+    "frames are compared over the worlds that most meshers drew; "
+    "a mesher that drew fewer is named") {
   const test::TempFolder folder;
   Finding frames = edits_finding();
   frames.step = "frames";

@@ -87,10 +87,8 @@ TEST_CASE(
         Lines{"draw", "upload 1 quads 3", "remove 2", "upload 3 quads 4", "draw"});
 }
 
-TEST_CASE(
-    "results come in the order of the draw thread: uploads, then the frame that shows "
-    "them",
-    "[client_app]") {
+TEST_CASE("results come in the order of the draw thread: uploads, then the frame that shows them",
+          "[client_app]") {
   Bench bench;
   bench.book.hold();
   bench.thread.upload(chunk(1), mesh_of(10, 1));

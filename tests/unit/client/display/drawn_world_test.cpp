@@ -54,8 +54,8 @@ class Drawn {
 }  // namespace
 
 TEST_CASE(
-    "a picture meshes the chunks that changed since the last one, and the neighbours that touch a "
-    "change",
+    "a picture meshes the chunks that changed since the last one, "
+    "and the neighbours that touch a change",
     "[client_app]") {
   Drawn drawn;
   CHECK(drawn.draw().empty());

@@ -85,8 +85,7 @@ TEST_CASE(
 
 TEST_CASE(
     "a stop that was not clean lists what is stored, and neither line nor file passes for a digest "
-    "of its "
-    "seq",
+    "of its seq",
     "[server]") {
   const StoppedWorld world;
   Chunk live = *world.here;

@@ -208,9 +208,8 @@ TEST_CASE("a map with columns x, y and z imports like one with pos", "[server][i
   const TempFolder folder;
   copy_world(folder);
   REQUIRE(raw_sql(folder / "map.sqlite",
-                  "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, data "
-                  "BLOB NOT NULL, "
-                  "PRIMARY KEY(x, z, y))") == "");
+                  "ALTER TABLE blocks RENAME TO old; CREATE TABLE blocks(x INT, y INT, z INT, "
+                  "data BLOB NOT NULL, PRIMARY KEY(x, z, y))") == "");
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open((folder / "map.sqlite").c_str(), &db) == SQLITE_OK);
   sqlite3_exec(db, "BEGIN", nullptr, nullptr, nullptr);

@@ -140,8 +140,8 @@ TEST_CASE("a segment that misses an edit is damage that the check names", "[stor
   const std::string file = folder / "world.sqlite";
   const std::string change = GENERATE(
       std::string("DELETE FROM log_box WHERE first_seq = (SELECT max(first_seq) FROM log_box)"),
-      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) FROM "
-                  "log_box)"),
+      std::string("UPDATE log_box SET max_x = min_x WHERE first_seq = (SELECT max(first_seq) "
+                  "FROM log_box)"),
       std::string(
           "UPDATE log_box SET author = 77 WHERE first_seq = (SELECT max(first_seq) FROM log_box)"));
   REQUIRE(raw_sql(file, change).find("ERROR") == std::string::npos);

@@ -86,8 +86,8 @@ TEST_CASE("a stroke has points, steps and a radius within its limits, and no poi
 }
 
 TEST_CASE(
-    "a paste has a clipboard, an orientation and no material, and its touched cells lie in the "
-    "world",
+    "a paste has a clipboard, an orientation and no material, "
+    "and its touched cells lie in the world",
     "[edits]") {
   ClipboardBuilder cells({4, 1, 1});
   cells.append(3, std::nullopt);
