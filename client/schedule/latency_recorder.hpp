@@ -2,9 +2,9 @@
 // latency-plus-mesh).
 //   submit -> ordered -> received -> unpacked -> applied -> meshed -> uploaded -> presented
 // Three paths are recorded separately:
-//   - own_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed ->
-//     uploaded -> presented;
-//   - own_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked ->
+//   - local_predicted: a local edit, as predicted: submit -> applied (to the shown runs) -> meshed
+//     -> uploaded -> presented;
+//   - local_confirmed: a local edit, as confirmed: submit -> ordered -> received -> unpacked ->
 //     applied. The time until it is durable is recorded apart;
 //   - remote: all stages. Times of the server's clock are converted with the offset known when the
 //     edit arrived.
@@ -41,8 +41,9 @@ enum class LatencyStage : std::uint8_t {
 inline constexpr std::size_t kLatencyStageCount = 7;
 const char* to_string(LatencyStage stage);
 
-enum class EditPath : std::uint8_t { own_predicted, own_confirmed, remote };
+enum class EditPath : std::uint8_t { local_predicted, local_confirmed, remote };
 inline constexpr std::size_t kEditPathCount = 3;
+/// Returns the name in reports: "own_predicted", "own_confirmed" or "remote".
 const char* to_string(EditPath path);
 
 struct PathReport {
@@ -63,7 +64,7 @@ struct LatencyReport {
   // Local edits:
   Histogram durable;           // submit -> known to be on disk
   std::uint64_t rejected = 0;  // rejected by the server; in none of the above
-  std::uint64_t unseen = 0;    // resolved while not connected; not in own_confirmed and durable
+  std::uint64_t unseen = 0;    // resolved while not connected; not in local_confirmed and durable
   const PathReport& operator[](EditPath path) const {
     return paths[static_cast<std::size_t>(path)];
   }

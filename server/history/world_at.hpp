@@ -76,7 +76,7 @@ class WorldAt {
   std::vector<EditDescriptor> edits_;
   std::vector<Version> versions_;  // of edits_
   std::map<ChunkKey, Edited> chunks_;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
 };
 
 }  // namespace runstone

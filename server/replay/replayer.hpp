@@ -93,7 +93,7 @@ class Replayer {
   std::map<ChunkKey, ReplayedChunk> chunks_;
   std::map<ChunkKey, std::multimap<Version, Expected>> listed_;
   std::map<ChunkKey, Version> snapshots_;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
   ReplayReport report_;
 };
 

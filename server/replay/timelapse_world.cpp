@@ -167,7 +167,7 @@ StoreResult<void> TimelapseWorld::advance(Sequence seq, const Each& each) {
   at_ = seq;
   for (const ChunkKey& key : touched) {
     ReplayedChunk& replayed = replayed_.at(key);
-    replayed.settle(scratch_);
+    replayed.flush(scratch_);
     if (replayed.take_changed() && !each(key, replayed.chunk().voxels)) return {};
   }
   return {};

@@ -74,7 +74,7 @@ class TimelapseWorld {
   std::set<ChunkKey> edited_chunks_;            // between from and to; if there are none, before
   std::map<ChunkKey, ReplayedChunk> replayed_;  // edited_chunks_, after begin()
   Sequence at_ = 0;
-  FollowScratch scratch_;
+  ReplayScratch scratch_;
 };
 
 }  // namespace runstone

@@ -63,11 +63,11 @@ std::optional<EditRecord> record_of(const sql::Statement& row) {
 StoreResult<LogTable> LogTable::open(sql::Database& database) {
   // The statements below do not find a row with a damaged log id. Such a row lies at one of the two
   // ends of the key order.
-  const auto strangers = database.integer(
+  const auto misplaced_rows = database.integer(
       "SELECT EXISTS(SELECT 1 FROM edit_log WHERE log < 0) + "
       "EXISTS(SELECT 1 FROM edit_log WHERE log > 0)");
-  if (!strangers) return failed(strangers.error());
-  if (*strangers != 0) {
+  if (!misplaced_rows) return failed(misplaced_rows.error());
+  if (*misplaced_rows != 0) {
     return Unexpected<StoreError>{{StoreError::Kind::corrupt, database.file(), "edit_log",
                                    "holds rows of a log other than 0"}};
   }

@@ -155,16 +155,16 @@ class Trial {
   /// Meshes a scene. The oracle checks this mesh and those of all reference meshers; every path
   /// must give the same mesh.
   void mesh(const test::MeshScene& scene) {
-    const std::string fault = jury_.fault(scene);
+    const std::string fault = checks_.fault(scene);
     demand(fault.empty(), fault.c_str());
-    const std::string of_polygons = polygon_jury_.fault(scene, test::mesh_visibility(),
-                                                        test::mesh_materials(), jury_.exposed());
+    const std::string of_polygons = polygon_checks_.fault(
+        scene, test::mesh_visibility(), test::mesh_materials(), checks_.exposed());
     demand(of_polygons.empty(), of_polygons.c_str());
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), scratch_, mesh_);
     const auto difference =
-        test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), jury_.exposed());
+        test::mesh_difference(mesh_, scene.chunk.extent, test::mesh_materials(), checks_.exposed());
     demand(!difference, difference.value_or("").c_str());
-    demand(mesh_.quad_count() >= jury_.optimal_quads(), "RDM has fewer quads than the optimum");
+    demand(mesh_.quad_count() >= checks_.optimal_quads(), "RDM has fewer quads than the optimum");
 
     mesh_rdm(scene.chunk, scene.pointers(), test::mesh_visibility(), plain_, other_);
     demand(equal(mesh_, other_), "the plain path gives other quads");
@@ -201,8 +201,8 @@ class Trial {
   const ChunkMesh& last() const { return mesh_; }
 
  private:
-  test::MesherChecks jury_;
-  test::PolygonChecks polygon_jury_;
+  test::MesherChecks checks_;
+  test::PolygonChecks polygon_checks_;
   RdmScratch scratch_, plain_;
   ChunkMesh mesh_, other_;
   std::array<ChunkBorders, kDirectionCount> kept_;

@@ -45,9 +45,9 @@ class ChunkRestore {
   /// changed something here. Cost: that of apply_stack(), amortised.
   void add(const EditDescriptor& edit, bool is_selected, ApplyScratch& scratch);
   /// Applies the edits that add() has deferred. Call it before reading the chunks.
-  void settle(ApplyScratch& scratch);
+  void flush(ApplyScratch& scratch);
 
-  /// Return the chunk with all edits, and the chunk without the tails. Requires settle().
+  /// Return the chunk with all edits, and the chunk without the tails. Requires flush().
   const RunChunk& now() const { return now_; }
   const RunChunk& restored() const { return is_split_ ? restored_ : now_; }
   /// Returns true if the two chunks differ.

@@ -127,11 +127,11 @@ Result<std::vector<LogQuestion>, std::string> ask(Store& store,
     for (const EditRecord& record : sampled) {
       found.clear();
       const auto start = Clock::now();
-      const auto asked = store.query_log(query_at(record), [&](const EditRecord& answer) {
+      const auto queried = store.query_log(query_at(record), [&](const EditRecord& answer) {
         found.push_back(answer);
         return true;
       });
-      if (!asked) return failure(asked.error());
+      if (!queried) return failure(queried.error());
       times.push_back(ms_since(start));
       all += found.size();
     }

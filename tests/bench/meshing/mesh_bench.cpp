@@ -21,7 +21,7 @@ struct RankedOrder {
 
 /// Returns the wanted orders, each once.
 std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std::string>& wanted) {
-  const auto asked = [&](const char* what) {
+  const auto is_wanted = [&](const char* what) {
     return std::find(wanted.begin(), wanted.end(), what) != wanted.end();
   };
   const auto runs = runs_per_order(chunk);
@@ -31,7 +31,7 @@ std::vector<RankedOrder> orders_of(const RunChunk& chunk, const std::vector<std:
   for (const AxisOrder order : kAxisOrders) {
     const auto i = static_cast<std::ptrdiff_t>(order);
     const char* rank = i == fewest ? "best" : i == most ? "worst" : "between";
-    if (asked("all") || asked(rank)) out.push_back({order, rank});
+    if (is_wanted("all") || is_wanted(rank)) out.push_back({order, rank});
   }
   return out;
 }

@@ -199,8 +199,8 @@ Done measure_attacks(Testbed& testbed, NetFindings& findings) {
   if (!link) return Unexpected<std::string>{link.error()};
   std::string latencies, answers;
   for (const Attack& attack : all_attacks()) {
-    const auto& asked = testbed.options().attacks;
-    if (!asked.empty() && std::find(asked.begin(), asked.end(), attack.name) == asked.end())
+    const auto& wanted = testbed.options().attacks;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), attack.name) == wanted.end())
       continue;
     const auto result = AttackRun(testbed, **link, attack).run();
     if (!result)

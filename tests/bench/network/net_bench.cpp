@@ -52,8 +52,8 @@ Result<NetResult, std::string> run_net_bench(const NetOptions& options, std::ost
   take_interrupts();
   Testbed testbed(options, real ? LinkKind::namespaces : LinkKind::shaper, progress);
   for (const Experiment& experiment : kExperiments) {
-    const auto& asked = options.experiments;
-    if (std::find(asked.begin(), asked.end(), experiment.name) == asked.end()) continue;
+    const auto& wanted = options.experiments;
+    if (std::find(wanted.begin(), wanted.end(), experiment.name) == wanted.end()) continue;
     if (const auto done = experiment.measure(testbed, out.findings); !done)
       return Unexpected<std::string>{done.error()};
   }

@@ -102,12 +102,12 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   tcp::socket socket = acceptor.accept(error);
   if (error) return;
   socket.set_option(tcp::no_delay(true), error);
-  std::uint8_t asked = 0;
-  socket.read_some(asio::buffer(&asked, 1), error);
+  std::uint8_t request = 0;
+  socket.read_some(asio::buffer(&request, 1), error);
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
     // Until the receiver has all bytes and closes.
-    socket.read_some(asio::buffer(&asked, 1), error);
+    socket.read_some(asio::buffer(&request, 1), error);
 }
 
 struct Received {

@@ -66,27 +66,27 @@ Descriptor open_tun(const char* address, std::string& why) {
     std::memcpy(&out, &in, sizeof in);
     return out;
   };
-  const auto tell = [&](int descriptor, unsigned long what, ifreq& it, const char* name) {
+  const auto control = [&](int descriptor, unsigned long what, ifreq& it, const char* name) {
     if (why.empty() && ::ioctl(descriptor, what, &it) != 0) why = failed(name);
   };
   ifreq it = request();
   it.ifr_flags = IFF_TUN | IFF_NO_PI;
-  tell(tun.get(), TUNSETIFF, it, "cannot make a TUN device");
+  control(tun.get(), TUNSETIFF, it, "cannot make a TUN device");
   it = request();
   it.ifr_addr = inet(address);
-  tell(socket.get(), SIOCSIFADDR, it, "cannot set the address of a TUN device");
+  control(socket.get(), SIOCSIFADDR, it, "cannot set the address of a TUN device");
   it = request();
   it.ifr_netmask = inet("255.255.255.0");
-  tell(socket.get(), SIOCSIFNETMASK, it, "cannot set the netmask of a TUN device");
+  control(socket.get(), SIOCSIFNETMASK, it, "cannot set the netmask of a TUN device");
   it = request();
   it.ifr_mtu = TunLink::kMtu;
-  tell(socket.get(), SIOCSIFMTU, it, "cannot set the MTU of a TUN device");
+  control(socket.get(), SIOCSIFMTU, it, "cannot set the MTU of a TUN device");
   it = request();
   it.ifr_qlen = kKernelPackets;
-  tell(socket.get(), SIOCSIFTXQLEN, it, "cannot set the queue of a TUN device");
+  control(socket.get(), SIOCSIFTXQLEN, it, "cannot set the queue of a TUN device");
   it = request();
   it.ifr_flags = IFF_UP | IFF_RUNNING;
-  tell(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
+  control(socket.get(), SIOCSIFFLAGS, it, "cannot bring a TUN device up");
   if (!why.empty()) return {};
   // A connection must not use the kernel's cached metrics of earlier connections.
   const Descriptor metrics(::open("/proc/sys/net/ipv4/tcp_no_metrics_save", O_WRONLY | O_CLOEXEC));

@@ -205,7 +205,7 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
   chart.title = "time of a chunk";
   ReportFigure out;
   out.data.columns = {"scenario", "mesher", "least us", "median us", "mean us", "greatest us"};
-  double ours_sum = 0, theirs_sum = 0;
+  double ours_sum = 0, thesis_sum = 0;
   for (const unsigned s : scenarios) {
     const auto thesis_us = [&](const char* metric) {
       return 1000 * thesis_.value(s, "RLE", metric);
@@ -223,7 +223,7 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
     add("thesis", Role::thesis, thesis_us("total_min"), thesis_us("total_median"),
         thesis_us("total_mean"), thesis_us("total_max"));
     ours_sum += our_us("mean_ns");
-    theirs_sum += thesis_us("total_mean");
+    thesis_sum += thesis_us("total_mean");
   }
   out.id = fmt::format("timing-group-{}", group);
   out.title = fmt::format(
@@ -233,7 +233,7 @@ ReportFigure ThesisFigures::timing(unsigned group) const {
       "The thesis' RLE RDM took {} times as long as ours over the group, "
       "on another machine and with Unreal's buffers: look at how both rise and fall with the "
       "model.",
-      format_value(theirs_sum / ours_sum));
+      format_value(thesis_sum / ours_sum));
   out.steps = {"thesis"};
   out.picture = chart::frame_of(chart);
   out.marks = marks_of(scenarios);

@@ -14,9 +14,9 @@ namespace runstone::bench {
 namespace {
 
 /// Measures all stores on one volume.
-void measure_volume(const storage::StoreCase& asked, unsigned repetitions, const StorageRow& shared,
+void measure_volume(const storage::StoreCase& input, unsigned repetitions, const StorageRow& shared,
                     std::vector<StorageRow>& rows) {
-  const auto stores = storage::make_stores(asked);
+  const auto stores = storage::make_stores(input);
   std::vector<ShuffledCase> cases;
   for (const auto& store : stores) cases.push_back({std::string(store.name), store.repetition});
   const auto samples = run_shuffled(cases, repetitions);
@@ -61,14 +61,14 @@ Result<StorageResult, std::string> run_storage_bench(const BenchOptions& options
       }
       for (std::size_t v = 0; v < world.volumes.size(); ++v) {
         const RunChunk& chunk = world.volumes[v].scene.chunk;
-        const storage::StoreCase asked = storage::make_store_case(chunk, v);
+        const storage::StoreCase input = storage::make_store_case(chunk, v);
         StorageRow shared;
         shared.world = world.name;
         shared.part = world.parts[v];
         shared.edge = edge;
         shared.runs = chunk.runs.size();
-        shared.brush_voxels = asked.brush_voxels;
-        measure_volume(asked, options.repetitions, shared, result.rows);
+        shared.brush_voxels = input.brush_voxels;
+        measure_volume(input, options.repetitions, shared, result.rows);
       }
       fmt::print(progress, "{} edge {}: {} volumes, {:.1f} s\n", world.name, edge,
                  world.volumes.size(), static_cast<double>(now_ns() - start) * 1e-9);

@@ -31,9 +31,9 @@ struct MeasuredStore {
 /// Returns all names, in the order above.
 std::span<const std::string_view> store_names();
 
-/// Returns all stores on one volume, in that order. Requires a storable() chunk; `asked` must
+/// Returns all stores on one volume, in that order. Requires a storable() chunk; `input` must
 /// outlive them.
-std::vector<MeasuredStore> make_stores(const StoreCase& asked);
+std::vector<MeasuredStore> make_stores(const StoreCase& input);
 
 /// Returns "pdep" or "table": how Morton codes are made on this machine.
 std::string_view morton_code_maker();

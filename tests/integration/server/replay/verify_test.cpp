@@ -66,10 +66,10 @@ TEST_CASE("verify answers with an exit code, a table and a list", "[store][repla
 
   wrong.world_id[0] ^= 1;
   REQUIRE(write_digests_json(other, wrong).has_value());
-  const ReplayOutcome stranger =
+  const ReplayOutcome foreign =
       run_replay({"verify", "--quick", "--world", world, "--against", other});
-  CHECK(stranger.code == 2);
-  CHECK(stranger.err == "runstone-replay: " + other + ": is about another world\n");
+  CHECK(foreign.code == 2);
+  CHECK(foreign.err == "runstone-replay: " + other + ": is about another world\n");
   CHECK(run_replay({"verify", "--quick", "--world", world, "--against", folder / "missing.json"})
             .code == 2);
   CHECK(

@@ -74,7 +74,7 @@ class ChunkLog {
       const bool is_selected = std::binary_search(selected.begin(), selected.end(), i + 1);
       for (const EditDescriptor& edit : log_[i].edits) chunk.add(edit, is_selected, scratch);
     }
-    chunk.settle(scratch);
+    chunk.flush(scratch);
     std::vector<Difference> differences;
     append_differences(chunk.now(), chunk.restored(), differences);
     if (differences.empty()) return false;

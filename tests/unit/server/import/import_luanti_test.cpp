@@ -232,9 +232,9 @@ TEST_CASE("a file that is no map is refused, and the error names it", "[server][
   const TempFolder folder;
   const LuantiImportSink sink{
       [](const MaterialTable&) {}, [](const ChunkKey&, RunChunk&&) { return true; }, {}};
-  const auto gone = import_luanti(folder / "nowhere", {}, sink);
-  REQUIRE_FALSE(gone.has_value());
-  CHECK(gone.error().message().find("nowhere/map.sqlite: ") != std::string::npos);
+  const auto missing = import_luanti(folder / "nowhere", {}, sink);
+  REQUIRE_FALSE(missing.has_value());
+  CHECK(missing.error().message().find("nowhere/map.sqlite: ") != std::string::npos);
 
   sqlite3* db = nullptr;
   REQUIRE(sqlite3_open((folder / "map.sqlite").c_str(), &db) == SQLITE_OK);

@@ -78,7 +78,7 @@ struct World {
     for (const EditRecord& record : records) {
       for (const ChunkCoord at : touched_chunks(record.edit, kSampleEdge)) keys.insert({0, at});
     }
-    FollowScratch scratch;
+    ReplayScratch scratch;
     const Sequence at = 1 + rng.below(static_cast<std::uint32_t>(records.size()));
     std::vector<std::pair<ChunkKey, ChunkPtr>> chunks;
     for (const ChunkKey& key : keys) {

@@ -80,11 +80,11 @@ LogQuery random_query(SplitMix64& rng, const std::vector<EditRecord>& records) {
 
 std::vector<EditRecord> ask(Store& store, const LogQuery& query) {
   std::vector<EditRecord> found;
-  const auto asked = store.query_log(query, [&](const EditRecord& record) {
+  const auto queried = store.query_log(query, [&](const EditRecord& record) {
     found.push_back(record);
     return true;
   });
-  if (!asked) FAIL(asked.error().message());
+  if (!queried) FAIL(queried.error().message());
   return found;
 }
 
