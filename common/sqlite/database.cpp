@@ -88,22 +88,25 @@ Result<Statement> Database::prepare(std::string_view sql) {
   return Statement(statement);
 }
 
-Result<std::int64_t> Database::integer(std::string_view sql) {
+Result<Statement> Database::first_row(std::string_view sql) {
   auto statement = prepare(sql);
-  if (!statement) return Unexpected<Error>{statement.error()};
+  if (!statement) return statement;
   const auto row = statement->step();
   if (!row) return Unexpected<Error>{row.error()};
   if (!*row) return failure(handle_.get(), SQLITE_CORRUPT);
-  return statement->integer(0);
+  return statement;
+}
+
+Result<std::int64_t> Database::integer(std::string_view sql) {
+  const auto row = first_row(sql);
+  if (!row) return Unexpected<Error>{row.error()};
+  return row->integer(0);
 }
 
 Result<std::string> Database::text(std::string_view sql) {
-  auto statement = prepare(sql);
-  if (!statement) return Unexpected<Error>{statement.error()};
-  const auto row = statement->step();
+  const auto row = first_row(sql);
   if (!row) return Unexpected<Error>{row.error()};
-  if (!*row) return failure(handle_.get(), SQLITE_CORRUPT);
-  return std::string(statement->text(0));
+  return std::string(row->text(0));
 }
 
 std::int64_t Database::changes() const { return sqlite3_changes64(handle_.get()); }

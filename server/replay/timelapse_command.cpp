@@ -91,14 +91,12 @@ void declare_timelapse(SubcommandOptions& command_line, TimelapseCommandOptions&
 }
 
 Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, std::ostream& out) {
-  const auto world = open_for_reading(options.common.world);
+  const auto world = open_for_reading(options.common.world, options.at);
   if (!world) return failure(world.error());
   Store& store = *world->store;
-  const auto at = end_of_replay(store, options.at);
-  if (!at) return failure(at.error());
   const auto report = [&] {
     ProgressLine line("frames drawn", options.common.progress);
-    return make_timelapse(store, *world->generator, options.timelapse, *at,
+    return make_timelapse(store, *world->generator, options.timelapse, world->end,
                           [&](std::uint64_t done, std::uint64_t all) { line.show(done, all); });
   }();
   if (!report) return failure(report.error());
@@ -119,7 +117,7 @@ Result<int, std::string> run_timelapse(const TimelapseCommandOptions& options, s
                       << video_command(fps) << '\n';
   }
   const auto written =
-      write_report(options.common.json, report_json(store, *report, video.has_value()));
+      write_report(options.common.json, report_json(store, *report, video.has_value()).dump(1));
   if (!written) return failure(written.error());
   return kReplayEqual;
 }
