@@ -228,7 +228,7 @@ class Simulation {
         r.unknown += client->unseen().contains(seq) && found == times.end() ? 1 : 0;
         r.rejected += is_rejected ? 1 : 0;
         r.expect(found != times.end() || is_rejected,
-                 "an edit was lost without a word, client seq " + std::to_string(seq));
+                 "an edit was lost without an answer, client seq " + std::to_string(seq));
         r.expect(found == times.end() || reject == client->rejected().end(),
                  "an edit was rejected and applied, client seq " + std::to_string(seq));
         r.expect(found != times.end() || !client->durable().contains(seq),

@@ -163,7 +163,7 @@ TEST_CASE("results of another commit are named at their figures") {
   CHECK(holds(text_of(made->file), "edits was measured on something else than the rest"));
 }
 
-TEST_CASE("a page that cannot be written says which file") {
+TEST_CASE("the error of a page that cannot be written names the file") {
   const test::TempFolder folder;
   std::ofstream(folder / "out") << "a file where the folder should be";
   const auto made = write_page(options_of(folder / "out"), {});

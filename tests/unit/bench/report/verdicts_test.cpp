@@ -85,7 +85,7 @@ TEST_CASE("equals share a place, and a mesher that was not measured everywhere h
   CHECK_FALSE(holds(summary, "simple"));
 }
 
-TEST_CASE("numbers are said in full, by three decimals, or in the unit that fits") {
+TEST_CASE("numbers are written in full, with three decimals, or in the unit that fits") {
   CHECK(count_text(1'195'306) == "1,195,306");
   CHECK(count_text(999) == "999");
   CHECK(count_text(1000) == "1,000");

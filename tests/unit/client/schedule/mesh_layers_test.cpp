@@ -107,7 +107,7 @@ TEST_CASE_METHOD(PlannerBench,
                  "[schedule]") {
   load_all();
   drain();
-  SECTION("went: the server cannot send it any more") {
+  SECTION("unavailable: the server cannot send it") {
     static_cast<void>(replica.open({kBenchEdge, 5, 77, 1, 0, 0, 0}));
     replica.receive(ChunkUnavailable{{kRight}, UnavailableReason::damaged});
     pass_changes();
@@ -117,7 +117,7 @@ TEST_CASE_METHOD(PlannerBench,
     REQUIRE(drain() == std::vector<ChunkCoord>{{0, 0, 0}, {1, 0, 0}});
     CHECK(last.before == nullptr);
   }
-  SECTION("came back, with other voxels at the border") {
+  SECTION("returned, with other voxels at the border") {
     const bool drains_between = GENERATE(false, true);
     replica.set_view({{-1, 0, 0}, 1, 0});
     if (drains_between) pass_changes();

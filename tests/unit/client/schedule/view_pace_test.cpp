@@ -25,7 +25,7 @@ struct Follower {
 
 }  // namespace
 
-TEST_CASE("a view follows the first step at once and rests while its player rests", "[schedule]") {
+TEST_CASE("a view follows the first step at once and stays while its player stays", "[schedule]") {
   Follower follower;
   CHECK_FALSE(follower.turn(0, 0));
   CHECK(follower.turn(1, 1));

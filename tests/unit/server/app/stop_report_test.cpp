@@ -83,10 +83,8 @@ TEST_CASE(
   CHECK(world.with(key, live, false).error.empty());
 }
 
-TEST_CASE(
-    "a stop that was not clean lists what is stored, and neither line nor file passes for a digest "
-    "of its seq",
-    "[server]") {
+TEST_CASE("a stop that was not clean lists the stored chunks, and marks line and file as unclean",
+          "[server]") {
   const StoppedWorld world;
   Chunk live = *world.here;
   live.version = {1, 9};  // never on disk

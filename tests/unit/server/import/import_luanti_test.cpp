@@ -143,7 +143,7 @@ TEST_CASE("every voxel of an imported world is its node", "[server][import]") {
         world.chunks.size() * static_cast<std::uint64_t>(edge * edge * edge) - solid);
 }
 
-TEST_CASE("plants are imported when asked for", "[server][import]") {
+TEST_CASE("plants are imported on request", "[server][import]") {
   const Imported world = import(kWorld, 32, true);
   CHECK(wrong_voxels(world, kWorld, true) == 0);
   const auto tulip = world.report.materials.find("flowers:tulip");

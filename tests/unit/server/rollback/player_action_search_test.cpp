@@ -65,7 +65,7 @@ TEST_CASE("a cancelled undo ends at once", "[rollback][undo]") {
 TEST_CASE("a stop ends the reading of undos and jobs", "[rollback][undo]") {
   BuiltOver bench(2);
   bench.service.undo(bench.ana, bench.bench.now(), bench.reply());
-  SECTION("while it looks for what is next") {
+  SECTION("while it searches for the next action") {
     bench.service.stop();
     REQUIRE(bench.work());
     CHECK(bench.answer().text == "undo: not now: the server stops");

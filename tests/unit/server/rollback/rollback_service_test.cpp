@@ -211,8 +211,7 @@ TEST_CASE("a rollback waits while the log is full, and fails if it cannot be wri
 }
 
 TEST_CASE(
-    "a disk that fails while a worker still plans ends the rollback, "
-    "and the worker's answer is no harm",
+    "a disk that fails while a worker plans ends the rollback, and the worker's answer is dropped",
     "[rollback]") {
   Night night;
   const std::string id = night.preview_id();
