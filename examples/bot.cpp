@@ -88,7 +88,7 @@ class ExampleBot {
   ClientSession session_;
   ConnectionNumber connection_ = 0;
   bool placed_ = false;
-  NetClient net_;  // last: its thread stops before the rest goes
+  NetClient net_;  // the last member: its thread stops before the others are destroyed
 };
 
 }  // namespace
