@@ -76,13 +76,13 @@ class MeshPipeline {
   /// Sets the counts of meshes and frames.
   void add_to(ClientReport& report) const;
 
-  /// In a window, the least time between two frame orders. The swap decides the exact time of a
+  /// The least time between two frame orders in a window. The swap decides the exact time of a
   /// frame.
   static constexpr TimeUs kFrameUs = 16'000;
   /// The time per turn that mesh() spends on meshes of changed layers. The workers make the other
   /// meshes.
   static constexpr TimeUs kMeshHereUs = 1'000;
-  /// Off screen, the least time between a frame and the next one that shows no new edit.
+  /// The least time off screen between a frame and the next one that shows no new edit.
   static constexpr TimeUs kFrameOffScreenUs = 100'000;
   static constexpr TimeUs kScreenshotWaitUs = 10'000'000;
 

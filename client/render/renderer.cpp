@@ -132,7 +132,7 @@ struct Renderer::State {
     glUniform1i(glGetUniformLocation(quad_program.get(), "palette"), 0);
     glEnable(GL_CULL_FACE);
     glUniform1f(glGetUniformLocation(quad_program.get(), "seam"), 0.0002F);
-    // From near to far, so that hidden pixels fail the depth test early.
+    // Chunks are drawn from near to far, so that hidden pixels fail the depth test early.
     for (const Visible& v : visible) {
       place(v);
       v.buffers->draw_opaque();

@@ -47,10 +47,10 @@ inline constexpr std::size_t kEditPathCount = 3;
 const char* to_string(EditPath path);
 
 struct PathReport {
-  /// From submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is "to
-  /// pixels".
+  /// The times from submit to the end of each stage. `meshed` is latency-plus-mesh, `presented` is
+  /// "to pixels".
   std::array<Histogram, kLatencyStageCount> since_submit;
-  /// From the end of the previous recorded stage, or from submit for the first one.
+  /// The times from the end of the previous recorded stage, or from submit for the first one.
   std::array<Histogram, kLatencyStageCount> step;
   std::uint64_t edits = 0;           // seen on this path, or due and never seen
   std::uint64_t without_effect = 0;  // no visible voxel changed: no later stage is recorded

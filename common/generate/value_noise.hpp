@@ -32,7 +32,8 @@ class ValueNoise {
     std::uint64_t key;
     double frequency;
     double weight;
-    // In lattice cells. The shifts keep the octaves' lattices from meeting at the origin.
+    // Shifts of the octave, in lattice cells. They keep the octaves' lattices from meeting at the
+    // origin.
     double shift_x, shift_z;
   };
   void add_octave(const Octave& octave, std::int32_t x, std::int32_t z, std::uint32_t width,

@@ -34,7 +34,7 @@ class RlogEditsWriter {
 
  private:
   std::map<RlogClient, std::uint32_t> index_;  // into clients_
-  // In order of appearance, with the last client sequence.
+  // The clients in order of appearance, with the last client sequence of each.
   std::vector<std::pair<RlogClient, ClientSequence>> clients_;
   std::array<Bytes, kRlogColumns> columns_;
   std::uint32_t count_ = 0;

@@ -101,10 +101,10 @@ class ServerCore final : public NetEvents {
   ServerEnvironment environment_;
   CommitScheduler commits_;
   PeriodicTask ticks_, counters_;
-  // On the world strand: set while begin_stop() waits for its answer.
+  // The answer of begin_stop(), set while it waits. Used on the world strand.
   std::shared_ptr<std::promise<bool>> stopping_;
 
-  // From recover() on.
+  // These parts exist from recover() on.
   std::unique_ptr<WorldServer> world_;
   std::unique_ptr<DurableLog> log_;
   std::unique_ptr<CommandRunner> commands_;

@@ -42,9 +42,9 @@ class IndependentSet {
 
   // A partner is an index on the other side, or kFar if there is none.
   std::vector<std::uint32_t> left_partner_, right_partner_;
-  // Of left vertices: pairs of edges from an unmatched one.
+  // The distance of each left vertex from an unmatched one, in pairs of edges.
   std::vector<std::uint32_t> distance_;
-  // Right vertices that the same search reached.
+  // The right vertices that the same search reached.
   std::vector<std::uint8_t> reached_;
   std::vector<std::uint32_t> queue_, next_edge_, path_;
   // The distance of the left vertices before the nearest unmatched right ones.

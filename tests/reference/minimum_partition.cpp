@@ -5,9 +5,8 @@
 namespace runstone::reference {
 namespace {
 
-constexpr std::array<std::uint8_t, 2> kWall = {
-    // By Line: the edge from here to the next corner.
-    1, 2};
+// The flags of the edge from a corner to the next one, by Line.
+constexpr std::array<std::uint8_t, 2> kWall = {1, 2};
 constexpr std::uint8_t kConcave = 4;
 constexpr std::uint8_t kServed = 8;  // a chord of the set ends here
 

@@ -53,7 +53,7 @@ class MinimumPartition {
   void cut(std::size_t from, std::size_t to, Line line);
 
   // The corners of faces, row after row, one more a row than faces. Flags: the edges from it along
-  // u and v are walls; it is concave; it needs no cut of its own any more.
+  // u and v are walls; it is concave; it needs no further cut of its own.
   std::vector<std::uint8_t> corners_;
   std::array<std::size_t, 2> step_{};         // to the next corner, by Line
   std::array<std::vector<Chord>, 2> chords_;  // by Line

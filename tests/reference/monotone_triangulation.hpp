@@ -72,13 +72,13 @@ class MonotoneTriangulation {
 
   SweepPoints sweep_;
   std::vector<Triangle> triangles_;
-  // Of the last region: those below piece_count_, some of them free.
+  // The pieces of the last region are those below piece_count_. Some of them are free.
   std::vector<Piece> pieces_;
   std::vector<PieceId> free_pieces_;
   std::uint32_t piece_count_ = 0, slab_count_ = 0;
   std::vector<Slab> slabs_;
   std::vector<SlabId> free_slabs_, open_slabs_;
-  // By corner: the slab whose left or right side ends there.
+  // The slab whose left or right side ends at a corner, by corner.
   std::vector<SlabId> left_of_, right_of_;
   std::vector<Stacked> row_, stack_;  // of triangulate()
 };

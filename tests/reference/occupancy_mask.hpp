@@ -14,8 +14,8 @@ namespace runstone::reference {
 inline constexpr unsigned kBinarySideMax = 64;
 
 struct OccupancyMask {
-  /// By line, border lines included: line m of slow layer s is word (m + 1) + (m's side + 2) * (s +
-  /// 1), and bit f is its voxel f. The border voxels of a line are in `ends`.
+  /// A word for each line, border lines included: line m of slow layer s is word (m + 1) + (m's
+  /// side + 2) * (s + 1), and bit f is its voxel f. The border voxels of a line are in `ends`.
   std::vector<std::uint64_t> opaque, transparent;
   // Bits 0 and 1: opaque before and behind the line; bits 2 and 3: transparent before and
   // behind it.

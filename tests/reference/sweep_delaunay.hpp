@@ -78,12 +78,12 @@ class SweepDelaunay {
   std::vector<EdgeId> twin_;   // kNone on the hull
   std::vector<Side> side_;
   std::vector<EdgeId> edge_of_;  // by point: an edge that starts there
-  // By point on the hull, counter-clockwise.
+  // The neighbours of each point on the hull, counter-clockwise.
   std::vector<PointId> hull_next_, hull_prev_;
-  // By point on the hull: the edge to the next one.
+  // The edge from each point on the hull to the next one.
   std::vector<EdgeId> hull_edge_;
   std::vector<EdgeId> doubtful_;  // edges that may have to be flipped
-  // By their ends, since flips change the indices of edges.
+  // Edges given by their ends, since flips change the indices of edges.
   std::vector<std::array<PointId, 2>> crossed_, fresh_;
   std::vector<std::uint8_t> kept_;  // by triangle
 };

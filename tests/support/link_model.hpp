@@ -15,7 +15,7 @@ enum class LinkFate : std::uint8_t { arrives, lost, no_room };
 
 struct LinkPassage {
   LinkFate fate = LinkFate::arrives;
-  // When its last bit arrives, or would have arrived; not set for no_room.
+  // The time at which its last bit arrives, or would have arrived. Not set for no_room.
   TimeNs due_ns = 0;
 };
 

@@ -29,9 +29,9 @@ struct ApplyResult {
 /// Applies `edits`, bottom of the stack first, to the chunk whose first voxel is `origin`, and
 /// updates the digest. The result is canonical, and equal to applying the edits one after another,
 /// voxel by voxel. Edits that miss the chunk do nothing. The function works in two steps:
-///   - It finds the changes in ascending order. For one edit it walks the runs inside the edit's
-///     spans. For several edits it makes one pass (edit_sweep.hpp, layer_painter.hpp).
-///   - It replaces the runs of the edit areas, in place or all at once.
+///   - Find the changes in ascending order. For one edit, walk the runs inside the edit's spans.
+///     For several edits, make one pass (edit_sweep.hpp, layer_painter.hpp).
+///   - Replace the runs of the edit areas, in place or all at once.
 ///
 /// Requires a valid chunk and valid edits. Thread: any, with one scratch each. Cost: O(rows of the
 /// edits + runs crossed + log runs) to search, O(runs behind the first edit area) to write.

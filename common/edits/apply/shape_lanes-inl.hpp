@@ -2,7 +2,7 @@
 // rows as those of for_each_row() (ordered_shape.hpp), computed in floating point without rounding
 // errors. Highway includes this file once per instruction set, outside of any namespace.
 //
-// Why it is exact: every number is an integer below 2^53, so sums and products are exact as
+// The results are exact: every number is an integer below 2^53, so sums and products are exact as
 // doubles.
 //   - Roots: for an integer v < 2^52 the rounded square root has the right integer part. Just below
 //     a square k^2 the true root is at most k - 1/(2k), and doubles below k <= 2^26 lie closer

@@ -15,9 +15,9 @@
 // A capsule is convex. So the three rows of a line, each of which is an interval of integers, join
 // without a gap.
 //
-// No overflow: segments reach at most S = 1,024 along an axis and R = r * r + r with r <= 512.
-// Callers pass only lines within r of the segment's bounding box. So |q| per axis <= S + r = 1,536
-// and
+// No number overflows: segments reach at most S = 1,024 along an axis and R = r * r + r with r <=
+// 512. Callers pass only lines within r of the segment's bounding box. So |q| per axis <= S + r =
+// 1,536 and
 //   A <= 2 S^2 = 2^21, L <= 3 S^2 < 2^21.6, R < 2^18.01, n <= 2 * 1,536^2 < 2^22.2, |c| < 2^21.6;
 //   |E| <= c^2 + A * max(R, n) < 2^44.2, and where E >= 0 counts, E <= A * R < 2^39.1 since
 //   c^2 <= A * n;

@@ -38,7 +38,7 @@ struct PlainIndices {
     for (; row != 0; row &= row - 1) to[lowest_bit(row)] = value;
   }
 
-  /// As many indices as a row has bits.
+  /// A line of as many indices as a row has bits.
   template <class Row, class Index>
   class Line {
    public:

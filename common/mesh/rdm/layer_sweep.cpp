@@ -62,7 +62,7 @@ class Sweep {
   }
 
  private:
-  /// By Side: rows in which strips may end or begin.
+  /// The rows in which strips may end or begin, by Side.
   using SideRows = std::array<RowSet, 6>;
 
   /// Prepares the state as if a layer without faces preceded the first one.

@@ -71,7 +71,7 @@ class QuadEmitter {
     Quad quad = shape_.close(open, row);
     QuadBuckets::Bucket& bucket = pass_of(quad)[layer];
     if (bucket.count == bucket.room) QuadBuckets::grow(bucket);
-    // It works without a branch, because the choice is unpredictable.
+    // The code has no branch here, because the choice is unpredictable.
     bucket.count -= joins ? 1 : 0;
     Quad* const to = bucket.quads.get() + bucket.count++;
     *to = joins ? shape_.with_row_more(*to) : quad;

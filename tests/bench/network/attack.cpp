@@ -201,7 +201,7 @@ Bytes framed_hello() {
 }
 
 void open_halfway(AttackThread& thread) {
-  // Of each thread: far fewer than the limit of a process.
+  // The number of connections of each thread, far fewer than the limit of a process.
   constexpr std::size_t kOpenMax = 500;
   constexpr std::uint32_t kAddresses = 250;
   constexpr int kPerStep = 4;

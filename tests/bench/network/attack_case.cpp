@@ -26,10 +26,9 @@ struct AttackResult {
   std::array<FleetReport, 3> seen;  // by phase
   JoinProbe::Joins joins;
   AttackOutcome outcome;
-  std::map<std::string, std::uint64_t>
-      // The reasons in the server's log. The log may drop lines.
-      logged;
-  // At the end of the phase; for the attack itself, the peak.
+  // The reasons in the server's log. The log may drop lines.
+  std::map<std::string, std::uint64_t> logged;
+  // The memory at the end of the phase; for the attack itself, the peak.
   std::array<double, 3> resident_mb{};
   std::array<double, 3> server_cores{};
   double attacker_cores = 0;

@@ -15,7 +15,7 @@ inline constexpr double kFleetEditsPerSecond = 2;  // of each bot
 
 /// The bots' measurements. No sample is dropped.
 struct FleetReport {
-  // From due to received and verified, over all subscribers.
+  // The times from due to received and verified, over all subscribers.
   double p50_ms = 0, p90_ms = 0, p99_ms = 0, max_ms = 0;
   double samples = 0, never = 0;
   std::vector<SampleRow> rows;  // all samples except those that never arrived

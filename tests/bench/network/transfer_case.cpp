@@ -106,12 +106,12 @@ void serve_once(tcp::acceptor& acceptor, const Bytes& bytes) {
   socket.read_some(asio::buffer(&request, 1), error);
   if (!error) asio::write(socket, asio::buffer(bytes), error);
   if (!error)
-    // Until the receiver has all bytes and closes.
+    // This read waits until the receiver has all bytes and closes.
     socket.read_some(asio::buffer(&request, 1), error);
 }
 
 struct Received {
-  // From the request until the last byte was read, and until the last chunk was meshed.
+  // The times from the request until the last byte was read, and until the last chunk was meshed.
   double transfer_ms = 0, complete_ms = 0;
   TransferTimes times;
 };

@@ -1,4 +1,4 @@
-// What a planner plans to mesh again: the layers that changed, or the whole chunk.
+// A planner plans to mesh again either the layers that changed or the whole chunk.
 #include <catch2/catch.hpp>
 #include <set>
 

@@ -20,7 +20,8 @@ TEST_CASE("a replayed chunk equals the chunk to which the edits were applied one
     start.digest = digest_of(start.voxels);
     Chunk expected = start;
     ReplayedChunk replayed(start, origin);
-    // No multiple of the stack's maximum, so that some edits are pending when the log ends.
+    // The number of edits is no multiple of the stack's maximum, so that some edits are pending
+    // when the log ends.
     const std::uint32_t edits = 2 * kReplayStackMax + 1 + rng.below(40);
     for (std::uint32_t seq = 1; seq <= edits; ++seq) {
       const EditDescriptor edit = random_edit_near(rng, origin, extent);
