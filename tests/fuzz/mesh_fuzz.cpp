@@ -1,5 +1,5 @@
-// Compares meshers with the face oracle on scenes that bytes describe, and remeshing with meshing.
-// Every input is a scene and some edits:
+// The target compares meshers with the face oracle on scenes that bytes describe, and remeshing
+// with meshing. Every input is a scene and some edits:
 //   - 3 bytes sides (8 + b % 9; the first one of 252 .. 255 is 33, 64, 65 or 128);
 //   - 1 byte axis order;
 //   - 1 byte mask of neighbours (bit 6: every run of stone becomes a material of its own);

@@ -1,6 +1,6 @@
-// Decodes any bytes as a message. Input: 1 byte (bit 0: sender; bits 1-2: class; bit 3: the edge of
-// the world is known and 16), then the message. A message that decodes is encoded again and must
-// decode to the same message.
+// The target decodes any bytes as a message. Input: 1 byte (bit 0: sender; bits 1-2: class; bit 3:
+// the edge of the world is known and 16), then the message. A message that decodes is encoded again
+// and must decode to the same message.
 #include <cstdint>
 
 #include "protocol/codec/messages.hpp"

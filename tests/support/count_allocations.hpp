@@ -1,4 +1,4 @@
-// Counts the heap allocations of a program. A program that calls allocations() links a global
+// A counter of the heap allocations of a program. A program that calls allocations() links a global
 // operator new that counts (with and without an alignment); other programs keep the standard one.
 // Thread: the counters are atomic. Read them while no thread allocates.
 #pragma once

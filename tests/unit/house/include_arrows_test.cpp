@@ -1,5 +1,5 @@
-// Checks that the includes of the tree follow the arrows between modules. An arrow is a DEPS entry
-// of runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
+// The includes of the tree must follow the arrows between modules. An arrow is a DEPS entry of
+// runstone_module() in a CMakeLists.txt: a module may include its own headers and those of its
 // DEPS. In addition:
 // - The pure folders (common/ without os and sqlite, and protocol/) include no header for sockets,
 //   files, clocks, threads, logs or graphics.

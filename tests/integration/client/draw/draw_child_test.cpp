@@ -1,5 +1,5 @@
-// The draw child as servers use it, with the real client program, off screen. Where no OpenGL
-// exists the cases WARN and pass. Shell scripts act as faulty programs.
+// The draw child as servers use it, with the real client program, off screen. If there is no
+// OpenGL, the cases say so with WARN and pass. Shell scripts act as faulty programs.
 #include "server/draw/draw_child.hpp"
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-// runstone-replay timelapse, with the real client program for drawing. Where no OpenGL exists the
+// runstone-replay timelapse, with the real client program for drawing. If there is no OpenGL, the
 // cases that draw say so with WARN and pass.
 #include <stdlib.h>
 

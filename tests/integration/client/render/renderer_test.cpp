@@ -1,4 +1,4 @@
-// Draws off screen. Where no OpenGL context exists the cases WARN and pass.
+// The cases draw off screen. If there is no OpenGL context, they say so with WARN and pass.
 #include "client/render/renderer.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// Compares the terrain with its definition, voxel by voxel: one condition per rule, evaluated at
+// The terrain is compared with its definition, voxel by voxel: one condition per rule, evaluated at
 // single places.
 #include "common/generate/terrain_generator.hpp"
 

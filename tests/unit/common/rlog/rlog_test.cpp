@@ -1,5 +1,5 @@
-// Reads .rlog files that were written, truncated at every byte, flipped in every bit, reordered by
-// block, or made wrong with correct checksums.
+// The tests read .rlog files: intact ones, truncated at every byte, with every bit flipped, with
+// reordered blocks, and with wrong content under correct checksums.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,6 +1,6 @@
-// Compares the reference meshers with every number in the thesis' data about its 37 scenarios. The
-// tables in tests/data/thesis hold the expected numbers. scenario_defects.csv names the cells that
-// cannot be reproduced, with the reason, and the tests check that these differ.
+// The reference meshers are compared with every number in the thesis' data about its 37 scenarios.
+// The tables in tests/data/thesis hold the expected numbers. scenario_defects.csv names the cells
+// that cannot be reproduced, with the reason, and the tests check that these differ.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <iostream>
